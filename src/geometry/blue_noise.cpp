@@ -16,7 +16,8 @@
 namespace peristat {
 namespace {
 
-/// Places by the cell of a grid that they lie in, which is as large as their distance at most.
+/// Places by the cell of a grid that they lie in; a cell is as large as the largest distance
+/// searched.
 class Grid {
  public:
   Grid(int dimension, const Box& box, double cell) : dimension_(dimension), low_(box.min) {
@@ -36,7 +37,7 @@ class Grid {
     places_.push_back(place);
   }
 
-  /// @param distance at most that of the constructor
+  /// @param distance at most the size of a cell
   [[nodiscard]] bool has_within(double distance, const Coordinates& place) const {
     const std::array<std::size_t, 3> centre = cell_of(place);
     std::array<std::size_t, 3> from{}, to{};
@@ -76,11 +77,11 @@ class Grid {
   Coordinates low_;
   double cell_ = 0.0;
   std::array<std::size_t, 3> extent_{1, 1, 1};
-  std::vector<Index> last_, before_;  // last place of a cell, and the one before each in its cell
+  std::vector<Index> last_, before_;  // last place per cell; per place the one before
   std::vector<Coordinates> places_;
 };
 
-/// Area or volume of the body, in those of a cell of the lattice.
+/// Area or volume of the body, in cells of the lattice.
 double cells_in_body(const Lattice& lattice) {
   Lattice cut = lattice;
   cut.volumes = CellVolumes::fractional;
@@ -91,7 +92,7 @@ double cells_in_body(const Lattice& lattice) {
 
 struct Parts {
   std::vector<PartInBody> of_place;
-  /// Of whole cells in 2D, from their centroids.
+  /// Polygons of whole cells in 2D, relative to their centroids.
   std::vector<std::vector<std::array<double, 2>>> polygon;
 };
 
@@ -103,7 +104,7 @@ std::vector<std::array<double, 2>> polygon_of(const ConvexCell& cell) {
   return polygon;
 }
 
-/// Parts of the places' cells in the body.
+/// Parts of the places' Voronoi cells that lie in the body.
 Parts parts_of(const Lattice& lattice, const Solid& body, const std::vector<Coordinates>& places,
                Accuracy accuracy) {
   Parts parts{std::vector<PartInBody>(places.size()), {}};

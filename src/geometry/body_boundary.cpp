@@ -14,10 +14,10 @@
 namespace peristat {
 namespace {
 
-constexpr double flatness = 1e-9;  // of cosines of angles
+constexpr double flatness = 1e-9;  // tolerance of cosines of angles
 
-/// Where the sides of a boundary are told: above the tolerance of every shape, and the round-off of
-/// the body's coordinates, far below its size.
+/// Distance from a boundary at which its two sides are tested: above the tolerance of every shape
+/// and the round-off of the body's coordinates, far below the body's size.
 double nudge_of(const Box& body, int dimension, const std::vector<ShapeStep>& shapes) {
   double size = 0.0, largest_shape = 0.0, farthest = 0.0;
   for (std::size_t c = 0; c < std::size_t(dimension); ++c) {

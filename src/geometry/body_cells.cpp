@@ -78,7 +78,7 @@ std::vector<Index> BodyCells::outermost(const Side& side) const {
 }
 
 std::vector<Side> BodyCells::exposed_sides(std::span<const Index> points) const {
-  const Index owned = of_.owned.value_or(of_.own());  // ghosts do not see all around them
+  const Index owned = of_.owned.value_or(of_.own());  // a ghost's neighbours may be missing
   std::vector<double> least(6, std::numeric_limits<double>::infinity());  // of cells, and of -cells
   std::vector<double> is_exposed_there(6, 1.0);  // 2 axis + (1 on the upper side)
   for (const Index point : points) {

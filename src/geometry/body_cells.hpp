@@ -15,8 +15,8 @@ namespace peristat {
 /// Place on the lattice, counted in spacings from its frame's origin; zero beyond the dimension.
 using LatticeCell = std::array<std::int64_t, 3>;
 
-/// The cells of the points of a body on a lattice, squares or cubes of a spacing: what is told of
-/// its boundary. Points of layers are not in the body.
+/// The cells of the points of a body on a lattice, squares or cubes of a spacing, from which its
+/// boundary is found. Points of layers are not in the body.
 class BodyCells {
  public:
   /// @param ranks that have parts of the body, with ghosts a spacing around their points; null: it
@@ -30,13 +30,14 @@ class BodyCells {
   [[nodiscard]] Index point(const LatticeCell& cell) const;
   [[nodiscard]] bool is_exposed(Index point, const Side& side) const;
 
-  /// The body's outermost plane of points on a side, ascending: what a layer stands in front of. A
-  /// call that all ranks make; each gets what it has of the plane.
-  /// @throws InputError (without a key) where the body goes on beyond a plane or period
+  /// Returns the body's outermost plane of points on a side, ascending, in front of which a layer
+  /// stands. Collective; each rank gets its part of the plane.
+  /// @throws InputError (without a key) if the body continues beyond a plane of symmetry or a
+  ///         period
   [[nodiscard]] std::vector<Index> outermost(const Side& side) const;
 
-  /// The sides on which points make one plane of cells that is exposed there. A call that all ranks
-  /// make, with what they have of the points.
+  /// Returns the sides on which points make one plane of cells that is exposed there. Collective;
+  /// each rank passes its part of the points.
   [[nodiscard]] std::vector<Side> exposed_sides(std::span<const Index> points) const;
 
  private:

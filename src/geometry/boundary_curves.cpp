@@ -33,7 +33,7 @@ Piece segment(const ShapeSide& part, const Coordinates& a, const Coordinates& b)
   return piece;
 }
 
-/// Whole boundaries of shapes, anticlockwise; what is not bounded ends beyond the body.
+/// Whole boundaries of shapes, anticlockwise; an unbounded shape ends beyond the body.
 struct Curves {
   std::size_t shape;
   const Box& bounds;
@@ -73,7 +73,7 @@ struct Curves {
     for (const auto& vertex : of.vertices) corners.push_back({vertex[0], vertex[1], 0.0});
     std::iota(sides.begin(), sides.end(), std::size_t(0));
     if (twice_area < 0.0) {
-      // The edge from the last corner backwards is the one before it.
+      // Backwards, the edge that begins at a corner is the one that ended there.
       std::reverse(corners.begin(), corners.end());
       std::reverse(sides.begin(), sides.end());
       std::rotate(sides.begin(), sides.begin() + 1, sides.end());
@@ -197,7 +197,7 @@ void BoundaryCurves::append_cuts(const Piece& whole, std::vector<double>& t) con
   }
 }
 
-/// Where `where` of a cover on the line changes.
+/// Appends where on the line the `where` of a cover changes.
 void BoundaryCurves::append_jumps(const Piece& whole, std::vector<double>& t) const {
   for (const Cover& cover : body_.covers()) {
     const auto axis = std::size_t(cover.side.axis);
@@ -232,7 +232,7 @@ void BoundaryCurves::add_pieces_of(const Piece& whole) {
   std::erase_if(cuts, [&](double t) { return !(t > whole.from && t < whole.to); });
   cuts.insert(cuts.end(), {whole.from, whole.to});
   std::sort(cuts.begin(), cuts.end());
-  // What is shorter than this has no middle that could be told.
+  // A piece shorter than this has no middle at which its sides can be tested.
   const double least = 8.0 * nudge_ / (is_arc ? whole.radius : 1.0);
   std::vector<Piece> found;
   double begin = cuts.front();
@@ -251,7 +251,7 @@ void BoundaryCurves::add_pieces_of(const Piece& whole) {
     }
     begin = end;
   }
-  // An arc that passes the angle zero is one.
+  // Joins the parts of an arc on both sides of the angle zero.
   if (is_arc && found.size() > 1 && found.front().from == 0.0 && found.back().to == whole_turn &&
       found.front().sign == found.back().sign) {
     found.back().to += found.front().to;
@@ -260,7 +260,8 @@ void BoundaryCurves::add_pieces_of(const Piece& whole) {
   pieces_.insert(pieces_.end(), found.begin(), found.end());
 }
 
-/// A side that meets a cover has to stand across it, so that it goes on straight.
+/// Throws if a side that meets a cover is not perpendicular to it, so that it can't continue
+/// straight.
 void BoundaryCurves::check_covers() const {
   for (const Piece& piece : pieces_) {
     for (const double t : {piece.from, piece.to}) {
@@ -354,7 +355,7 @@ std::optional<double> BoundaryCurves::outermost(const Side& side) const {
     if (piece.radius == 0.0 && piece.normal(0.0)[axis] * side.sign > 1.0 - 1e-9)
       flat = std::max(flat, of_piece);
   }
-  // Beside a cover sides go on beyond the body.
+  // Sides beside a cover continue beyond the body.
   for (const Cover& cover : body_.covers())
     if (cover.side == side) farthest = std::min(farthest, side.sign * cover.face);
   if (flat < farthest - 8.0 * nudge_ || flat == -infinity) return std::nullopt;

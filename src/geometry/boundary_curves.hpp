@@ -13,7 +13,7 @@ class BoundaryCurves : public BoundaryFaces {
   /// @param body of the shapes; must outlive this
   /// @param shapes must outlive this
   /// @param bounds of the body, finite
-  /// @param nudge distance from a boundary at which its sides are told [m]
+  /// @param nudge distance from a boundary at which its two sides are tested [m]
   /// @throws InputError, see BodyBoundary
   BoundaryCurves(const CollaredBody& body, const std::vector<ShapeStep>& shapes, const Box& bounds,
                  double nudge);

@@ -18,18 +18,18 @@ struct ShapeSide {
   bool operator==(const ShapeSide&) const = default;
 };
 
-/// "shape 0 side x+", "shape 1": how a part of a boundary is told.
+/// Name of a part of a boundary in messages: "shape 0 side x+", "shape 1".
 [[nodiscard]] std::string name_of(const ShapeSide& part, const std::vector<ShapeStep>& shapes);
 
 /// The nearest place on a face of a body.
 struct Foot {
-  ShapeSide part{};       ///< whose boundary it is on
+  ShapeSide part{};       ///< the boundary that it is on
   Coordinates at{};       ///< [m]
   Coordinates normal{};   ///< of the face there, out of the body, of length 1
   double distance = 0.0;  ///< from the place [m]
 
-  /// How far the place is below the face's tangent plane; negative: it is in front of it, as beyond
-  /// a concave corner or a gap [m].
+  /// Depth of the place below the face's tangent plane; negative in front of it, such as beyond a
+  /// concave corner or a gap [m].
   [[nodiscard]] double depth(const Coordinates& place) const {
     double sum = 0.0;
     for (std::size_t c = 0; c < 3; ++c) sum += (at[c] - place[c]) * normal[c];
@@ -37,12 +37,12 @@ struct Foot {
   }
 };
 
-/// Normals within this angle are told apart by their distance alone: of two faces with such the
-/// nearer one counts, so that no traction counts twice where a side goes on smoothly, in a polygon
-/// with many edges, or a step behind.
+/// Among faces whose normals differ by less than this angle the nearest alone counts, so that no
+/// traction counts twice where a side continues smoothly, in a polygon with many edges, or on a
+/// face one step behind.
 inline constexpr double smooth_angle = 30.0;  // degrees
 
-/// What the sources of a body's boundary in 2D and 3D have in common.
+/// Common interface of the boundaries of bodies in 2D and 3D.
 class BoundaryFaces {
  public:
   BoundaryFaces() = default;

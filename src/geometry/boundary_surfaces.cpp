@@ -14,7 +14,7 @@ namespace {
 using Surface = BoundarySurfaces::Surface;
 using Kind = Surface::Kind;
 
-/// A unit vector at right angles to one.
+/// A unit vector perpendicular to `axis`.
 Coordinates across(const Coordinates& axis) {
   std::size_t least = 0;
   for (std::size_t c = 1; c < 3; ++c)
@@ -28,7 +28,7 @@ Coordinates across(const Coordinates& axis) {
 struct Surfaces {
   std::size_t shape;
   const ShapeStep& step;
-  double beyond;  // the shape, of covers [m]
+  double beyond;  // how far covers reach beyond the shape [m]
   std::vector<Surface>& surfaces;
 
   Surface& next(Kind kind, std::size_t side) {
@@ -100,7 +100,7 @@ struct Surfaces {
   void operator()(const Disk&) {}  // check_lattice refuses it in 3D
 };
 
-/// Whether two are the same places with the body on the same side.
+/// True if both are the same places with the body on the same side.
 bool are_one(const Surface& a, const Surface& b, double slack) {
   if (a.kind != b.kind || std::abs(a.radius - b.radius) > slack) return false;
   const double facing = a.kind == Kind::plane ? dot(a.axis, b.axis) : 1.0;
@@ -127,7 +127,7 @@ Coordinates Surface::normal(const Coordinates& at) const {
   Coordinates arm = minus(at, middle);
   if (kind == Kind::cylinder) arm = minus(arm, scaled(dot(arm, axis), axis));
   if (length(arm) > 1e-12 * radius) return unit(arm);
-  // From the middle all directions are as good.
+  // From the middle all directions are equivalent.
   return kind == Kind::cylinder ? across(axis) : Coordinates{1.0, 0.0, 0.0};
 }
 
@@ -225,7 +225,8 @@ std::optional<Coordinates> BoundarySurfaces::nearest(const Surface& surface,
   const double height = length(minus(foot, place));
   if (height > distance) return std::nullopt;
   if (is_exposed(surface, foot)) return foot;
-  // Cut off here: ways in all directions lead away from the place, each to its nearest part.
+  // The foot is cut off: searches the surface from it in all directions, each for its nearest
+  // exposed part.
   double most = 2.0 * distance;
   if (surface.kind == Kind::plane)
     most = std::sqrt(std::max(0.0, distance * distance - height * height)) * (1.0 + 1e-9);
@@ -273,7 +274,7 @@ std::optional<double> BoundarySurfaces::outermost(const Side& side) const {
         std::abs(surface.middle[axis] - height) > 8.0 * nudge_) {
       continue;
     }
-    // Some part of it that is as wide as a part of the body.
+    // An exposed part of the plane as wide as 1/64 of the body is found.
     constexpr int parts = 64;
     const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
     Coordinates at = surface.middle;

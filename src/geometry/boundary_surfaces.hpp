@@ -15,13 +15,13 @@ class BoundarySurfaces : public BoundaryFaces {
  public:
   /// @param body of the shapes; must outlive this
   /// @param bounds of the body, finite
-  /// @param nudge distance from a boundary at which its sides are told [m]
+  /// @param nudge distance from a boundary at which its two sides are tested [m]
   BoundarySurfaces(const CollaredBody& body, const std::vector<ShapeStep>& shapes,
                    const Box& bounds, double nudge);
 
   void append_feet(const Coordinates& place, double distance,
                    std::vector<Foot>& feet) const override;
-  /// None, too, where what is outermost of the shapes has been taken away.
+  /// Also none if the outermost part of the shapes has been subtracted.
   [[nodiscard]] std::optional<double> outermost(const Side& side) const override;
 
   struct Surface {
@@ -30,8 +30,8 @@ class BoundarySurfaces : public BoundaryFaces {
     Coordinates middle{};  ///< a place on the plane or the axis; the sphere's centre [m]
     Coordinates axis{};    ///< unit vector: normal of the plane out of the shape; the axis
     double radius = 0.0;   ///< [m]
-    Box bounds{};          ///< that hold what may be a boundary
-    /// Of the normal out of the body relative to that out of the shape: 1 where it is added.
+    Box bounds{};          ///< hold every part that may be a boundary
+    /// Sign of the normal out of the body relative to that out of the shape: 1 for an added shape.
     double sign = 1.0;
 
     /// Out of the shape.
@@ -40,7 +40,7 @@ class BoundarySurfaces : public BoundaryFaces {
     [[nodiscard]] Coordinates foot(const Coordinates& place) const;
     /// Two directions along the surface at a place of it, at right angles.
     [[nodiscard]] std::array<Coordinates, 2> tangents(const Coordinates& at) const;
-    /// Where a straight way on the unrolled surface leads to from a place of it.
+    /// Place that a straight way on the unrolled surface reaches from a place of it.
     [[nodiscard]] Coordinates reached(const Coordinates& from, const Coordinates& direction,
                                       double way) const;
   };

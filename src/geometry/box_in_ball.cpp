@@ -10,7 +10,7 @@
 namespace peristat {
 namespace {
 
-/// Of a box's volume: less is no part of it, and so much is all.
+/// Fraction of a box's volume: a smaller part counts as none, and all but this as the whole box.
 constexpr double round_off = 1e-12;
 
 PlaneVector operator-(const PlaneVector& a, const PlaneVector& b) {
@@ -38,13 +38,12 @@ std::optional<Segment> chord(const PlaneVector& from, const PlaneVector& to, dou
   return Segment{enter == 0.0 ? from : at(enter), leave == 1.0 ? to : at(leave)};
 }
 
-/// Sums of area and moment about a corner of the part, beside which they keep
-/// their digits.
+/// Sums of area and moment about a corner of the part, so that they keep their digits.
 class Sums {
  public:
   explicit Sums(const PlaneVector& about) : about_(about) {}
 
-  /// The triangle of the corner and a side.
+  /// Adds the triangle of the corner and a side.
   void add_triangle(const PlaneVector& from, const PlaneVector& to) {
     const PlaneVector a = from - about_, b = to - about_;
     const double area = 0.5 * plane_cross(a, b);
@@ -52,7 +51,7 @@ class Sums {
     for (std::size_t c = 0; c < 2; ++c) moment_[c] += area * (a[c] + b[c]) / 3.0;
   }
 
-  /// What lies between the chord and the circle, anticlockwise.
+  /// Adds the region between the chord and the circle, anticlockwise.
   void add_segment(const PlaneVector& from, const PlaneVector& to, double radius) {
     const PlaneVector along = to - from;
     const double length = std::hypot(along[0], along[1]);
@@ -111,9 +110,10 @@ std::vector<double> squared_kinks(const Rectangle& of) {
   return squared;
 }
 
-/// int of the areas of a box's sections in a ball between two heights without a kink between them.
-/// At a kink areas grow like its distance to the power of one or three halves: with z = middle -
-/// half cos(t) they are smooth, but for kinks just beyond the ends, from which halves get away.
+/// Integral of the areas of a box's sections in a ball between two heights without a kink between
+/// them. At a kink areas grow like its distance to the power of one or three halves: with z =
+/// middle - half cos(t) they are smooth, except for kinks just beyond the ends, whose effect
+/// halving confines.
 double volume_between(const Rectangle& across, double from, double to, double radius,
                       int halvings) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from);

@@ -49,8 +49,9 @@ Moments integral(const Integrand& f, double from, double to, const Moments& esti
                integral(f, middle, to, right, tolerance, depth - 1));
 }
 
-/// Over the cell's width, panel by panel between the given places in spacings from its middle.
-/// @param panels at least; a corner that no break tells may hide between the places of a panel
+/// Integrates over the cell's width, panel by panel between the given places in spacings from its
+/// middle.
+/// @param panels least number of panels, so that a corner without a break is not missed
 Moments integral(const Integrand& f, std::vector<double>& breaks, double tolerance, int panels) {
   constexpr int deepest = 24;
   for (int k = 0; k <= panels; ++k) breaks.push_back(double(k) / panels - 0.5);
@@ -89,8 +90,8 @@ class Measured {
                     1e-1 * tolerance(3), 4);
   }
 
-  /// Of a region between planes along the lattice's axes, from the blocks that they cut; none if
-  /// it is another one.
+  /// Moments of a region between planes along the lattice's axes, summed over the blocks that they
+  /// cut; none for any other region.
   [[nodiscard]] std::optional<Moments> moments_of_blocks() const {
     std::array<std::vector<double>, 3> planes;
     if (frame_.is_turned() || !region_.append_planes(planes)) return std::nullopt;
@@ -130,7 +131,8 @@ class Measured {
   }
 
  private:
-  /// Heights along an axis at which what is across changes, in spacings from the place.
+  /// Appends the heights along an axis at which the section across it changes, in spacings from the
+  /// place.
   void append_levels(int axis, const Coordinates& from, std::vector<double>& levels) const {
     const std::size_t first = levels.size();
     region_.append_levels(direction_[axis], levels);
@@ -143,7 +145,7 @@ class Measured {
     region_.append_crossings({at(from), step_[axis]}, t);
   }
 
-  /// Of the plane at a height z.
+  /// Moments of the section at a height z.
   [[nodiscard]] Moments section(double z, double tolerance) const {
     std::vector<double> breaks;
     append_levels(1, {0.0, 0.0, z}, breaks);
@@ -155,7 +157,7 @@ class Measured {
         breaks, tolerance, frame_.dimension() == 2 ? 64 : 4);
   }
 
-  /// Of the line through a place along the first axis.
+  /// Moments of the chord through a place along the first axis.
   [[nodiscard]] Moments chord(const Coordinates& through) const {
     std::vector<double> ends{-0.5, 0.5};
     const Line line{at(through), step_[0]};

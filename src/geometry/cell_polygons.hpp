@@ -9,7 +9,7 @@ namespace peristat {
 /// Cells of points that are known as convex polygons (2D) or intervals (1D).
 struct CellPolygons {
   std::vector<std::size_t> offset{};  ///< first corner of each point's cell, and the end; or empty
-  /// From the point's place [m]: of polygons anticlockwise, of intervals both ends in (x, 0).
+  /// Relative to the point's place [m]: polygons anticlockwise, intervals by both ends in (x, 0).
   std::vector<std::array<double, 2>> corners{};
 
   [[nodiscard]] bool empty() const { return offset.empty(); }

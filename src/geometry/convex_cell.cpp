@@ -10,7 +10,7 @@
 namespace peristat {
 namespace {
 
-/// What a body has of a polygon, as a region.
+/// Intersection of a polygon and a body, as a region.
 class PolygonInBody : public Region {
  public:
   /// @param cell, body must outlive this
@@ -21,7 +21,7 @@ class PolygonInBody : public Region {
       corners_.push_back(plus<3>(cell.place, from));
       const Coordinates normal{along[1], -along[0], 0.0};
       sides_.push_back({normal, dot<3>(normal, from)});
-      // Where the body's boundary leaves through a side the length of chords kinks.
+      // The length of chords kinks where the body's boundary leaves through a side.
       const Line side{corners_.back(), along};
       std::vector<double> t;
       body.append_crossings(side, t);

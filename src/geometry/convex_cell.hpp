@@ -21,17 +21,17 @@ struct ConvexCell {
   [[nodiscard]] double reach() const;
 };
 
-/// What a body has of a cell.
+/// Part of a cell that lies in a body.
 struct PartInBody {
   double volume = 0.0;     ///< [m2] in 2D, [m3]
   Coordinates centroid{};  ///< [m]
-  bool is_whole = true;    ///< whether it is the cell itself, to the last bit
+  bool is_whole = true;    ///< true if it is the cell itself, to the last bit
 };
 
-/// Part of a cell that lies in a body. A cell in one convex shape is whole; of others the part is
-/// measured: in 2D as parts of a lattice's cells are (see piece_of) in the box around the cell, to
+/// Returns the part of a cell that lies in a body. A cell in one convex shape is whole. Other parts
+/// are measured: in 2D like those of lattice cells (see piece_of) in the box around the cell, to
 /// 1e-9 of that box, or 1e-5 where boundaries of two shapes cross in it; in 3D by rays (see
-/// polyhedron_in_body), as exactly as that is asked to.
+/// polyhedron_in_body), with the given accuracy.
 [[nodiscard]] PartInBody part_in_body(const ConvexCell& cell, const Solid& body,
                                       Accuracy accuracy = Accuracy::fine);
 

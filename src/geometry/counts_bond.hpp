@@ -6,9 +6,9 @@
 
 namespace peristat {
 
-/// Whether the part of a body that these points are counts a bond, which all parts together do
-/// once: of a bond between two parts the one that owns the end which comes first by its place. Of a
-/// whole body, every bond.
+/// True if these points' part of a body counts a bond. All parts together count each bond once: a
+/// bond between two parts is counted by the owner of the end that comes first by position. For a
+/// whole body every bond counts.
 [[nodiscard]] inline bool counts_bond(const Points& points, Index i, Index j) {
   if (!points.owned) return true;
   const bool owns_i = points.owns(i), owns_j = points.owns(j);

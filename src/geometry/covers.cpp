@@ -16,7 +16,7 @@ std::string key_of(std::size_t layer, const char* key) {
   return "layers[" + std::to_string(layer) + "]." + key;
 }
 
-/// An expression remembers what it is evaluated at: one thread at a time.
+/// An expression stores the place that it is evaluated at: one thread at a time.
 struct LockedExpression {
   Expression expression;
   std::mutex mutex{};

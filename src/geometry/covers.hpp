@@ -8,8 +8,8 @@
 
 namespace peristat {
 
-/// What the layers of a lattice cover of the body's flat outermost sides; safe for threads.
-/// @param places of points in the body, of those that ranks have: a call that all make
+/// Covers of the body's flat outermost sides by the layers of a lattice; safe for threads.
+/// @param places of points in the body, those of this rank (collective)
 /// @throws InputError ("layers[k].side", "layers[k].where") if the body has no flat side there
 [[nodiscard]] std::vector<Cover> covers_of(const Lattice& lattice,
                                            const std::vector<Coordinates>& places,

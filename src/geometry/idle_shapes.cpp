@@ -17,7 +17,7 @@ bool takes_whole_cells(const Lattice& lattice) {
   return lattice.volumes == CellVolumes::whole && lattice.arrangement == Arrangement::lattice;
 }
 
-/// What two boxes share, and whether there is anything.
+/// Finds the intersection of two boxes; true if it is not empty.
 bool overlap(const Box& one, const Box& other, int dimension, Box& shared) {
   bool is_any = true;
   for (int c = 0; c < 3; ++c) {

@@ -4,9 +4,9 @@
 
 namespace peristat {
 
-/// Refuses a subtracted shape that takes nothing away: one whose inside has no place of the lattice
-/// that the steps before have put into the body. Where cells are cut at boundaries, or points stand
-/// at random, a shape takes something wherever it overlaps with the box around the body.
+/// Refuses a subtracted shape that removes nothing: one that contains no lattice place which the
+/// steps before have put into the body. With cells cut at boundaries, or random points, a shape
+/// removes something if it overlaps the box around the body.
 /// @throws InputError ("shapes[1].action")
 void refuse_idle_shapes(const Lattice& lattice);
 

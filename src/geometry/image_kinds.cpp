@@ -16,7 +16,7 @@ namespace {
 /// A point nearer to a plane than this share of the spacing stands on it.
 constexpr double on_plane = 0.05;
 
-/// Of the images that a body thinner than its horizon would need.
+/// Most repetitions of a body that is thinner than its horizon.
 constexpr double most_repeats = 100.0;
 
 /// x' = mirror x + shift along one axis.
@@ -41,7 +41,7 @@ int repeats(double horizon, double length, const std::string& key) {
                        " m long between its sides, less than a hundredth of the horizon");
 }
 
-/// Checks a plane against the points, and tells on which side they lie (1: above).
+/// Checks a plane against the points, and returns the side on which they lie (1: above, -1: below).
 int side_of(const Points& points, const BodyExtent& body, const SymmetryPlane& plane,
             const std::string& table) {
   const BodyExtent::Along& extent = body.along[std::size_t(plane.axis)];
@@ -140,7 +140,7 @@ std::vector<AxisImage> images_along(const Points& points, const BodyExtent& body
 }  // namespace
 
 BodyExtent extent_of(const Points& points, const Communicator& ranks) {
-  constexpr std::size_t width = 8;  // of an axis: least and most, each with a place
+  constexpr std::size_t width = 8;  // per axis: least and most, each with a place
   std::vector<double> mine;
   for (int axis = 0; axis < points.dimension; ++axis) {
     BodyExtent::Along here;

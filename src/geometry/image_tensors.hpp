@@ -6,8 +6,8 @@
 
 namespace peristat {
 
-/// Adds what images have of a tensor per point to their sources, seen from there: M T M with the
-/// mirror M of a plane of symmetry.
+/// Adds the tensors of images to those of their sources, mirrored back: M T M with the mirror M of
+/// a plane of symmetry.
 /// @param tensors points x dimension x dimension, row major
 void gather_image_tensors(const Points& points, std::vector<double>& tensors);
 

@@ -28,7 +28,7 @@ bool is_same(const ImageKind& one, const ImageKind& other, double tolerance) {
 
 void add_images(Points& points, const std::vector<ImageKind>& kinds, double reach_of_body) {
   const Index own = points.count();
-  // A little more: which pairs are bonded the search decides.
+  // A little more: the search decides which pairs are bonded.
   const double reach = 1.001 * reach_of_body;
   Coordinates least, most;
   least.fill(std::numeric_limits<double>::infinity());

@@ -15,17 +15,17 @@ struct SymmetryPlane {
   double at = 0.0;  ///< [m]
 };
 
-/// Two sides across an axis of which one is the other's continuation.
+/// Two sides across an axis that continue each other.
 struct Period {
   int axis = 0;
   double from = 0.0, to = 0.0;  ///< [m]
 };
 
-/// How an image follows its source: X' = mirror X + shift, per component.
+/// Map of a source to its image: X' = mirror X + shift, per component.
 struct ImageKind {
   std::array<double, 3> mirror{1.0, 1.0, 1.0};  ///< -1 across a plane of symmetry
   Coordinates shift{};                          ///< [m]
-  std::array<int, 3> periods{};                 ///< per axis, how many of them it is away
+  std::array<int, 3> periods{};                 ///< per axis, number of periods between the two
 
   [[nodiscard]] Coordinates place(const Coordinates& of_source) const {
     Coordinates at{};
@@ -34,14 +34,14 @@ struct ImageKind {
   }
 };
 
-/// The kind of image that an image of kind `to` is of one of kind `from`: of their sources the
-/// image of the second one that lies to the first one as they to each other.
+/// Relative kind of two images, of kinds `from` and `to`: the image of the second one's source that
+/// lies to the first one's source as the two images lie to each other.
 [[nodiscard]] ImageKind relative(const ImageKind& from, const ImageKind& to);
 
-/// Whether they place images alike, within a distance.
+/// True if both place images alike, within a distance.
 [[nodiscard]] bool is_same(const ImageKind& one, const ImageKind& other, double tolerance);
 
-/// The last points of a body, which stand for others beyond planes of symmetry and periodic sides.
+/// The last points of a body, which represent points beyond planes of symmetry and periodic sides.
 struct Images {
   std::vector<ImageKind> kinds;
   std::vector<Index> source;      ///< of each image
@@ -60,7 +60,7 @@ void add_images(Points& points, const std::vector<SymmetryPlane>& planes,
 void require_lattice_goes_on(const Points& lattice, const std::vector<SymmetryPlane>& planes,
                              const std::vector<Period>& periods);
 
-/// The points that stand for themselves.
+/// The points that are no images.
 [[nodiscard]] Points without_images(const Points& points);
 
 }  // namespace peristat

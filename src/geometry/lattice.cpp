@@ -69,7 +69,7 @@ void require_numbers(const Lattice& lattice) {
                        number_text(most_points));
 }
 
-/// What has a meaning on a lattice alone.
+/// Refuses settings that have a meaning on a lattice alone.
 void check_blue_noise(const Lattice& lattice) {
   const auto require = [](bool fits, const std::string& allowed) {
     if (!fits) throw InputError("arrangement", "blue_noise", allowed);

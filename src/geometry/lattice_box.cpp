@@ -11,7 +11,7 @@ namespace {
 
 using Numbers = std::array<std::int64_t, 3>;
 
-/// Of each point, counted from the lattice's origin.
+/// Lattice numbers of each point, counted from the lattice's origin.
 std::vector<Numbers> numbers_of(const Points& points) {
   const LatticeFrame frame(points.dimension, {}, 0.0, points.spacing, points.angle);
   const Coordinates origin = points.lattice->origin;

@@ -12,7 +12,7 @@ namespace peristat {
 LatticeFrame::LatticeFrame(int dimension, const Coordinates& anchor, double offset,
                            const Spacing& spacing, double angle)
     : dimension_(dimension), anchor_(anchor), offset_(offset), spacing_(spacing) {
-  // In degrees, so that a quarter of a turn is what it is; the remainder is exact.
+  // In degrees, so that a quarter turn is exact; the remainder is exact.
   double rest = std::fmod(angle, 360.0);
   if (rest < 0.0) rest += 360.0;
   const double quarters = std::floor(rest / 90.0);
@@ -90,7 +90,7 @@ std::array<double, 2> LatticeFrame::part_in(const Box& box, double beside, doubl
   const Coordinates shift = turned({(row + offset_) * spacing_.along(0), 0.0, 0.0});
   const double slack = (2.0 * beside + grid_tolerance) * half_diagonal();
   for (int c = 0; c < 2; ++c) {
-    // Places a + (k + o) b of the row; not cut where it runs along the box.
+    // Places a + (k + o) b of the row; no limit where the row runs along the box.
     if (std::abs(along[c]) < grid_tolerance * spacing_.along(1)) continue;
     const double from = anchor_[c] + shift[c];
     const double a = (box.min[c] - slack - from) / along[c] - offset_;

@@ -16,9 +16,9 @@ using Cell = std::array<std::int64_t, 3>;
 /// Part of a spacing by which a lattice place may miss the box around the shapes.
 inline constexpr double grid_tolerance = 1e-9;
 
-/// Where a lattice stands: the place of cell k is R (a + (k + o) s), a the anchor, o the offset of
-/// places in spacings s along the lattice's axes, R the turn about the z axis through the origin.
-/// Whole quarters of a turn are exact; none leaves every place as it is to the last bit.
+/// Position of a lattice: the place of cell k is R (a + (k + o) s), with the anchor a, the offset o
+/// of places in spacings s along the lattice's axes, and the rotation R about the z axis through
+/// the origin. Quarter turns are exact; without rotation every place is unchanged to the last bit.
 class LatticeFrame {
  public:
   /// @param angle of R, anticlockwise [degrees]; 0 in 1D
@@ -32,20 +32,21 @@ class LatticeFrame {
   /// Position of a place [m]; the origin is met exactly, so that sets may be split there.
   [[nodiscard]] Coordinates position(const Cell& cell) const;
 
-  /// A vector along the lattice's axes, in those of the body.
+  /// Rotates a vector from the lattice's axes to those of the body.
   [[nodiscard]] Coordinates turned(const Coordinates& along_lattice) const;
 
   /// A position in spacings from the anchor along the lattice's axes: the inverse of `position`.
   [[nodiscard]] Coordinates spacings_to(const Coordinates& place) const;
 
-  /// Calls visit(cell) for every cell whose place lies in the box or beside it, by no more than a
-  /// part of the cell, in ascending order; of a turned lattice some more. Nothing for a box that is
-  /// not bounded.
-  /// @param beside in spacings; of a turned lattice in diagonals
+  /// Calls visit(cell), in ascending order, for every cell whose place lies in the box or within a
+  /// part of the cell beside it; for some more if the lattice is turned. Visits nothing if the box
+  /// is not bounded.
+  /// @param beside in spacings; on a turned lattice in diagonals
   void for_each_cell(const Box& box, double beside,
                      const std::function<void(const Cell&)>& visit) const;
 
-  /// Numbers of places along the axes that such boxes of cells have; infinite if it is not bounded.
+  /// Numbers of places along the axes in the range of for_each_cell; infinite if the box is not
+  /// bounded.
   [[nodiscard]] std::array<double, 3> counts(const Box& box, double beside) const {
     return range_of(box, beside).count;
   }
@@ -54,7 +55,7 @@ class LatticeFrame {
   struct Range {
     std::array<double, 3> first{}, count{1.0, 1.0, 1.0};
   };
-  /// Of such boxes of cells; infinite numbers if the box is not bounded.
+  /// Range of for_each_cell; infinite numbers if the box is not bounded.
   [[nodiscard]] Range range_of(const Box& box, double beside) const;
 
   /// Upper bound of the cells that for_each_cell visits; infinite if the box is not bounded.
@@ -64,7 +65,7 @@ class LatticeFrame {
   [[nodiscard]] double half_diagonal() const;
 
  private:
-  /// The part of a row of places along the second axis that may lie in the box.
+  /// First and last place, along the second axis, of a row that may lie in the box.
   [[nodiscard]] std::array<double, 2> part_in(const Box& box, double beside, double row,
                                               const Range& range) const;
 

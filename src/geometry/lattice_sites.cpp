@@ -20,10 +20,11 @@ namespace {
 
 bool is_cut(const Lattice& lattice) { return lattice.volumes == CellVolumes::fractional; }
 
-/// How far cells may stand beside the box around a region, see LatticeFrame::for_each_cell.
+/// Distance beside the box around a region within which cells may lie, see
+/// LatticeFrame::for_each_cell.
 double beside(const Lattice& lattice) { return is_cut(lattice) ? 0.5 : grid_tolerance; }
 
-/// Whether layers are what stands in front of flat faces, not copies of the outermost plane.
+/// True if layers are the space in front of flat faces, not copies of the outermost plane.
 bool has_faces(const Lattice& lattice, const LatticeFrame& frame) {
   return is_cut(lattice) || frame.is_turned();
 }
@@ -38,7 +39,7 @@ std::string key_of(std::size_t layer, const char* key) {
   return "layers[" + std::to_string(layer) + "]." + key;
 }
 
-/// Calls visit(cell) as LatticeFrame::for_each_cell does for what two boxes share.
+/// Calls visit(cell) as LatticeFrame::for_each_cell does, for the intersection of two boxes.
 template <class Visit>
 void for_each_cell(const LatticeFrame& frame, Box box, const Box& window, double beside_it,
                    const Visit& visit) {
@@ -50,8 +51,8 @@ void for_each_cell(const LatticeFrame& frame, Box box, const Box& window, double
   frame.for_each_cell(box, beside_it, visit);
 }
 
-/// What the region has of the lattice's cells, in ascending order of these; `near` gives a region
-/// that is the same within a distance of a place.
+/// Pieces of the lattice's cells in the region, in ascending order of the cells; `near` gives a
+/// region that is the same within a distance of a place.
 template <class Shape, class Near>
 std::vector<Site> pieces(const LatticeFrame& frame, const Shape& region, const Box& window,
                          const Near& near) {
@@ -70,8 +71,8 @@ std::vector<Site> pieces(const LatticeFrame& frame, const Shape& region, const B
   return sites;
 }
 
-/// Gives what is smaller than smallest_share to the larger pieces in the cells beside it. One that
-/// has none beside it stays.
+/// Gives pieces below smallest_share to the larger pieces in adjacent cells. One without such
+/// neighbours stays.
 void merge_small(int dimension, std::vector<Site>& sites) {
   std::map<Cell, std::size_t> of_cell;
   for (std::size_t k = 0; k < sites.size(); ++k) of_cell[sites[k].cell] = k;
@@ -122,7 +123,7 @@ std::vector<Site> copies_of_outermost_plane(const Lattice& lattice, const Lattic
                                             const Box& window) {
   const auto [axis, sign] = layer.side;
   const std::int64_t row = (sign > 0 ? outermost.high : outermost.low)[axis];
-  // The plane may stand beside the window that its copies are wanted in: it is found again.
+  // The plane may lie outside the window in which its copies are wanted, so it is found again.
   constexpr double beside_plane = 0.25;  // in spacings
   Box plane = window;
   Cell of_plane{};
@@ -142,7 +143,7 @@ std::vector<Site> copies_of_outermost_plane(const Lattice& lattice, const Lattic
   return sites;
 }
 
-/// What stands in front of the flat faces that layers are on, side by side.
+/// Sites in front of the flat faces that layers are on, side by side.
 class Faces {
  public:
   Faces(const Lattice& lattice, const LatticeFrame& frame, const OutermostOfBody& outermost,
@@ -154,8 +155,8 @@ class Faces {
     for (const auto& [side, height] : outermost.faces) add(side, height, deepest(lattice, side));
   }
 
-  /// Moves sites that share a cell with the body's or with those of other faces, and these, to the
-  /// centroids of their parts.
+  /// Moves sites that share a cell with the body or with other faces, together with the other sites
+  /// of the cell, to the centroids of their parts.
   void part_from(std::vector<Site>& body) {
     std::map<Cell, std::vector<Site*>> of_cell;
     for (Face& face : faces_)
@@ -237,7 +238,7 @@ void keep_where(const Lattice& lattice, std::size_t number, std::vector<Site>& s
   }
 }
 
-/// Numbers the sites of layers, those that several share once.
+/// Numbers the sites of layers; a site that several layers share gets one number.
 class SharedSites {
  public:
   explicit SharedSites(bool is_cut) : is_cut_(is_cut) {}
@@ -297,8 +298,8 @@ double most_sites(const Lattice& lattice) {
 Box everywhere() { return {{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}}; }
 
 double depth_of_window(const Lattice& lattice) {
-  // Small parts of cells go to their neighbours by what these have: two cells away; cells stand
-  // around their places, and places move to centroids.
+  // Small parts of cells go to neighbours in proportion to these neighbours' shares: two cells
+  // away. Cells extend around their places, and places move to centroids.
   constexpr double cells = 4.0;
   return cells * lattice.spacing.largest();
 }

@@ -11,7 +11,7 @@
 
 namespace peristat {
 
-/// Where a point of a lattice stands, and its share of a cell's volume.
+/// Position of a point of a lattice, and its share of a cell's volume.
 struct Site {
   Cell cell{};
   Coordinates place{};
@@ -23,7 +23,7 @@ struct Site {
 struct LayerSites {
   std::vector<Site> sites;
   std::vector<std::vector<Index>> of_layer;  // ascending
-  std::vector<double> standing;              ///< sites of each layer before its `where`
+  std::vector<double> standing;              ///< number of sites of each layer before its `where`
 };
 
 /// A box that holds everything.
@@ -35,15 +35,15 @@ struct LayerSites {
 [[nodiscard]] double most_sites(const Lattice& lattice);
 
 /// Sites of the body, in ascending order of their cells, each at its cell's place.
-/// @param window where they are wanted: beyond it there may be some, and those beside its sides
-///        within may be wrong, up to `depth_of_window`
+/// @param window where sites are wanted: there may be some beyond it, and those within
+///        `depth_of_window` inside its sides may be wrong
 [[nodiscard]] std::vector<Site> body_sites(const Lattice& lattice,
                                            const Box& window = everywhere());
 
-/// How much larger a window has to be than where sites are to be right, along each axis [m].
+/// How much a window must exceed the region in which sites have to be right, along each axis [m].
 [[nodiscard]] double depth_of_window(const Lattice& lattice);
 
-/// What layers have to know of the whole body.
+/// Data of the whole body that layers need.
 struct OutermostOfBody {
   Cell low{}, high{};  ///< least and largest cells along each of the lattice's axes
   /// Heights of the flat faces that layers stand in front of, in their order [m]; none where layers
@@ -51,21 +51,21 @@ struct OutermostOfBody {
   std::vector<std::pair<Side, double>> faces{};
 };
 
-/// @param body sites of the body that this rank has, each of them on one rank; a call that all make
-/// @throws InputError ("shapes", "layers[0].side") on all of them
+/// @param body sites of the body on this rank, each of them on one rank (collective)
+/// @throws InputError ("shapes", "layers[0].side") on all ranks
 [[nodiscard]] OutermostOfBody outermost_of_body(const Lattice& lattice,
                                                 const std::vector<Site>& body,
                                                 const Communicator& ranks);
 
-/// Where body and layers, or layers of several sides, have parts of the same cell, each goes to its
-/// centroid.
+/// Returns the sites of layers. If body and layers, or layers of several sides, have parts of the
+/// same cell, the site of each part moves to the part's centroid.
 /// @param body sites of the body in the window
 /// @throws InputError ("layers[0].where")
 [[nodiscard]] LayerSites layer_sites(const Lattice& lattice, const OutermostOfBody& outermost,
                                      std::vector<Site>& body, const Box& window = everywhere());
 
-/// @param layers those that this rank has of them; a call that all make
-/// @throws InputError for a layer without a point, on all of them
+/// @param layers those of this rank (collective)
+/// @throws InputError for a layer without a point, on all ranks
 void refuse_empty_layers(const Lattice& lattice, const LayerSites& layers,
                          const Communicator& ranks);
 

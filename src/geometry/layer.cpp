@@ -33,8 +33,8 @@ std::optional<double> outermost_face(const Solid& body, const Side& side,
   };
   for (const double height : heights) {
     const auto near = feet_at(height - below_face * spacing);
-    // Half a spacing below a round side there is much more of the body, beside a flat one about as
-    // much.
+    // Half a spacing below a round side many more feet lie in the body, below a flat one about as
+    // many.
     if (near > 0 && 2 * near >= feet_at(height - 0.5 * spacing)) return side.sign * height;
   }
   return std::nullopt;

@@ -23,16 +23,17 @@ struct Layer {
   std::string where{};  ///< optional expression of x, y, z that keeps a part of the layer
 };
 
-/// Height [m] of the body's outermost flat face on a side, along the side's axis; none if what
-/// stands out there is round. Told by the feet of the places on planes near the face.
+/// Height [m] of the body's outermost flat face on a side, along the side's axis; none if the
+/// outermost part is round. Found from how many feet of the places lie in the body on planes near
+/// the face.
 /// @param places of points in the body
 /// @param spacing of those points [m]
 [[nodiscard]] std::optional<double> outermost_face(const Solid& body, const Side& side,
                                                    const std::vector<Coordinates>& places,
                                                    double spacing);
 
-/// What stands in front of a flat face of the body: outside it, up to a depth, and in front of
-/// neither of other faces that come first.
+/// Region in front of a flat face of the body: outside it, up to a depth, and not in front of the
+/// other faces that come first.
 class FrontOfFace : public Region {
  public:
   /// @param body, others must outlive this

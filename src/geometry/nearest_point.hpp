@@ -9,14 +9,14 @@ struct NearestPoint {
   double distance = 0.0;  ///< [m]
 };
 
-/// The point that stands for itself and is nearest to a place; of those as near but for round-off
-/// the one with the lowest number, on every machine.
+/// Point nearest to a place, images excluded; of points as near within round-off the one with the
+/// lowest number, on every machine.
 [[nodiscard]] NearestPoint nearest_point(const Points& points, const Coordinates& place);
-/// Of the first `count` points; infinitely far without one.
+/// Nearest of the first `count` points; infinitely far without one.
 [[nodiscard]] NearestPoint nearest_point(const Points& points, const Coordinates& place,
                                          Index count);
 
-/// Distances that differ by less are the same but for round-off [m].
+/// Distances that differ by less than this are equal within round-off [m].
 [[nodiscard]] double round_off_of_distances(const Points& points);
 
 }  // namespace peristat

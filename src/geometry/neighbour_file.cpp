@@ -14,7 +14,7 @@
 namespace peristat {
 namespace {
 
-/// Part of the largest distance by which points may be farther apart: digits of a file.
+/// Relative tolerance of the largest distance, for the digits of a file.
 constexpr double reach_tolerance = 1e-6;
 
 struct Row {
@@ -129,7 +129,7 @@ class NeighbourReader {
     return "points " + std::to_string(row.from + 1) + " and " + std::to_string(row.to + 1);
   }
 
-  /// Rows of each pair together, in the order of the file.
+  /// Collects the rows of each pair, in the order of the file.
   std::vector<NeighbourShares> pairs() {
     const auto ends = [](const Row& row) { return std::minmax(row.from, row.to); };
     std::stable_sort(rows_.begin(), rows_.end(),

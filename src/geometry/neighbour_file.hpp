@@ -7,22 +7,22 @@
 
 namespace peristat {
 
-/// Where neighbours and their shares are found, and how far apart they may be.
+/// File of neighbours and their shares, and the limits of their distance.
 struct NeighbourFile {
   std::filesystem::path file;
   double horizon = 0.0;        ///< [m]
   double cross_section = 1.0;  ///< 1D: area [m2]; 2D: thickness [m]; 3D: 1
 };
 
-/// Reads which points see each other, and how much of their volumes counts (external grids of
-/// [GPMB] option I, whose neighbour areas are w_ij V_j / thickness).
+/// Reads pairs of neighbours and how much of their volumes counts (external grids of [GPMB] option
+/// I, whose neighbour areas are w_ij V_j / thickness).
 ///
 /// The first line that is neither empty nor a comment (#) names the columns: `i`, `j`, `w_ij`, the
 /// share of point j's volume that i counts, and optionally `w_ji`; separated by commas or blanks.
-/// Points are numbered from 1. Each pair stands in one row, w_ji being w_ij where it is not given;
-/// or, without a column `w_ji`, every pair stands in two rows, one for each direction. Shares are 0
-/// to 1. A neighbour counts where any of its cell lies within the horizon: up to half the diagonal
-/// of its square or cubic cell beyond.
+/// Points are numbered from 1. Each pair has one row, with w_ji = w_ij if that is not given; or,
+/// without a column `w_ji`, every pair has two rows, one for each direction. Shares are 0 to 1. A
+/// neighbour may lie beyond the horizon by half the diagonal of its square or cubic cell, so that a
+/// part of its cell lies within.
 /// @param points in the order of their numbers
 /// @return ascending by i and then j, numbered from 0
 /// @throws InputError with "FILE:LINE" as its place for an unknown column, a number that is no

@@ -28,7 +28,7 @@ struct NumberedPoints {
   [[nodiscard]] std::optional<Index> find(GlobalIndex number) const;
 };
 
-/// Those of a part, which outlives them.
+/// Numbered points of a part, which must outlive them.
 [[nodiscard]] NumberedPoints numbered_points(const Part& part);
 
 }  // namespace peristat

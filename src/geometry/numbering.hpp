@@ -7,8 +7,8 @@
 
 namespace peristat {
 
-/// Cells of one spacing, told by their places along the body's directions: the longest one slowest,
-/// the shortest fastest.
+/// Cells of one spacing with keys by their positions along the body's directions: the longest
+/// direction slowest, the shortest fastest.
 class LocalityCells {
  public:
   using Key = std::array<double, 3>;  // double, so that nothing overflows
@@ -17,7 +17,7 @@ class LocalityCells {
   LocalityCells(int dimension, const Spacing& spacing, const Coordinates& low,
                 const Coordinates& high);
 
-  /// Slowest direction first.
+  /// Key of the cell at a position, slowest direction first.
   [[nodiscard]] Key of(const double* position) const;
   [[nodiscard]] int slowest() const { return directions_[0]; }
 
@@ -38,8 +38,8 @@ class LocalityCells {
 [[nodiscard]] std::vector<Index> locality_order(int dimension, const Spacing& spacing,
                                                 const std::vector<double>& reference);
 
-/// Points renumbered: new point k is old point order[k]; sets follow. Points that the order does
-/// not name are left out, with what they were neighbours of.
+/// Points renumbered: new point k is old point order[k]; sets follow. Points missing in the order
+/// are left out, with the neighbour pairs that they are in.
 [[nodiscard]] Points renumbered(const Points& points, const std::vector<Index>& order);
 
 }  // namespace peristat

@@ -8,8 +8,7 @@
 
 namespace peristat {
 
-/// outermost_face of a body that ranks have parts of: a call that all make, with the places that
-/// each has.
+/// outermost_face of a body that ranks share. Collective, with the places of each rank.
 [[nodiscard]] std::optional<double> outermost_face(const Solid& body, const Side& side,
                                                    const std::vector<Coordinates>& places,
                                                    double spacing, const Communicator& ranks);

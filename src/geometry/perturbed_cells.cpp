@@ -10,7 +10,7 @@
 namespace peristat {
 namespace {
 
-using Corner = std::array<double, 2>;  // in spacings from the middle of the cell that it is of
+using Corner = std::array<double, 2>;  // in spacings from the middle of its cell
 
 constexpr std::array<Corner, 4> unshifted{{{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
 
@@ -56,7 +56,7 @@ class Corners {
   std::vector<Cell> cells_;
 };
 
-/// A corner in spacings along the lattice's axes, in those of the body [m].
+/// Converts a corner from spacings along the lattice's axes to the body's axes [m].
 Corner in_body(const Lattice& lattice, const LatticeFrame& frame, const Corner& corner) {
   Coordinates along{};
   for (int c = 0; c < std::min(lattice.dimension, 2); ++c)
@@ -65,7 +65,7 @@ Corner in_body(const Lattice& lattice, const LatticeFrame& frame, const Corner& 
   return {turned[0], turned[1]};
 }
 
-/// A cell from its corners about some place in spacings; of a line both ends.
+/// A cell from its corners, relative to some place in spacings; for a line both ends.
 std::vector<Corner> cell_from(const Lattice& lattice, const LatticeFrame& frame,
                               const std::array<Corner, 4>& corners, const Corner& about) {
   std::vector<Corner> cell;

@@ -12,10 +12,9 @@ namespace peristat {
 [[nodiscard]] std::vector<std::array<double, 2>> whole_cell(const Lattice& lattice);
 
 /// Shifts the corners that lie between cells of the body alone, each by up to the lattice's
-/// cell_perturbation, and moves the sites to the centroids of their cells, with the shares that
-/// these have of a whole one. Cells at the boundary keep the corners on it, so that all of them
-/// fill the body as before. A shift follows from the seed and the corner's place on the lattice
-/// alone.
+/// cell_perturbation, moves the sites to the centroids of their cells and sets their shares of a
+/// whole cell. Cells at the boundary keep the corners on it, so that all cells fill the body as
+/// before. A shift depends on the seed and the corner's place on the lattice alone.
 /// @param body whole cells in ascending order
 /// @return the cells of the sites
 CellPolygons perturb_cells(const Lattice& lattice, std::vector<Site>& body);

@@ -6,9 +6,9 @@
 
 namespace peristat {
 
-/// Shifts the points that are marked as the body's, in their order, along the lattice's axes by at
-/// most its perturbation.
-/// @param before points of the body that come before these, and are shifted elsewhere
+/// Shifts the points marked as the body's, in their order, along the lattice's axes by at most the
+/// lattice's perturbation.
+/// @param before number of the body's points on lower ranks, whose random numbers are skipped
 void perturb(const Lattice& lattice, const std::vector<bool>& is_body, GlobalIndex before,
              Points& points);
 

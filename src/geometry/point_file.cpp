@@ -23,7 +23,8 @@ namespace {
 /// Part of the spacing within which two points stand at one place.
 constexpr double same_place_tolerance = 1e-9;
 
-/// Two points whose coordinates differ by no more than the tolerance, the one read first in front.
+/// Finds two points whose coordinates differ by no more than the tolerance, the first read in
+/// front.
 ///
 /// Points are sorted by coarse cells of four tolerances, once with the cells as they are and once
 /// shifted by half a cell in each combination of directions: one of these sortings puts such a pair
@@ -168,7 +169,7 @@ class PointReader {
     return row;
   }
 
-  /// Results have a dataset of each set, by its name.
+  /// Results have a dataset named after each set.
   void check_name(std::string_view name) const {
     constexpr std::size_t longest = 100;
     if (name == ".") refuse("a set can't be called '.'; take letters, digits, _ and -");
@@ -211,7 +212,7 @@ class Collection {
     points.volume.push_back(row.volume);
     lines_.push_back(row.line);
   }
-  /// Of a point that is not added: its sets are known everywhere.
+  /// Registers the sets of a point that is not added: all ranks know all names.
   void name_sets(const PointRow& row) {
     for (const std::string_view name : split(row.sets, '|')) {
       if (!name.empty()) points.sets.try_emplace(std::string(name));
@@ -247,7 +248,7 @@ void check_cross_section(double cross_section) {
   throw InputError("cross_section", number_text(cross_section), "must be positive and finite");
 }
 
-/// What numbers of points follow from.
+/// Data of the whole file that the numbers of points depend on.
 struct WholeFile {
   Coordinates low, high;
   double spacing = 0.0;
@@ -318,7 +319,7 @@ Part read_slab(const std::filesystem::path& file, int dimension, double cross_se
   const double last = std::floor(rows * (ranks.rank() + 1) / ranks.count());
   Collection read(dimension);
   read.points.spacing = whole.spacing;
-  // With those of the rows beside it, which may stand at the places of its own.
+  // Includes the points of the adjacent rows, which may coincide with its own.
   reader.for_each_point([&](const PointRow& row) {
     const double of_point = cells.of(row.place.data())[0];
     const bool is_near = of_point >= first - 1.0 && of_point < last + 1.0;

@@ -28,14 +28,14 @@ namespace peristat {
                                  double cross_section,
                                  const std::optional<NeighbourFile>& neighbours = {});
 
-/// Which point of the file each of the first `count` points is, from 0 in the file's order: the one
-/// at its place. They are of the file, all of them or those of a part.
+/// Row in the file, from 0, of each of the first `count` points, found by position; -1: none. The
+/// points are all of the file or those of a part.
 [[nodiscard]] std::vector<std::int32_t> source_rows(const std::filesystem::path& file,
                                                     const Points& points, Index count);
 
-/// A part of the points that read_points gives, without ghosts, as make_slab's: every rank reads
-/// the file, and keeps no more than a slab. A call that all make.
-/// @throws InputError as read_points does, of two points at one place perhaps on one rank alone
+/// A slab of the points of read_points, without ghosts, as make_slab's: every rank reads the file,
+/// and keeps no more than a slab. Collective.
+/// @throws InputError as read_points does; for two points at one place perhaps on one rank alone
 [[nodiscard]] Part read_slab(const std::filesystem::path& file, int dimension, double cross_section,
                              const Communicator& ranks);
 

@@ -13,14 +13,14 @@
 
 namespace peristat {
 
-/// Two points that see each other, and how much of each other's volume they count.
+/// Two neighbouring points, and the share of each other's volume that they count.
 struct NeighbourShares {
   Index i = 0, j = 0;             ///< i < j
   double of_j = 1.0, of_i = 1.0;  ///< nu_ij, share of V_j that i counts, and nu_ji
 };
 
-/// Where the points of a lattice stand: (position - origin) / spacing rounds to whole numbers, also
-/// in a perturbed one.
+/// Lattice that the points stand on: (position - origin) / spacing rounds to whole numbers, also in
+/// a perturbed one.
 struct LatticeCells {
   Coordinates origin{};               ///< a place of the lattice [m]
   std::vector<std::string> layers{};  ///< names of the sets of points outside the body
@@ -34,40 +34,40 @@ struct Points {
   double cell_volume = 0.0;       ///< of a whole cell [m3]; 0: the points' mean volume
   std::vector<double> reference;  ///< positions, count x dimension, row major [m]
   std::vector<double> volume;     ///< per point [m3]
-  /// Neighbours that were given, ascending by i and then j; empty: those within the horizon.
+  /// Given neighbours, ascending by i and then j; empty: neighbours are those within the horizon.
   std::vector<NeighbourShares> neighbours{};
   std::map<std::string, std::vector<Index>> sets;  ///< ascending point numbers by set name
   std::optional<LatticeCells> lattice{};           ///< nothing for a cloud
-  /// Of points that stand for themselves; nothing where cells are a lattice's, or are cut by the
-  /// body's boundary, or where there are none.
+  /// Cells of the points, without images; empty if cells are a lattice's, or cut by the body's
+  /// boundary, or if there are none.
   CellPolygons polygons{};
 
-  /// Places around the body that hold no point, all x dimension [m]: of those that quadratures by
-  /// collocation count with.
+  /// Places around the body that hold no point and that quadratures by collocation use, all x
+  /// dimension [m].
   std::vector<double> ghosts{};
 
-  Images images{};  ///< of the last points; sets name none of them
+  Images images{};  ///< the last points; sets hold none of them
 
-  /// Of a part of a body that ranks share: how many of its points, the first ones, this rank owns.
-  /// The others are ghosts, and sets may have no point here. Images come last, first those of owned
-  /// points. Nothing: the body is whole.
+  /// For a part of a body that ranks share: number of its points, the first ones, that this rank
+  /// owns. The others are ghosts, and sets may have no point here. Images come last, those of owned
+  /// points first. Nothing: the body is whole.
   std::optional<Index> owned{};
 
   [[nodiscard]] Index count() const { return static_cast<Index>(volume.size()); }
-  /// Points that stand for themselves: the first ones.
+  /// Number of points that are no images: the first ones.
   [[nodiscard]] Index own() const { return count() - static_cast<Index>(images.source.size()); }
   [[nodiscard]] bool is_image(Index point) const { return point >= own(); }
-  /// The point that an image stands for; of other points themselves.
+  /// Source of an image; any other point is its own source.
   [[nodiscard]] Index source(Index point) const {
     return is_image(point) ? images.source[std::size_t(point - own())] : point;
   }
-  /// Whether a point, or what it is an image of, is this rank's.
+  /// True if this rank owns a point, or the source of an image.
   [[nodiscard]] bool owns(Index point) const { return !owned || source(point) < *owned; }
   [[nodiscard]] const ImageKind& image_kind(Index image) const {
     return images.kinds[images.kind[std::size_t(image - own())]];
   }
 
-  /// 1D: area [m2]; 2D: thickness [m]; 3D: 1, as far as volumes and spacing tell.
+  /// 1D: area [m2]; 2D: thickness [m]; 3D: 1, from volumes and spacing.
   [[nodiscard]] double cross_section() const {
     double cell = cell_volume;
     if (cell == 0.0) {

@@ -13,7 +13,7 @@ std::vector<PointOnLine> points_on_line(const Points& points, const Coordinates&
 std::vector<PointOnLine> points_on_line(const Points& points, const Coordinates& from,
                                         const Coordinates& to, Index count) {
   const double length = std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
-  const double reach = (0.5 + 1e-9) * points.spacing;  // of a row half a spacing off, too
+  const double reach = (0.5 + 1e-9) * points.spacing;  // a row half a spacing off counts
   std::vector<PointOnLine> found;
   for (Index point = 0; point < count; ++point) {
     const Coordinates at = points.position(point);

@@ -8,16 +8,16 @@
 namespace peristat {
 
 struct PointOnLine {
-  double distance = 0.0;  ///< from the begin, along the line [m]
+  double distance = 0.0;  ///< along the line from its beginning [m]
   Index point = 0;
   auto operator<=>(const PointOnLine&) const = default;
 };
 
-/// Points that stand for themselves within half a spacing of a straight line from one place to
-/// another, in their order along it.
+/// Points, without images, within half a spacing of a straight line from one place to another, in
+/// their order along it.
 [[nodiscard]] std::vector<PointOnLine> points_on_line(const Points& points, const Coordinates& from,
                                                       const Coordinates& to);
-/// Of the first `count` points.
+/// The same among the first `count` points.
 [[nodiscard]] std::vector<PointOnLine> points_on_line(const Points& points, const Coordinates& from,
                                                       const Coordinates& to, Index count);
 

@@ -42,7 +42,7 @@ class Rays {
   Rays(const Coordinates& place, const Solid& body, double least_change, int most_depth)
       : place_(place), body_(body), least_change_(least_change), most_depth_(most_depth) {}
 
-  /// @param factor the pyramid's 3 V, its share of the triangle's parts
+  /// @param factor 3 V of the pyramid on the triangle
   [[nodiscard]] Means integral(const Triangle& on, double factor) {
     return quartered(on, factor, estimate(on, factor), 0);
   }

@@ -21,11 +21,11 @@ enum class Accuracy { fine, rough };
 ///
 ///   V = 3 V_pyramid mean of int s^2 ds,   int x dV = 3 V_pyramid mean of p int s^3 ds,
 ///
-/// over the parts of the ray s p, 0 <= s <= 1, that lie in the body, which are exact. Means by
+/// over the parts of the ray s p, 0 <= s <= 1, that lie in the body, which are exact. Means are by
 /// Radon's rule of seven places in triangles that are quartered, up to five times, until it agrees
-/// to 1e-5 of the volume, or roughly up to three times and to 1e-3. Errors have either sign: where
-/// a sphere cuts polyhedra as large as half its radius, the fine parts are right to 2e-4, and their
-/// sum over all to 1e-5.
+/// to 1e-5 of the volume (rough: up to three times, 1e-3). Errors have either sign: where a sphere
+/// cuts polyhedra as large as half its radius, the fine parts are right to 2e-4, and their sum over
+/// all to 1e-5.
 /// @param corners from the place [m]
 /// @param faces   numbers of the corners around each face
 [[nodiscard]] PolyhedronPart polyhedron_in_body(const Coordinates& place,

@@ -35,7 +35,7 @@ bool inside(const Box& box, const Coordinates& place) {
     if (std::isfinite(edge)) size = std::max(size, edge);
     bounded = bounded && std::isfinite(edge);
   }
-  // A half-space has no size; the distance of its plane from the origin stands in for it.
+  // A half-space has no size; the distance of its plane from the origin is used instead.
   if (!bounded) size = std::max(size, largest);
   const double slack = tolerance(size, largest);
   for (int c = 0; c < 3; ++c) {

@@ -15,7 +15,7 @@ void append_roots(double square, double half_linear, double constant, std::vecto
   if (square <= 0.0) return;  // along the axis: the line stays in or out
   const double discriminant = half_linear * half_linear - square * constant;
   if (discriminant <= 0.0) return;
-  // The sum without cancellation first, the other root by their product.
+  // The root without cancellation first, the other one from their product.
   const double sum = -(half_linear + std::copysign(std::sqrt(discriminant), half_linear));
   t.push_back(sum / square);
   if (sum != 0.0) t.push_back(constant / sum);
@@ -65,7 +65,7 @@ struct Crossings {
     for (std::size_t k = 0; k < polygon.vertices.size(); ++k) {
       const auto& a = polygon.vertices[k];
       const auto& b = polygon.vertices[k + 1 < polygon.vertices.size() ? k + 1 : 0];
-      // The line's distances from the edge's ends, with sign, tell whether it passes between them.
+      // The signed distances of the edge's ends from the line show whether it passes between them.
       const auto side = [&](const auto& p) {
         return (p[0] - line.from[0]) * line.along[1] - (p[1] - line.from[1]) * line.along[0];
       };

@@ -23,7 +23,7 @@ void append_crossings(const Shape& shape, int dimension, const Line& line, std::
 void append_levels(const Shape& shape, int dimension, const Coordinates& direction,
                    std::vector<double>& levels);
 
-/// Distance of a place from the shape's boundary, or less [m].
+/// Lower bound of the distance of a place from the shape's boundary [m].
 [[nodiscard]] double distance_to_boundary(const Shape& shape, int dimension,
                                           const Coordinates& place);
 

@@ -37,11 +37,11 @@ struct Between {
   int axis = 0;
   double from = -infinity, to = infinity;
 
-  /// The upper one is not between.
+  /// The upper plane is excluded.
   [[nodiscard]] bool has(const Coordinates& place) const {
     return place[std::size_t(axis)] >= from && place[std::size_t(axis)] < to;
   }
-  /// With so much beside it.
+  /// The slab widened by `depth` on both sides.
   [[nodiscard]] Box window(double depth) const {
     Box box = everywhere();
     box.min[std::size_t(axis)] = from - depth;
@@ -50,7 +50,7 @@ struct Between {
   }
 };
 
-/// A share of the rows of places along the direction in which numbers run slowest.
+/// This rank's share of the rows of places along the direction in which numbers run slowest.
 class ShareOfRows {
  public:
   ShareOfRows(const Lattice& lattice, const LocalityCells& cells, const Coordinates& low,
@@ -65,7 +65,7 @@ class ShareOfRows {
               low[std::size_t(axis)] + (last_ - 0.5) * spacing};
   }
 
-  /// Not by planes: round-off must not tell another row than numbers do.
+  /// Decides by the row's number, not by planes, which might differ from it by round-off.
   [[nodiscard]] bool has(const Coordinates& place) const {
     const double row = cells_.of(place.data())[0];
     return row >= first_ && row < last_;
@@ -78,7 +78,7 @@ class ShareOfRows {
   Between about_;
 };
 
-/// A share of all places, by planes that cut a length into equal parts.
+/// This rank's share of all places, by planes that cut a length into equal parts.
 Between share_of_length(int axis, double low, double high, const Communicator& ranks) {
   const auto plane = [&](int number) {
     if (number == 0) return -infinity;
@@ -88,7 +88,7 @@ Between share_of_length(int axis, double low, double high, const Communicator& r
   return {axis, plane(ranks.rank()), plane(ranks.rank() + 1)};
 }
 
-/// Least and largest of what all ranks have, along each axis.
+/// Least and largest coordinates along each axis; after `gather` those of all ranks.
 struct Extent {
   Coordinates low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
 
@@ -112,7 +112,7 @@ struct SlabSites {
   LayerSites layers;
 };
 
-/// Takes out the sites of layers that are not in a slab.
+/// Keeps the sites of layers that are in a slab.
 template <class Slab>
 LayerSites restricted(const LayerSites& layers, const Slab& slab) {
   constexpr Index nowhere = -1;
@@ -149,13 +149,13 @@ SlabSites sites_near(const Lattice& lattice, const OutermostOfBody& outermost, c
   return sites;
 }
 
-/// What every rank has to know of the whole body.
+/// Data of the whole body that every rank needs.
 struct WholeLattice {
   OutermostOfBody outermost;
   Extent extent;  ///< of all places
 };
 
-/// Each rank looks at a share of the body's length.
+/// Each rank examines a share of the body's length. Collective.
 WholeLattice look_at_whole(const Lattice& lattice, const Communicator& ranks) {
   const Box box = Solid(lattice.dimension, lattice.shapes).bounds();
   int axis = 0;
@@ -179,14 +179,14 @@ WholeLattice look_at_whole(const Lattice& lattice, const Communicator& ranks) {
   return whole;
 }
 
-/// Points of a slab, each where its site is, in the order of these.
-/// @param cells of the body's sites, where they are perturbed
+/// Points of a slab at their sites, in the order of these.
+/// @param cells of the body's sites, if they are perturbed
 Points points_of(const Lattice& lattice, const SlabSites& sites, CellPolygons cells) {
   Points points;
   points.dimension = lattice.dimension;
   points.spacing = lattice.spacing;
   points.angle = lattice.angle;
-  // Said, because a part has no mean volume to tell it by where it has no point.
+  // Set explicitly: a part without points has no mean volume to derive it from.
   points.cell_volume = std::pow(lattice.spacing, lattice.dimension) * lattice.cross_section;
   points.lattice.emplace();
   points.lattice->origin = frame_of(lattice).position({});
@@ -215,7 +215,7 @@ Points points_of(const Lattice& lattice, const SlabSites& sites, CellPolygons ce
   return points;
 }
 
-/// As locality_order, by the extent of the whole body.
+/// Same as locality_order, by the extent of the whole body.
 std::vector<Index> order_of(const LocalityCells& cells, const SlabSites& sites) {
   std::vector<std::pair<LocalityCells::Key, Index>> places;
   for (const std::vector<Site>* all : {&sites.body, &sites.layers.sites}) {
@@ -229,7 +229,7 @@ std::vector<Index> order_of(const LocalityCells& cells, const SlabSites& sites) 
   return order;
 }
 
-/// Moves the sites of a slab to where their perturbed cells have their centroids.
+/// Moves the sites of a slab to the centroids of their perturbed cells.
 /// @param near sites of the body in a window around the slab
 template <class Slab>
 CellPolygons perturb_cells_of(const Lattice& lattice, const Slab& slab, std::vector<Site> near,
@@ -254,8 +254,8 @@ Part make_slab(const Lattice& lattice, const Communicator& ranks) {
   refuse_without_slabs(lattice);
   refuse_idle_shapes(lattice);
   const WholeLattice whole = look_at_whole(lattice, ranks);
-  // Numbers run slowest along the longest direction: slabs across it have numbers that follow one
-  // another.
+  // Numbers run slowest along the longest direction, so that slabs across it have consecutive
+  // numbers.
   const LocalityCells locality(lattice.dimension, lattice.spacing, whole.extent.low,
                                whole.extent.high);
   const ShareOfRows slab(lattice, locality, whole.extent.low, whole.extent.high, ranks);

@@ -6,11 +6,11 @@
 
 namespace peristat {
 
-/// A part of the points that make_points gives, without ghosts: those of a slab of the body, which
-/// follow one another. Nobody makes more than a slab and a few rows beside it. There are ranks
-/// without points where there are more of them than rows. A call that all make.
-/// @throws InputError as make_points does, an expression without a value perhaps on one rank alone;
-///         and for blue noise
+/// A slab of the points of make_points, without ghosts, with consecutive numbers. No rank makes
+/// more than a slab and a few rows beside it. With more ranks than rows, some ranks have no points.
+/// Collective.
+/// @throws InputError as make_points does, for an expression without a value perhaps on one rank
+///         alone; and for blue noise
 [[nodiscard]] Part make_slab(const Lattice& lattice, const Communicator& ranks);
 
 }  // namespace peristat

@@ -54,7 +54,7 @@ Solid Solid::near(const Coordinates& place, double distance) const {
   for (const ShapeStep* step : steps_) {
     const bool is_cut = distance_to_boundary(step->shape, dimension_, place) < distance;
     if (!is_cut && !peristat::contains(step->shape, place)) continue;
-    if (!is_cut) result.steps_.clear();  // all of it: what was before does not show
+    if (!is_cut) result.steps_.clear();  // it covers all: earlier steps have no effect
     result.steps_.push_back(step);
   }
   return result;

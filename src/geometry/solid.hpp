@@ -9,9 +9,9 @@
 
 namespace peristat {
 
-/// One step of building the body: the shape is added to it or taken away from it, in order; the
-/// boundary belongs to the shape, so a point on a subtracted shape's boundary goes. The first step
-/// adds.
+/// One step of building the body: the shape is added to it or subtracted from it, in order; the
+/// boundary belongs to the shape, so that points on a subtracted shape's boundary are removed. The
+/// first step adds.
 struct ShapeStep {
   enum class Action { add, subtract } action = Action::add;
   Shape shape{};
@@ -19,7 +19,7 @@ struct ShapeStep {
   bool cuts_bonds = false;  ///< of a subtracted shape: bonds must not cross it
 };
 
-/// A part of space, as far as measuring its share of a cell needs it.
+/// A part of space, with the queries needed to measure its share of a cell.
 class Region {
  public:
   Region() = default;
@@ -33,14 +33,14 @@ class Region {
   /// Appends the heights along a direction at which sections across it change abruptly, as far as
   /// they are known.
   virtual void append_levels(const Coordinates& direction, std::vector<double>& levels) const = 0;
-  /// Appends the places along each axis of planes across it that hold all of the boundary.
-  /// @return false if it has other parts
+  /// Appends, per axis, the coordinates of planes across it that contain the whole boundary.
+  /// @return false if the boundary has other parts
   virtual bool append_planes(std::array<std::vector<double>, 3>& at) const = 0;
   /// Whether the boundary may pass within a distance of the place.
   [[nodiscard]] virtual bool may_end_near(const Coordinates& place, double distance) const = 0;
 };
 
-/// The body that steps of adding and subtracting make.
+/// The body made by adding and subtracting shapes in steps.
 class Solid : public Region {
  public:
   /// @param steps must outlive the solid
@@ -52,15 +52,15 @@ class Solid : public Region {
   bool append_planes(std::array<std::vector<double>, 3>& at) const override;
   [[nodiscard]] bool may_end_near(const Coordinates& place, double distance) const override;
 
-  /// The same within a distance of a place, of no more steps than count there.
+  /// The same solid within a distance of a place, with only the steps that matter there.
   [[nodiscard]] Solid near(const Coordinates& place, double distance) const;
 
-  /// Whether it is one convex shape that contains all of the places, and so all between them.
+  /// True if it is one convex shape that contains all of the places, and so their hull.
   [[nodiscard]] bool holds_hull_of(const std::vector<Coordinates>& places) const;
 
   [[nodiscard]] int dimension() const { return dimension_; }
 
-  /// Box around all that is added.
+  /// Box around all added shapes.
   [[nodiscard]] Box bounds() const;
 
  private:

@@ -20,7 +20,7 @@ void for_each_row(const std::filesystem::path& file,
 [[nodiscard]] std::vector<std::string_view> split_at_blanks(std::string_view text);
 
 /// A finite number; its decimals have a point, whatever the locale.
-/// @param why_not gets what is wrong with it
+/// @param why_not gets the reason if it is none
 [[nodiscard]] std::optional<double> number_in(std::string_view text, std::string& why_not);
 
 }  // namespace peristat

@@ -13,7 +13,7 @@ namespace {
 
 /// Faces of a cell as lists of its corners.
 std::vector<std::vector<std::size_t>> faces_of(voro::voronoicell& found) {
-  std::vector<int> lists;  // a face's number of corners, and these, one face after the other
+  std::vector<int> lists;  // per face its number of corners, then these
   found.face_vertices(lists);
   std::vector<std::vector<std::size_t>> faces;
   for (std::size_t at = 0; at < lists.size(); at += std::size_t(lists[at]) + 1) {
@@ -68,7 +68,7 @@ void set_polyhedron(ConvexCell& cell, voro::voronoicell& found) {
   found.centroid(cell.centroid[0], cell.centroid[1], cell.centroid[2]);
 }
 
-/// Of a cell in spacings.
+/// Converts a cell from spacings to metres.
 void scale(ConvexCell& cell, double spacing) {
   for (Coordinates& corner : cell.corners) corner = scaled<3>(spacing, corner);
   for (int c = 0; c < cell.dimension; ++c) cell.volume *= spacing;
@@ -87,7 +87,7 @@ void for_each_voronoi_cell(int dimension, const Box& box, double spacing,
     size[std::size_t(c)] = (box.max[std::size_t(c)] - box.min[std::size_t(c)]) / spacing;
     cells *= size[std::size_t(c)];
   }
-  // As many places per block as Voro++ is fastest with, were they spread over all of the box.
+  // Block size for which Voro++ is fastest if the places are spread evenly over the box.
   const double edge = std::pow(voro::optimal_particles * cells / double(places.size() + 1),
                                1.0 / double(dimension));
   for (std::size_t c = 0; c < std::size_t(dimension); ++c)
