@@ -10,7 +10,7 @@ namespace peristat {
 /// State of a plane (2D) bond model.
 enum class PlaneState { stress, strain };
 
-/// What the constants of a bond-based model depend on besides the modulus.
+/// Data that the constants of a bond-based model depend on besides the modulus.
 struct BondSetting : Kernel {
   PlaneState plane = PlaneState::stress;  ///< 2D only
   std::optional<BulkLattice> lattice{};   ///< nothing for a cloud of points

@@ -70,7 +70,7 @@ Coordinates BulkBonds::turned(const Coordinates& v) const {
   return {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]};
 }
 
-/// As make_bonds does; inside a lattice all points have the same factors.
+/// Same as in make_bonds; inside a lattice all points have the same factors.
 void BulkBonds::correct_energy() {
   const double full = 0.25 * micromodulus(1.0, setting_) / confined_energy_per_modulus(setting_);
   Coordinates ratio{};  // discrete over classical energy, per axis
@@ -120,7 +120,7 @@ std::vector<double> BulkBonds::strain_of_pull(const Coordinates& direction) cons
       strain[a] += compliance_[a * stress.size() + b] * stress[b];
     }
   }
-  // Of a pull whose plane is free to contract: E is (1 - nu^2) of what plane strain shows.
+  // For a body free to contract out of the plane: E is (1 - nu^2) of the plane-strain modulus.
   const bool is_confined = setting_.dimension == 2 && setting_.plane == PlaneState::strain;
   const double nu = poisson_ratio(setting_);
   for (double& part : strain) part *= is_confined ? 1.0 / (1.0 - nu * nu) : 1.0;
@@ -155,7 +155,7 @@ double BulkBonds::youngs_modulus(const Coordinates& direction) const {
 
 template <class Quantity>
 DirectionalSpread BulkBonds::over_directions(const Quantity& of) const {
-  // Of long horizons, which are nearly the same in all directions, fewer are enough.
+  // Long horizons are nearly the same in all directions, so that fewer are enough.
   const int count = std::clamp(int(2e7 / double(bonds_.size())), 60, 2000);
   const std::vector<Coordinates> even = even_directions(setting_.dimension, count);
   std::vector<Coordinates> all = lattice_normals(setting_.lattice->spacing, setting_.dimension);

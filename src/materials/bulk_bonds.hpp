@@ -7,13 +7,13 @@
 
 namespace peristat {
 
-/// A quantity over all directions.
+/// Mean and extremes of a quantity over all directions.
 struct DirectionalSpread {
   double mean = 0.0, least = 0.0, most = 0.0;
 };
 
-/// The bonds of a point deep inside a lattice, with the weights that make_bonds gives them, and
-/// what they make of a micromodulus c.
+/// The bonds of a point deep inside a lattice, with the weights of make_bonds, and the properties
+/// that they have per micromodulus c.
 class BulkBonds {
  public:
   /// @param setting with a lattice
@@ -22,22 +22,22 @@ class BulkBonds {
   /// sum w r^k / V over the bonds of a point of volume V [m^(k+3)].
   [[nodiscard]] double moment(int k) const;
 
-  /// What the bonds across a plane of normal n have of it: if each holds the energy density phi,
+  /// Bond area of a plane of normal n: if each bond across the plane holds the energy density phi,
   /// they hold A phi per area,
   ///
   ///   A(n) = 1/(2 V) sum w r^2 |n_bond . n|  [m^5].
   [[nodiscard]] double crossing(const Coordinates& normal) const;
-  /// The mean over all planes is exact; least and most are those of many planes, the lattice's own
-  /// among them.
+  /// Bond area over all planes. The mean is exact; least and most are those of many planes, the
+  /// lattice's own among them.
   [[nodiscard]] DirectionalSpread crossing() const;
 
-  /// Young's modulus over c of a pull along a direction; 0 if nothing resists it.
+  /// Young's modulus over c in a uniaxial pull along a direction; 0 if nothing resists it.
   [[nodiscard]] double youngs_modulus(const Coordinates& direction) const;
 
-  /// A direction (not of unit length) of the lattice's axes in those of the body.
+  /// Rotates a direction (not of unit length) from the lattice's axes to those of the body.
   [[nodiscard]] Coordinates turned(const Coordinates& of_lattice) const;
 
-  /// Of each two opposite ones one, with both weights over V.
+  /// One of each two opposite bonds, with both weights over V.
   struct Bond {
     Coordinates direction;
     double length, weight;
@@ -60,8 +60,8 @@ class BulkBonds {
 /// with its corrections.
 [[nodiscard]] double bulk_micromodulus(double youngs_modulus, const BondSetting& setting);
 
-/// Mean over all planes of A [m^5], see BulkBonds::crossing: of the setting's lattice, or, where
-/// there is none, <|n_x|> m_2 / 2 of the continuum.
+/// Mean bond area A over all planes [m^5], see BulkBonds::crossing: of the setting's lattice or,
+/// without one, <|n_x|> m_2 / 2 of the continuum.
 [[nodiscard]] double mean_crossing(const BondSetting& setting);
 
 }  // namespace peristat

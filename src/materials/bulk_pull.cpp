@@ -55,7 +55,7 @@ Coordinates normal_to(const Coordinates& n, int dimension) {
   return unit(cross(n, is_upright ? Coordinates{1, 0, 0} : Coordinates{0, 0, 1}));
 }
 
-/// Numbers of directions; opposite ones and those that round-off tells apart are the same.
+/// Numbers directions; opposite ones and those that differ by round-off have one number.
 class Numbers {
  public:
   int of(const Coordinates& direction) {
@@ -73,12 +73,12 @@ class Numbers {
 
 }  // namespace
 
-/// A body on its way.
+/// A state under the growing stress.
 struct BulkPull::State {
   double along = 0.0;  // S : eps
   Vector strain{};
   double stress = 0.0;
-  std::vector<double> largest{};  // stretches of fibres
+  std::vector<double> largest{};  // stretches of fibres so far
 };
 
 /// The equilibria of one law under one form of stress.
@@ -91,7 +91,8 @@ class BulkPull::Equilibrium {
         form_(vector(form)),
         fibres_(bulk.fibres_.size()) {}
 
-  /// Where the first bond is at its onset; no strain for a lattice that does not resist.
+  /// State in which the first bond reaches its onset; without strain if the lattice has no
+  /// stiffness.
   [[nodiscard]] State first() {
     State state;
     state.largest.assign(fibres_.size(), 0.0);
@@ -111,7 +112,7 @@ class BulkPull::Equilibrium {
     return state;
   }
 
-  /// With another strain along the form.
+  /// State with another strain along the form.
   [[nodiscard]] State at(double along, const State& since) {
     State state = since;
     state.strain *= along / since.along;
@@ -136,9 +137,10 @@ class BulkPull::Equilibrium {
     double stretch, integrity, slope;  // slope of the integrity
   };
 
-  /// Integrities fall, and with them stress over strain (where triangles of negative stiffness fail
-  /// it could rise; no lattice is known where it does). A state that bears more is no equilibrium
-  /// on the way, but what round-off makes of a lattice that has lost its stiffness.
+  /// True if stress over strain has grown. Integrities fall, and the ratio with them (where
+  /// triangles of negative stiffness fail it could rise; no lattice is known where it does). A
+  /// state that carries more is no equilibrium but round-off in a lattice that has lost its
+  /// stiffness.
   [[nodiscard]] static bool has_stiffened(const State& state, const State& since) {
     return state.stress * since.along > (1.0 + 1e-9) * since.stress * state.along;
   }
@@ -219,7 +221,7 @@ class BulkPull::Equilibrium {
       const Vector measure = vector(of_measure);
       const double change = measure.dot(state.strain);
       double sum = 0.0;
-      slopes_.assign(fibres_.size(), 0.0);  // of the sum, by the stretches of fibres
+      slopes_.assign(fibres_.size(), 0.0);  // derivatives of the sum by the fibres' stretches
       for (const Simplex& simplex : all) {
         const double product = simplex.stiffness * integrity(simplex, sides);
         sum += product;
@@ -238,8 +240,8 @@ class BulkPull::Equilibrium {
     }
   }
 
-  /// Where Newton's method finds none, as for laws that jump: with damage that grows until it is
-  /// enough.
+  /// Fallback where Newton's method finds no state, as for laws that jump: damage grows in secant
+  /// steps until it suffices.
   [[nodiscard]] State by_secants(double along, const State& since) {
     State state = since;
     state.along = along;
@@ -248,7 +250,7 @@ class BulkPull::Equilibrium {
       set_secants(state.largest);
       const Vector of_unit = strain_of_form(secant_stiffness());
       state.stress = along / form_.dot(of_unit);
-      // Nothing is left of what resisted.
+      // No resistance is left.
       if (!(state.stress > 1e-6 * since.stress) || has_stiffened(state, since)) {
         state.stress = 0.0;
         return state;
@@ -290,8 +292,8 @@ BulkPull::BulkPull(const BondSetting& setting, double micromodulus)
     spread_evenly(micromodulus * bulk.moment(1));
     return;
   }
-  // A correction by energy along the body's axes leaves a cubic lattice that is turned about one
-  // axis no cubic symmetry.
+  // A correction by energy along the body's axes takes the cubic symmetry from a cubic lattice that
+  // is turned about one axis.
   const bool repeats =
       setting.lattice->spacing.is_square() && (dimension_ < 3 || setting.lattice->angle == 0.0);
   if (repeats || dimension_ == 1) {
@@ -317,7 +319,7 @@ BulkPull::BulkPull(const Kernel& kernel, double spacing, const CpdConstants& con
     if (std::size_t(number) == fibres_.size()) fibres_.push_back({projector(n, dimension_), 0.0});
     return number;
   };
-  // w = V V1, 2 V V2 and 6 V V3, see effective_volumes; of each two opposite bonds one counts.
+  // w = V V1, 2 V V2 and 6 V V3, see effective_volumes; one of each two opposite bonds counts.
   const double of_bonds = 0.5 * bulk.volume / double(bulk.neighbours) * constants.c1;
   for (const Coordinates& arm : ball.arms()) {
     const double length = std::sqrt(dot(arm, arm));
@@ -414,8 +416,8 @@ double BulkPull::onset(const Tensor& form, double stretch) const {
   return Equilibrium(*this, form, brittle).first().stress;
 }
 
-/// In steps of 2 % of the strain, and about each summit in finer and finer ones, until next to
-/// nothing is left.
+/// Follows the strain in steps of 2 %, and around each peak in finer and finer ones, until the
+/// stress is below 0.9 of the peak.
 double BulkPull::peak(const Tensor& form, const AnyLaw& law) const {
   constexpr double coarsest = 0.02, finest = 1e-10, finer = 0.125;
   constexpr double left = 0.9;  // of the peak: a body that has lost a tenth breaks
@@ -433,7 +435,7 @@ double BulkPull::peak(const Tensor& form, const AnyLaw& law) const {
       }
       best = std::max(best, there.stress);
       if (there.stress < left * best) return;
-      // What is left of triangles under compression would bear more and more, strained for ever.
+      // Triangles that are left under compression would carry more and more as the strain grows.
       if (*std::ranges::max_element(there.largest) > 4.0 * law.critical()) return;
       before = std::move(here);
       here = std::move(there);

@@ -19,8 +19,8 @@ enum class Loading {
   compression,
 };
 
-/// What the interactions of a point deep inside a lattice bear under a homogeneous stress that
-/// grows: the strength of a body that nothing weakens.
+/// Response of a point deep inside a lattice to a homogeneous stress that grows: the strength of a
+/// body without flaws.
 ///
 /// The stress is lambda S with a fixed form S. Its strain along S, e = S : eps, grows step by step;
 /// lambda and the rest of the small strain eps follow from
@@ -32,27 +32,28 @@ enum class Loading {
 /// M is the derivative of their relative area or volume, a_t = w |A| C_2 / V and w |V| C_3 / V.
 /// The strength is the largest lambda on the way. In plane strain it is the stress in the plane.
 ///
-/// Directions of n are those of sector_directions for square and cubic lattices, otherwise 24 (2D)
-/// or 60 (3D) that are spread evenly. Where there is no lattice, or more than most_directions of
-/// bonds, these are spread evenly, too, with the stiffness of the continuum or the lattice.
+/// Directions n are those of sector_directions for square and cubic lattices, otherwise 24 (2D) or
+/// 60 (3D) that are spread evenly. Without a lattice, or with more than most_directions of bonds,
+/// the bonds' directions are spread evenly, too, with the stiffness of the continuum or the
+/// lattice.
 class BulkPull {
  public:
   BulkPull(const BondSetting& setting, double micromodulus);
   BulkPull(const Kernel& kernel, double spacing, const CpdConstants& constants);
 
-  /// Largest stress [Pa]; not of compression, under which bonds along it never fail.
+  /// Largest stress [Pa]; not for compression, under which bonds along it never fail.
   [[nodiscard]] DirectionalSpread peak(Loading loading, const AnyLaw& law) const;
 
-  /// Stress at which the most stretched bond has this stretch and all are whole [Pa].
+  /// Stress at which the most stretched bond has this stretch and all are undamaged [Pa].
   [[nodiscard]] DirectionalSpread onset(Loading loading, double stretch) const;
 
   static constexpr std::size_t most_directions = 400;
 
-  /// Whether a strength takes seconds; of cpd in 3D it takes minutes at horizon ratios of 3.
+  /// True if a strength takes seconds; for cpd in 3D it takes minutes at horizon ratios of 3.
   [[nodiscard]] bool is_quick() const;
 
  private:
-  /// Symmetric, in Kelvin's notation: sqrt(2) times what is off the diagonal.
+  /// Symmetric, in Kelvin's notation: off-diagonal entries times sqrt(2).
   using Tensor = std::array<double, 6>;
 
   /// All bonds of a direction.
@@ -60,7 +61,7 @@ class BulkPull {
     Tensor dyad;
     double stiffness;  // [Pa]
   };
-  /// All triangles or tetrahedra of the same sides.
+  /// All triangles or tetrahedra with the same sides.
   struct Simplex {
     std::array<int, 6> side;  // numbers of fibres
     double stiffness;         // [Pa]
@@ -72,7 +73,7 @@ class BulkPull {
   };
   struct Form {
     Tensor tensor;
-    double weight;  // of a mean over all forms
+    double weight;  // in a mean over all forms
   };
   struct State;
   class Equilibrium;
@@ -86,7 +87,7 @@ class BulkPull {
 
   int dimension_;
   std::vector<Fibre> fibres_;
-  std::vector<Simplices> simplices_;  // of each measure
+  std::vector<Simplices> simplices_;  // grouped by measure
   std::vector<WeightedDirection> directions_;
 };
 

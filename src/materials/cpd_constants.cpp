@@ -116,8 +116,9 @@ CpdConstants CpdStiffness::constants(const LameModuli& moduli, double c2) const 
   const LameModuli one = of_c1.isotropic(dimension), two = of_c2.isotropic(dimension),
                    three = of_c3.isotropic(dimension);
   CpdConstants result;
-  // What the others leave of lambda, zero where that is their round-off: Poisson's ratio of central
-  // forces, 1/3 or 1/4, must not make a constant negative by its last digits.
+  // Constant for the part of lambda that the others leave, zero where that part is their round-off:
+  // Poisson's ratio of central forces, 1/3 or 1/4, must not make a constant negative by its last
+  // digits.
   const auto of_rest = [&](double others, double largest, double per_constant) {
     constexpr double round_off = 1e-10;
     const double left = moduli.lambda - others;
@@ -160,7 +161,7 @@ CpdStiffness continuum_stiffness(int dimension, double horizon, double cross_sec
   } else {
     const double ball = 4.0 / 3.0 * pi * std::pow(horizon, 3);
     const double of_c1 = pi * std::pow(horizon, 4) / 30.0;
-    // Of <P P>, the isotropic mean of projections onto planes: mu = 1/15, lambda = 6/15.
+    // Isotropic mean <P P> of projections onto planes: mu = 1/15, lambda = 6/15.
     const double of_c2 = ball * ball * mean_area_in_space * horizon * horizon / 3.0;
     const double of_c3 = std::pow(ball, 3) * mean_volume() * std::pow(horizon, 3) / 4.0;
     stiffness.of_c1 = isotropic_elasticity(of_c1, of_c1);

@@ -10,7 +10,7 @@ struct CpdConstants {
   double c1 = 0.0, c2 = 0.0, c3 = 0.0;
 };
 
-/// Lamé's moduli of isotropic elasticity [Pa]. In 2D that of a surface, in which nothing exists
+/// Lamé's moduli of isotropic elasticity [Pa]. In 2D those of a surface, in which nothing exists
 /// outside the plane ([CPD] remark 1): nu = lambda / (lambda + 2 mu), neither plane stress nor
 /// plane strain.
 struct LameModuli {
@@ -56,14 +56,14 @@ struct CpdStiffness {
     return elasticity(constants).isotropic(dimension);
   }
 
-  /// Constants of given moduli. In 2D they determine C1 and C2; in 3D C2 is free.
+  /// Constants for given moduli. In 2D they determine C1 and C2; in 3D C2 is free.
   /// @throws InputError (key "poisson_ratio") if the horizon is too short for the interactions that
   ///         it needs, and (key "c2") if C1 would not be positive: one-neighbour interactions are
   ///         what makes a body stable ([CPD] sec. 4.4)
   [[nodiscard]] CpdConstants constants(const LameModuli& moduli, double c2) const;
 };
 
-/// Of the continuum, neighbourhoods being balls:
+/// Stiffness of the continuum with balls as neighbourhoods:
 ///
 ///   2D  mu = pi d^3 h C1 / 24,  lambda - mu = 5 pi^2 / (9 (4 pi - 3 sqrt 3)) d^6 h^2 C2
 ///   3D  mu = pi d^4 C1 / 30 + 0.139553047382 d^8 C2,
@@ -75,9 +75,9 @@ struct CpdStiffness {
 /// @param cross_section thickness h in 2D [m]
 [[nodiscard]] CpdStiffness continuum_stiffness(int dimension, double horizon, double cross_section);
 
-/// Of the lattice: the same energy density with the sums over neighbours, pairs and triplets and
-/// their effective volumes in place of the integrals. Differs from the continuum's by up to a
-/// factor of two, and is not isotropic.
+/// Stiffness of the lattice: the same energy density with the sums over neighbours, pairs and
+/// triplets and their effective volumes in place of the integrals. Differs from the continuum's by
+/// up to a factor of two, and is not isotropic.
 [[nodiscard]] CpdStiffness lattice_stiffness(int dimension, double spacing, double horizon,
                                              double cross_section);
 /// The same with the influence function of a kernel.

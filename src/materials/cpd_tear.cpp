@@ -16,7 +16,7 @@
 namespace peristat {
 namespace {
 
-/// A bond across the plane: its stretch and the opening belong to each other.
+/// A bond across the plane: relation between its stretch and the opening.
 struct BondAcross {
   double length, rise;  ///< L, and its part along the normal, h > 0
 
@@ -31,7 +31,7 @@ struct BondAcross {
   }
 };
 
-/// The bonds across of one triangle or tetrahedron.
+/// The bonds of one triangle or tetrahedron that cross the plane.
 struct BondsAcross {
   int count = 0;
   std::array<BondAcross, 4> bond;
@@ -66,7 +66,7 @@ struct AreaChange {
   }
 };
 
-/// How the measure changes if the points of these bits move along n.
+/// Change of the measure if the points whose bits are set in `moves` move along n.
 AreaChange change_of(const std::array<Coordinates, 3>& at, unsigned moves, const Coordinates& n) {
   const auto step = [&](int k) { return double(moves >> k & 1U) - double(moves & 1U); };
   const Coordinates b = minus(at[1], at[0]), c = minus(at[2], at[0]);
@@ -82,7 +82,7 @@ LinearChange change_of(const std::array<Coordinates, 4>& at, unsigned moves, con
   return {change / dot(b, cross(c, d))};
 }
 
-/// Where the slope of the integrity jumps between onset and critical stretch.
+/// Stretch between onset and critical stretch at which the slope of the integrity jumps.
 double peak_of(const CriticalStretch& law) { return law.onset(); }
 double peak_of(const TanhDegradation& law) { return law.onset(); }
 double peak_of(const ForceEnvelope& law) { return law.peak(); }
@@ -125,7 +125,7 @@ double work(const Law& law, const BondsAcross& across, const Change& change) {
   for (int k = 0; k + 1 < stops; ++k) {
     double from = stop[k];
     while (from < stop[k + 1]) {
-      // The integrity may go with 1/s: no step more than doubles the opening.
+      // The integrity may vary like 1/s: no step more than doubles the opening.
       const double to = std::min(stop[k + 1], from + std::min(1.0000001 * longest, from));
       sum += boost::math::quadrature::gauss<double, 10>::integrate(power, from, to);
       from = to;

@@ -10,21 +10,21 @@
 
 namespace peristat {
 
-/// What a plane tear takes from the lattice of a body of one-, two- and three-neighbour
-/// interactions, far from its surfaces: its halves move apart rigidly along the plane's normal n,
-/// by u from 0 until no bond across is left. A triangle or tetrahedron across the plane takes the
-/// work of its force,
+/// Energy of a plane tear in the lattice of a body of one-, two- and three-neighbour interactions,
+/// far from its surfaces: its halves move apart rigidly along the plane's normal n, by u from 0
+/// until no bond across is left. A triangle or tetrahedron across the plane takes the work of its
+/// force,
 ///
 ///   int T dpsi = -int psi dT,   T(u) = the product of the integrities of its bonds,
 ///
-/// which is what it releases as it loses them: committing ever smaller steps of u comes to the
-/// same. Per area each kind of those that translations make one another is met as often as the
-/// plane can stand between its points,
+/// which equals the energy that it releases as it loses its bonds: commits of ever smaller steps of
+/// u give the same. Per area each kind of triangle or tetrahedron, up to translations, occurs as
+/// often as the plane can stand between its points,
 ///
 ///   G(n) = C1 A(n) M(s_c) + sum over kinds w/V sum over places (width along n) int T dpsi  [J/m2].
 ///
-/// The mean over all directions of n is exact for bonds (see BulkBonds::crossing). For the others
-/// it is that of sector_directions.
+/// The mean over all directions of n is exact for bonds (see BulkBonds::crossing). For triangles
+/// and tetrahedra it is that of sector_directions.
 class CpdTear {
  public:
   CpdTear(const Kernel& kernel, double spacing, const CpdConstants& constants);
@@ -35,15 +35,15 @@ class CpdTear {
   /// The mean, and the least and the most over its directions, the axes and the diagonals.
   [[nodiscard]] DirectionalSpread spread(const AnyLaw& law) const;
 
-  /// Points of the quadrature that one mean takes of a law.
+  /// Number of quadrature points that one mean takes for a law.
   [[nodiscard]] double quadrature_points(const AnyLaw& law) const;
 
   /// Mean A of the bonds [m5].
   [[nodiscard]] double mean_crossing() const;
 
  private:
-  /// Points of a triangle or tetrahedron and what it would hold under a relative change of 1,
-  /// twice.
+  /// Points of a triangle or tetrahedron, and twice the energy that it would hold under a relative
+  /// change of 1.
   template <int points>
   struct Simplex {
     std::array<Coordinates, points> at;  // in spacings
@@ -65,8 +65,8 @@ class CpdTear {
   std::vector<Simplex<4>> tetrahedra_;
 };
 
-/// Largest horizon / spacing at which a tear of triangles or tetrahedra is summed, and most points
-/// of its quadrature with which a stretch is found: above, that takes minutes.
+/// Limits of the quadrature of a tear of triangles or tetrahedra, above which it takes minutes:
+/// most points with which a stretch is found, and largest horizon / spacing.
 inline constexpr double most_quadrature_points_of_tear = 1e8;
 [[nodiscard]] constexpr double largest_ratio_of_tear(int dimension) {
   return dimension == 2 ? 12.0 : 3.2;

@@ -7,7 +7,7 @@
 
 namespace peristat {
 
-/// Micromodulus of bonds by their direction n against that of the fibres f,
+/// Micromodulus of bonds by the angle theta between their direction n and the fibres f,
 ///
 ///   c(n) = b_0 + b_1 t + b_2 t^2,  t = (n f)^2 = cos^2 theta  [N/m6]:
 ///
@@ -35,17 +35,16 @@ struct FibreModuli {
   double along = 0.0, across = 0.0, shear = 0.0;
 };
 
-/// The shear modulus that makes bonds of a body with along = across isotropic: sqrt(E_1 E_2)/(2 (1
-/// + nu)) with their Poisson's ratio.
+/// The shear modulus that makes the bonds of a body with along = across isotropic: sqrt(E_1 E_2)/(2
+/// (1 + nu)) with their Poisson's ratio.
 [[nodiscard]] double natural_shear(double along, double across, const BondSetting& setting);
 
 /// Constants of given moduli in plane stress (2D) or 3D, transversely isotropic about the fibres.
 /// With c_11 along the fibres, c_22 across and c_12 = c_66 = G:
 ///
 ///   plane stress  c_11 = (E_1 + sqrt(E_1^2 + 4 G^2 E_1/E_2))/2,  c_22 = c_11 E_2/E_1
-///   3D            c_22 = 9/16 (E_2 + sqrt(E_2^2 + 16/9 G^2 E_2/E_1)),  c_11 = E_1 + 3 G^2/(2
-///   c_22),
-///                 c_23 = c_44 = c_22/3
+///   3D            c_22 = 9/16 (E_2 + sqrt(E_2^2 + 16/9 G^2 E_2/E_1)),
+///                 c_11 = E_1 + 3 G^2/(2 c_22),  c_23 = c_44 = c_22/3
 ///
 /// (from 1/E = s_11, s the inverse of c), and b from the energy of homogeneous strains,
 ///

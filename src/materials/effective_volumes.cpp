@@ -9,12 +9,13 @@ namespace {
 template <class Measure>
 constexpr double orders = Measure::arms == 2 ? 2.0 : 6.0;
 
-/// The count n that effective volumes are divided by: from n = 1 on it is n itself, so that they
-/// sum up to the neighbourhood's. Below, where the last interactions of a point are nearly flat, (1
-/// + n^2)/2: their weights vanish with them instead of sharing what is left.
+/// The count n that effective volumes are divided by: n itself from n = 1 on, so that they add up
+/// to the neighbourhood's volume. Below, where the last interactions of a point are nearly flat, it
+/// is (1 + n^2)/2: their weights vanish with them instead of sharing the whole volume.
 double divisor(double count) { return count >= 1.0 ? count : 0.5 * (1.0 + count * count); }
 
-/// What a point beyond a plane of symmetry contributes to an interaction belongs to its twin.
+/// Volume with which a point contributes; 0 beyond a plane of symmetry, where it belongs to the
+/// twin.
 double own_volume(const Points& points, Index point) {
   return points.is_image(point) ? 0.0 : points.volume[std::size_t(point)];
 }

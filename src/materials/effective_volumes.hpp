@@ -33,15 +33,15 @@ template <class Measure>
                                                     const BulkNeighbourhood& bulk,
                                                     InteractionWeights weights);
 
-/// What each point contributes to the weight of an interaction,
+/// Contribution of each point to the weight of an interaction,
 ///
 ///   2/3 V^a V2^a [m9] for triangles,  6/4 V^a V3^a [m12] for tetrahedra,
 ///
 /// so that w = sum over its points = 2 or 6 times the mean of V^a Vn^a: the unique interaction
-/// stands for the ordered ones of eq. 14, whose factors 1/3 and 1/4 make the mean. Where V^a Vn^a
-/// is the same at all points, -dE/dx^a is the point's volume times the printed residual (eqs. 53,
-/// 58, 61). Elsewhere that residual does not come from an energy: its tangent is unsymmetric by
-/// some per cent and its forces have a sum.
+/// replaces the ordered ones of eq. 14, whose factors 1/3 and 1/4 make the mean. Where V^a Vn^a is
+/// the same at all points, -dE/dx^a is the point's volume times the paper's residual (eqs. 53, 58,
+/// 61). Elsewhere that residual does not derive from an energy: its tangent is unsymmetric by some
+/// per cent and its forces do not add up to zero.
 template <class Measure>
 [[nodiscard]] std::vector<double> weight_shares(const Points& points,
                                                 const std::vector<double>& effective_volume);

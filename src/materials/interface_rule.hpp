@@ -5,15 +5,15 @@
 
 namespace peristat {
 
-/// What an interaction of points of several materials makes of their constants.
+/// Rule for the constants of an interaction between points of several materials.
 enum class InterfaceRule {
   harmonic,    ///< n / sum 1/c: the halves of a bond in series
   arithmetic,  ///< sum c / n: side by side
   weaker       ///< the least
 };
 
-/// The mean of constants by a rule. A harmonic mean has the value 0 where one of them is 0; their
-/// signs must be the same.
+/// Mean of constants by a rule. A harmonic mean is 0 if one of them is 0; their signs must be the
+/// same.
 [[nodiscard]] inline double mean_by(InterfaceRule rule, std::span<const double> constants) {
   const double count = double(constants.size());
   if (rule == InterfaceRule::weaker) return *std::ranges::min_element(constants);

@@ -28,8 +28,8 @@ struct LamePair {
 ///
 ///   d (d lambda + 2 mu) / 2  <|n_x|> int K r^3 dV / int K r^2 dV,   <|n_x|> = 2/pi | 1/2.
 ///
-/// Every bond counts with its equal share of the dilatations of its points, which is what all of
-/// them hold as long as the crack is not there.
+/// Every bond counts with its equal share of the dilatations of its points: together the bonds hold
+/// this energy as long as there is no crack.
 /// @param of_bonds with the influence K(r) r / delta
 [[nodiscard]] double crack_energy_of_dilation(const LamePair& constants, const Kernel& of_bonds);
 

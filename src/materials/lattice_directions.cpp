@@ -56,7 +56,7 @@ std::vector<WeightedDirection> sector_directions(int dimension) {
   for (const auto& [y, weight_y] : gauss_rule<4>()) {
     for (const auto& [share, weight_z] : gauss_rule<4>()) {
       const Coordinates along{1.0, y, share * y};
-      // dy dz = y dy d(z/y), seen from the centre under 1/|n|^3 of it
+      // dy dz = y dy d(z/y), whose solid angle is 1/|n|^3 of it
       const double length = std::hypot(along[0], along[1], along[2]);
       const double weight = weight_y * weight_z * y / std::pow(length, 3);
       result.push_back({unit(along), weight});

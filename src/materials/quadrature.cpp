@@ -35,7 +35,7 @@ Coordinates arm_along_lattice(const Points& points, Index i, Index j) {
   return arm;
 }
 
-/// Steps along the lattice's axes, not rounded.
+/// Vector between two points in steps along the lattice's axes, not rounded.
 Coordinates spacings_between(const Points& points, Index i, Index j) {
   Coordinates arm = arm_along_lattice(points, i, j);
   for (int c = 0; c < 3; ++c) arm[std::size_t(c)] /= points.spacing.along(c);
@@ -111,7 +111,7 @@ Bonds given_bonds(const Points& points) {
   return bonds;
 }
 
-/// What the kernel makes of the bonds of a body.
+/// Factors that the kernel gives the bonds of a body.
 class BondShares {
  public:
   BondShares(const Points& points, const Kernel& kernel) : points_(points), kernel_(kernel) {
@@ -165,8 +165,8 @@ void weigh_volumes(Bonds& bonds, const Points& points, const Kernel& kernel) {
   });
 }
 
-/// A sum over the bonds of every point, as far as it was made: what an image has is its source's,
-/// and the source's sum is the image's, too.
+/// Completes sums over the bonds of every point: adds the sum of an image to that of its source,
+/// and copies the source's total back to the image.
 template <class Sum, class Add>
 void gather_images(const Points& points, std::vector<Sum>& sums, const Add& add) {
   for (Index image = points.own(); image < points.count(); ++image) {
@@ -177,7 +177,7 @@ void gather_images(const Points& points, std::vector<Sum>& sums, const Add& add)
   }
 }
 
-/// A bond belongs to the body as far as its points do: beyond a plane of symmetry it has a twin.
+/// Takes half of a bond's weight away per end that is an image: across a plane it has a twin.
 void share_with_images(Bonds& bonds, const Points& points) {
   if (points.own() == points.count()) return;
   bonds.set_weights([&](Index i, Offset bond) {
@@ -194,7 +194,7 @@ void apply_volume_method(Bonds& bonds, const Points& points, const Kernel& kerne
     neighbourhood[j] += bonds.weight(bond) / points.volume[j];
   });
   gather_images(points, neighbourhood, [](double& sum, double more) { sum += more; });
-  // For a cloud of points a lattice of its mean spacing serves.
+  // A cloud of points uses a lattice of its mean spacing.
   const double bulk = kernel.lattice_moment(0, points.spacing);
   bonds.set_weights([&](Index i, Offset bond) {
     const double both = neighbourhood[i] + neighbourhood[bonds.partner[bond]];

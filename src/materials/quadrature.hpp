@@ -9,18 +9,19 @@
 
 namespace peristat {
 
-/// Norm of the vector between two points along the axes of their lattice; of a cloud x, y, z [m].
+/// Norm of the vector between two points along the axes of their lattice; for a cloud along x, y, z
+/// [m].
 [[nodiscard]] double norm_between(const Points& points, Index i, Index j, HorizonShape shape);
 
 /// Longest distance at which points may have a bond [m].
 [[nodiscard]] double search_radius(const Points& points, const Kernel& kernel);
 
-/// Takes out bonds that store no energy.
+/// Removes bonds of weight 0.
 void drop_weightless(Bonds& bonds);
 
 /// Finds the bonds of a body, unless its points have given neighbours, and sets their weights.
-/// Those that the kernel leaves none are dropped; those between two images have none, but triangles
-/// stand on them.
+/// Bonds whose weight the kernel makes 0 are dropped. Bonds between two images have weight 0 and
+/// are kept, since they are sides of triangles.
 ///
 ///   w_ij = 1/2 (V_i V_j nu_ij + V_j V_i nu_ji) omega_ij mu_ij   [m6]
 ///
@@ -38,10 +39,10 @@ void drop_weightless(Bonds& bonds);
 [[nodiscard]] Bonds make_bonds(const Points& points, SurfaceCorrection surface,
                                const BondSetting& setting, int threads);
 
-/// Volume that every point sees through its bonds, sum_j 1/2 (nu_ij + nu_ji) omega_ij V_j [m3]:
-/// that of a point inside a lattice is `setting.lattice_moment(0, spacing)`. Of images that of
-/// their sources.
-/// @param broken per bond, whether it does not count; empty: all count
+/// Volume that every point sees through its bonds, sum_j 1/2 (nu_ij + nu_ji) omega_ij V_j [m3]: for
+/// a point inside a lattice `setting.lattice_moment(0, spacing)`. Images have that of their
+/// sources.
+/// @param broken per bond, 1 if it does not count; empty: all count
 [[nodiscard]] std::vector<double> seen_volumes(const Points& points, const Bonds& bonds,
                                                const Kernel& kernel, std::span<const char> broken);
 

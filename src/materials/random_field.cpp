@@ -50,11 +50,11 @@ double gaussian(const std::vector<Mode>& modes, const Coordinates& at) {
   return std::sqrt(2.0 / double(modes.size())) * sum;
 }
 
-/// Of a place alone.
+/// Uniform number that depends on the seed and the place alone.
 double uniform(std::uint64_t seed, const Coordinates& at) {
   std::uint64_t bits = scattered(seed);
   for (const double component : at) {
-    // Zero has two signs.
+    // Adding 0 makes both signs of zero the same.
     bits = random_bits(bits, std::bit_cast<std::uint64_t>(component + 0.0));
   }
   return open_unit(bits);

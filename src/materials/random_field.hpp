@@ -23,11 +23,11 @@ struct WeibullField {
   std::uint64_t seed = 1;
 };
 
-/// The field at the points. A value follows from the field and the point's place alone, whatever
-/// the other points, their order and the threads; fields of the same seed and correlation length
-/// have the same g. g is a sum of Fourier modes, sqrt(2/N) sum_n cos(k_n x + phi_n), with normal
-/// wave vectors k_n (variance 2/l^2 per component) and uniform phases: its covariance over a large
-/// body differs from the above by about 1/sqrt(N).
+/// The field at the points. A value depends on the field and the point's place alone, not on the
+/// other points, their order or the threads; fields of the same seed and correlation length have
+/// the same g. g is a sum of Fourier modes, sqrt(2/N) sum_n cos(k_n x + phi_n), with normal wave
+/// vectors k_n (variance 2/l^2 per component) and uniform phases: its covariance over a large body
+/// differs from the above by about 1/sqrt(N).
 [[nodiscard]] std::vector<double> values_at(const Points& points, const WeibullField& field,
                                             int threads);
 
