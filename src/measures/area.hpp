@@ -83,7 +83,7 @@ struct Area::At<3, Real> {
 
   template <int P, int Q>
   [[gnu::always_inline]] void add_hessian(const Real& factor, Matrix<3, Real>& block) const {
-    // |other arm|^2 on the diagonal, -b.c beside it.
+    // |other arm|^2 on the diagonal, -b.c off it.
     if constexpr (P == Q) {
       add_outer_square<3, Real>(factor * inverse * dot<3>(arm[1 - P], arm[1 - P]), normal, block);
     } else {

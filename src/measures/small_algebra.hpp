@@ -5,10 +5,11 @@
 
 namespace peristat {
 
-// Inlined by order: the compiler's own choice has cost the kernels a sixth when other code changed.
+// Inlining is forced: the compiler's own choice has cost the kernels a sixth when other code
+// changed.
 
 /// Vectors and matrices of an interaction, over any scalar (double or Lanes). Eigen's fixed-size
-/// matrices do not take SIMD scalars, and these few verbs are all that the measures need.
+/// matrices do not take SIMD scalars, and these few operations are all that the measures need.
 template <int D, class Real>
 using Vector = std::array<Real, D>;
 

@@ -45,7 +45,7 @@ struct Volume {
 
     [[nodiscard, gnu::always_inline]] Arms<3, 3, Real> hessian_times(
         const Arms<3, 3, Real>& v) const {
-      // Of each gradient the change with the two arms that it depends on.
+      // Change of each gradient with the two arms that it depends on.
       return {plus<3>(cross(v[1], arm[2]), cross(arm[1], v[2])),
               plus<3>(cross(v[2], arm[0]), cross(arm[2], v[0])),
               plus<3>(cross(v[0], arm[1]), cross(arm[0], v[1]))};
