@@ -11,7 +11,7 @@
 
 namespace peristat {
 
-/// What a bond's energy needs besides the positions of its points.
+/// Data of a bond's energy besides the positions of its points.
 struct BondKind {
   double inverse_length = 0.0;  ///< 1/L, L the reference length: kernels divide by L [1/m]
   double weight = 0.0;          ///< quadrature weight w of the bond's energy [m6]
@@ -21,9 +21,8 @@ struct BondKind {
 
 /// One BondKind per bond. The bonds of a lattice are of few kinds: each kind is kept once and a
 /// bond keeps its number, 2 bytes instead of 16. Bonds whose two numbers agree to about 1e-12 are
-/// of one kind, that of the first of them, because points of a lattice stand where they should only
-/// up to round-off. Where there are more than 65536 kinds, as in a cloud of points, each bond keeps
-/// its own.
+/// of one kind, that of the first of them, because positions on a lattice have round-off. With more
+/// than 65536 kinds, as in a cloud of points, each bond keeps its own.
 class BondKinds {
  public:
   [[nodiscard]] const BondKind& operator[](Offset bond) const {
@@ -42,7 +41,7 @@ class BondKinds {
 
   /// Makes a bond of the kind of another one.
   void copy(Offset from, Offset to);
-  /// Keeps the first bonds.
+  /// Keeps the first `count` bonds.
   void truncate(Offset count);
 
  private:
@@ -53,7 +52,7 @@ class BondKinds {
     std::size_t operator()(const Key& key) const;
   };
   static Key key_of(const BondKind& kind);
-  /// most_kinds if it is one kind too many.
+  /// Number of a kind; most_kinds if there is none left for it.
   [[nodiscard]] std::size_t number_of(const BondKind& kind);
   void keep_each_its_own();
 
@@ -65,7 +64,7 @@ class BondKinds {
     Key key{~std::uint64_t(0), ~std::uint64_t(0)};
     std::size_t number = 0;
   };
-  std::array<Recent, 256> recent_;  // of known_, by hash
+  std::array<Recent, 256> recent_;  // cache of known_, by hash
 };
 
 }  // namespace peristat

@@ -27,9 +27,9 @@ struct Bonds {
   [[nodiscard]] Offset count() const { return static_cast<Offset>(partner.size()); }
   [[nodiscard]] Index points() const { return static_cast<Index>(offset.size()) - 1; }
 
-  /// Removes every bond with drop(i, bond), i its lower point; the others keep their order. Each
-  /// bond is asked for once, in order, before it moves: drop may read its partner, length and
-  /// weight, but no offset.
+  /// Removes every bond with drop(i, bond), i its lower point; the others keep their order. Calls
+  /// drop once per bond, in order, before the bond moves: it may read the bond's partner, length
+  /// and weight, but no offset.
   template <class Drop>
   void remove_if(const Drop& drop) {
     Offset kept = 0;
@@ -48,7 +48,7 @@ struct Bonds {
     kind.truncate(kept);
   }
 
-  /// Gives every bond the weight weight_of(i, bond), i its lower point; asked in order.
+  /// Gives every bond the weight weight_of(i, bond), i its lower point; called in order.
   template <class WeightOf>
   void set_weights(const WeightOf& weight_of) {
     BondKinds weighted;

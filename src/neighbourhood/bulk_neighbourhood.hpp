@@ -4,7 +4,7 @@
 
 namespace peristat {
 
-/// What a point far from all surfaces of a lattice sees.
+/// Neighbourhood of a point far from all surfaces of a lattice.
 struct BulkNeighbourhood {
   double volume = 0.0;          ///< V_H of the ball: 2D pi delta^2 h, 3D 4/3 pi delta^3 [m3]
   std::int64_t neighbours = 0;  ///< #N1
@@ -13,7 +13,7 @@ struct BulkNeighbourhood {
   std::int64_t triplets = 0;    ///< #N3, ordered: … and not coplanar; 0 in 2D
 };
 
-/// Largest horizon / spacing of which the pairs (2D) and triplets (3D) are counted: above it that
+/// Largest horizon / spacing for which the pairs (2D) and triplets (3D) are counted: above it that
 /// takes minutes, whatever the body's size.
 [[nodiscard]] constexpr double largest_ratio_with_pairs(int dimension) {
   return dimension == 2 ? 50.0 : 8.0;

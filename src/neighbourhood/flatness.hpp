@@ -6,17 +6,17 @@
 
 namespace peristat {
 
-/// How much of a triangle or tetrahedron counts by how flat it is. The relative change m/M - 1 of a
-/// measure has no meaning for points that stand on a line (in a plane), and the energy M (m/M -
-/// 1)^2 of nearly flat ones grows without bound under anything but a homogeneous deformation. With
-/// t = |M| / M0, M0 the cell measure of the interaction's points,
+/// Weight of a triangle or tetrahedron by how flat it is. The relative change m/M - 1 of a measure
+/// has no meaning for points on a line (in a plane), and the energy M (m/M - 1)^2 of nearly flat
+/// ones grows without bound under anything but a homogeneous deformation. With t = |M| / M0, M0 the
+/// cell measure of the interaction's points,
 ///
 ///   g(t) = 0 for t <= 1/4,   s^2 (3 - 2 s) with s = 2 t - 1/2 between,   1 for t >= 3/4
 ///
-/// multiplies the weight, and counts in place of 1 in #N2 and #N3: all of them are then once
+/// multiplies the weight, and replaces 1 in the counts #N2 and #N3: all of these are then once
 /// continuously differentiable functions of the points' positions, and |M| is at least M0/4 where
-/// there is any energy. On a cubic lattice t is 0 or at least 1, whatever the round-off: nothing is
-/// changed there.
+/// there is any energy. On a cubic lattice t is 0 or at least 1, whatever the round-off: nothing
+/// changes there.
 inline constexpr double flat_measure = 0.25, full_measure = 0.75;
 
 /// g(t) [-]

@@ -17,7 +17,7 @@
 namespace peristat {
 namespace {
 
-/// Places along the last axis of the lattice: all have the other coordinates in common.
+/// Key of a row of places along the last axis of the lattice: their common other coordinates.
 using RowKey = std::array<std::int64_t, 2>;
 
 struct Occupant {
@@ -31,13 +31,13 @@ struct Run {
   std::int64_t first = 0, last = 0;
 };
 
-/// Part of a ball's places on a row beside its middle.
+/// A ball's places on a row, relative to the ball's middle.
 struct RowOfBall {
   RowKey beside{};
-  std::int64_t half = 0;  // of its places, without the middle one
+  std::int64_t half = 0;  // places on either side of the middle one
 };
 
-/// What stands where on a lattice: rows, so that neighbours need no memory per point.
+/// Points at the places of a lattice, by rows, so that neighbours need no memory per point.
 class Occupation {
  public:
   Occupation(const LatticeFrame& frame, const Points& points)
@@ -59,8 +59,7 @@ class Occupation {
   /// Largest distance of a point from its place [m].
   [[nodiscard]] double farthest_off() const { return farthest_off_; }
 
-  /// visit(cell) for all places within a radius of the place of a point that hold none, in
-  /// ascending order.
+  /// visit(cell) for all empty places within a radius of the place of a point, in ascending order.
   template <class Visit>
   void for_each_ghost(double radius, const Visit& visit) const {
     const std::vector<RowOfBall> ball = rows_of_ball(radius);
@@ -78,8 +77,7 @@ class Occupation {
     }
   }
 
-  /// Whether a place lies within a radius of a point that stands no farther off its own place than
-  /// all do.
+  /// True if a point that is no image lies within a radius of the ghost of a cell.
   [[nodiscard]] bool has_point_near(const Cell& cell, const Coordinates& place, double radius,
                                     const std::vector<RowOfBall>& ball) const {
     const double squared_radius = inclusive_radius(radius) * inclusive_radius(radius);
@@ -139,7 +137,7 @@ class Occupation {
     return std::binary_search(row.begin(), row.end(), Occupant{at, 0});
   }
 
-  /// Places of a row that balls around points reach, as runs that ascend and don't touch.
+  /// Places of a row that balls around points reach, as ascending runs that don't touch.
   [[nodiscard]] std::vector<Run> reached(const RowKey& key,
                                          const std::vector<RowOfBall>& ball) const {
     std::vector<Run> runs;
@@ -193,8 +191,8 @@ Coordinates shift_of(const Lattice& lattice, const LatticeFrame& frame, const Ce
   throw InputError("radius", number_text(radius), allowed);
 }
 
-/// Largest distances of points and ghosts from their places, added up [m]; 0 where all stand on
-/// them, and the lattice tells exactly who is within a radius.
+/// Sum of the largest distances of points and ghosts from their places [m]; 0 if all stand on them,
+/// so that the lattice decides exactly who is within a radius.
 double off_places(const Lattice& lattice, const LatticeFrame& frame, const Occupation& occupation) {
   const double largest_shift = 2.0 * lattice.perturbation * frame.half_diagonal();
   const double off = occupation.farthest_off() + largest_shift;

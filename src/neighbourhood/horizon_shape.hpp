@@ -14,8 +14,8 @@ enum class HorizonShape { ball, box, diamond };
 /// Length of the longest vector of norm 1.
 [[nodiscard]] double farthest_of(HorizonShape shape, int dimension);
 
-/// Mean over all directions n of norm(n)^-power: what an integral over the shape has in the place
-/// of the ball's, if the rest of it is a power of the length times a function of the norm,
+/// Mean over all directions n of norm(n)^-power: the ratio of an integral over the shape to that
+/// over the ball, if the integrand is a power of the length times a function of the norm,
 /// int f(norm(xi)) |xi|^k dV = (int over the ball) * mean_of_reach(k + dimension).
 [[nodiscard]] double mean_of_reach(HorizonShape shape, int dimension, int power);
 

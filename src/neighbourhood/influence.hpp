@@ -10,8 +10,8 @@
 
 namespace peristat {
 
-/// omega(x) of a distance over the horizon, x = r / delta: smooth from 0 to 1, and beyond 1, where
-/// the places of points may be whose cells reach into the horizon, what the function says there.
+/// omega(x) of the distance over the horizon, x = r / delta: smooth from 0 to 1. Beyond 1, where
+/// points may lie whose cells reach into the horizon, the function's own value counts.
 template <class I>
 concept Influence = std::is_aggregate_v<I> && requires(const I influence, double x) {
   { I::name } -> std::convertible_to<std::string_view>;
@@ -30,7 +30,7 @@ struct PiecewiseConstantInfluence {
   double operator()(double x) const { return x <= 1.0 ? 1.0 : 0.0; }
 };
 
-/// omega_1 = 1 - x, 0 beyond the horizon as those that follow.
+/// omega_1 = 1 - x, 0 beyond the horizon as are those that follow.
 struct LinearInfluence {
   static constexpr const char* name = "linear";
   double operator()(double x) const { return x < 1.0 ? 1.0 - x : 0.0; }
@@ -68,7 +68,7 @@ struct GaussianInfluence {
   double operator()(double x) const { return std::exp(-x * x); }
 };
 
-/// 1/x, everywhere: the force per relative displacement of all bonds is alike.
+/// 1/x, everywhere: the force per relative displacement is the same for all bonds.
 struct InverseInfluence {
   static constexpr const char* name = "inverse";
   double operator()(double x) const { return 1.0 / x; }
@@ -91,7 +91,7 @@ using Influences =
 /// Names of all of them.
 [[nodiscard]] std::vector<std::string> influence_names();
 
-/// The function of a name; empty for one that is 1 everywhere, and where there is no such name.
+/// The function of a name; empty for the constant 1 and for an unknown name.
 [[nodiscard]] std::function<double(double)> influence_named(const std::string& name);
 
 }  // namespace peristat

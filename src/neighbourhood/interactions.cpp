@@ -32,8 +32,9 @@ struct PointCount {
 };
 using Counts = std::vector<PointCount>;
 
-/// Points that are no images, the lowest ones; of a part those that are owned, as long as no
-/// interaction of an owned point's image is lowest at a ghost.
+/// Number of points, the lowest ones, at which interactions are visited: all but images. In a part
+/// without images the owned points suffice; with images, an interaction of an owned point's image
+/// may have a ghost as its lowest point.
 Index visited(const Points& points) {
   return points.images.kinds.empty() ? points.owned.value_or(points.own()) : points.own();
 }
@@ -96,7 +97,7 @@ void Interactions<Measure>::count_in(const Points& points, const Bonds& bonds, i
       }
     }
   }
-  for (const Counts& found : counts) {  // in order: the sums do not depend on who was first
+  for (const Counts& found : counts) {  // in order, so that sums do not depend on timing
     for (std::size_t i = 0; i < found.size(); ++i) {
       per_point_[i] += found[i].interactions;
       effective_counts_[i] += found[i].effective;

@@ -18,7 +18,7 @@
 
 namespace peristat {
 
-/// Four neighbouring partners of a point that may each complete an interaction.
+/// Four consecutive partners of a point, each of which may complete an interaction.
 struct InteractionBlock {
   double inverse_reference[lane_count];  ///< 1/M, signed as the measure is; 1 in empty lanes
   /// w times the flatness factor [m9 or m12], negative where M is, so that w M > 0; 0 if empty
@@ -34,7 +34,7 @@ struct InteractionGroup {
   std::span<const InteractionBlock> blocks;  ///< of the last point, above all partners
 };
 
-/// Room for the interactions that are found of one point.
+/// Scratch memory for the interactions found at one point.
 struct InteractionScratch {
   explicit InteractionScratch(int most_partners)
       : of_partners(most_partners), blocks(std::size_t(block_count(most_partners))) {}
@@ -43,11 +43,11 @@ struct InteractionScratch {
 };
 
 /// Unique triangles (Measure = Area) or tetrahedra (Volume) of a body: points with all mutual
-/// distances within the horizon ([CPD] sec. 3.1 after eqs. 32 and 34), as far as they are not flat:
-/// each is weighted by its flatness_factor. Each is visited once, at its lowest point, with its
-/// other points in ascending order. Those of images alone belong to others.
+/// distances within the horizon ([CPD] sec. 3.1 after eqs. 32 and 34), unless they are flat: each
+/// is weighted by its flatness_factor. Each is visited once, at its lowest point, with its other
+/// points in ascending order. Interactions of images alone belong to others.
 ///
-/// They are found anew at every visit from the bond graph, or, once stored, read back: 72 bytes for
+/// They are found again at every visit from the bond graph or, once stored, read back: 72 bytes for
 /// a block of up to four.
 template <class Measure>
 class Interactions {
@@ -55,7 +55,7 @@ class Interactions {
   static constexpr int fixed = Measure::arms - 1;
   using Group = InteractionGroup<fixed>;
 
-  /// Counts them.
+  /// Counts the interactions.
   /// @param cross_section thickness in 2D [m], 1 in 3D
   Interactions(const Points& points, const Bonds& bonds, double cross_section, int threads);
 
@@ -69,13 +69,13 @@ class Interactions {
   [[nodiscard]] const std::vector<double>& effective_counts() const { return effective_counts_; }
 
   /// An interaction's weight is the sum of its points' shares [m9 or m12] times its flatness
-  /// factor. Until they are set it is the factor alone.
+  /// factor. Until shares are set it is the factor alone.
   void set_shares(std::vector<double> shares) { shares_ = std::move(shares); }
   /// Multiplies the weights by the product of influences of the sides, see influence_of_sides.
   void set_influence(const Kernel& kernel) { kernel_ = kernel; }
   /// Further factors of the weights, by the kinds of the points.
   void set_factors(FactorsOfKinds factors) { factors_ = std::move(factors); }
-  /// Whether any of them is negative: such interactions have the other sign of energy.
+  /// True if any of them is negative: such interactions have energy of the opposite sign.
   [[nodiscard]] bool has_negative_factors() const {
     return std::any_of(factors_.factor.begin(), factors_.factor.end(),
                        [](double factor) { return factor < 0.0; });
@@ -86,8 +86,8 @@ class Interactions {
   [[nodiscard]] bool is_stored() const { return !chunks_.empty(); }
   void store(const Points& points, const Bonds& bonds, int threads);
 
-  /// Calls visit(group) for the interactions whose lowest point `local` has moved to. When they are
-  /// not stored, its pairs must have been found.
+  /// Calls visit(group) for the interactions whose lowest point is the one that `local` has moved
+  /// to. Unless they are stored, the pairs of `local` must have been found.
   template <int D, class Visit>
   void for_each_group(const LocalNeighbourhood<D>& local, InteractionScratch& scratch,
                       const Visit& visit) const;
@@ -97,7 +97,7 @@ class Interactions {
     std::array<std::int32_t, fixed> partners;
     std::int32_t blocks;
   };
-  /// What is stored of points first, first + 1, …
+  /// Stored interactions of points first, first + 1, …
   struct Chunk {
     Index first;
     std::vector<Offset> groups_before, blocks_before;  // per point, and the totals
@@ -226,7 +226,7 @@ void Interactions<Measure>::find_groups(const LocalNeighbourhood<D>& local,
   Arms<Measure::arms, D, Lanes> arms;
   Vector<2, Lanes> of_fixed;  // sums of shares of the points but the last
 
-  // Blocks among the bits of partners that are bonded to all fixed ones.
+  // Fills blocks from the bits of partners that are bonded to all fixed ones.
   const auto complete = [&](const auto& word_of) {
     std::size_t count = 0;
     for (int w = 0; w < upper.words(); ++w) {

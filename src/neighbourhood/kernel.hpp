@@ -11,14 +11,13 @@ namespace peristat {
 /// Part of a neighbour's volume that counts.
 enum class VolumeCorrection {
   none,    ///< all of it
-  linear,  ///< a share that falls from 1 to 0 while the distance runs over a spacing about the
-           ///< horizon
-  exact,   ///< what a lattice's cell has within the horizon
-  /// the same, with influence and length of the bond those of the part's centroid
+  linear,  ///< a share that falls from 1 to 0 over one spacing around the horizon
+  exact,   ///< the part of a lattice's cell within the horizon
+  /// the same, with influence and length of the bond taken at the part's centroid
   exact_centroids,
 };
 
-/// Less of a cell than this is round-off, and no part of it.
+/// A smaller part of a cell is round-off and counts as none.
 inline constexpr double least_share = horizon_tolerance;
 
 /// Share nu of a point's volume inside another's horizon, for the linear correction:
@@ -26,8 +25,8 @@ inline constexpr double least_share = horizon_tolerance;
 /// (r distance, D size of the volume).
 [[nodiscard]] double linear_partial_volume(double distance, double horizon, double size);
 
-/// What a point sees, and how much of it counts: horizon, influence function and partial volumes.
-/// Distances whose share or influence is asked for are those of the shape's norm.
+/// Neighbourhood of a point and how much of it counts: horizon, influence function and partial
+/// volumes. Distances passed for shares and influences are in the shape's norm.
 struct Kernel {
   int dimension = 2;
   double horizon = 0.0;        ///< delta [m]
@@ -37,22 +36,22 @@ struct Kernel {
   /// omega(norm / delta), by which the weight of a bond is multiplied, see Influence; empty: 1
   std::function<double(double relative_distance)> influence{};
 
-  /// omega, with what round-off leaves of a distance at the horizon taken for the horizon, and of
-  /// an influence that ends there for none.
+  /// omega without round-off at the horizon: a distance that equals the horizon within round-off is
+  /// the horizon, and an influence that vanishes there is 0.
   [[nodiscard]] double influence_at(double distance) const;
 
-  /// Whether some points that the search finds do not count.
+  /// True if some points that the search finds may have no weight.
   [[nodiscard]] bool may_be_weightless() const {
     return influence || volume_correction != VolumeCorrection::none || shape != HorizonShape::ball;
   }
 
-  /// Whether shares depend on where in a lattice's cells the horizon runs, see LatticeKernel.
+  /// True if shares are the exact parts of cells within the horizon, see LatticeKernel.
   [[nodiscard]] bool has_exact_shares() const {
     return volume_correction == VolumeCorrection::exact ||
            volume_correction == VolumeCorrection::exact_centroids;
   }
 
-  /// Largest distance of points that see each other, partial volumes left out [m].
+  /// Largest distance of neighbours, without partial volumes [m].
   [[nodiscard]] double reach() const { return horizon * farthest_of(shape, dimension); }
 
   /// Share of a volume of some size at a distance that counts, unless shares are exact.

@@ -9,7 +9,7 @@
 
 namespace peristat {
 
-/// Interactions of one point of an infinite cubic lattice with what lies within its horizon.
+/// Interactions of one point of an infinite cubic lattice within its horizon.
 class LatticeBall {
  public:
   LatticeBall(int dimension, double spacing, double horizon)
@@ -45,8 +45,8 @@ class LatticeBall {
     }
   }
 
-  /// visit(b, c, area) for the triangles whose lowest point is the origin: of those that
-  /// translations make one another, one.
+  /// visit(b, c, area) for the triangles whose lowest point is the origin: one of all translations
+  /// of each.
   template <class Visit>
   void for_each_triangle(const Visit& visit) const {
     for (std::size_t j = first_above(); j < arms_.size(); ++j) {
@@ -79,7 +79,7 @@ class LatticeBall {
   }
 
  private:
-  /// Arms ascend by x, y, z, so that the opposite ones are the first half.
+  /// Arms ascend by x, y, z, so that the first half are the opposites of the second one.
   [[nodiscard]] std::size_t first_above() const { return arms_.size() / 2; }
 
   /// visit(j, k, l, volume) for every triplet of mutual neighbours j < k < l from the first on that

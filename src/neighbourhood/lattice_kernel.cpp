@@ -17,7 +17,7 @@ LatticeKernel::LatticeKernel(const Kernel& kernel, const Spacing& spacing)
   }
   factors_.reserve(std::size_t(width_[0] + 1) * std::size_t(width_[1] + 1) *
                    std::size_t(width_[2] + 1));
-  // Of squares and cubes steps that are alike but for the order of axes have the same.
+  // In square or cubic cells, steps that differ by the order of axes alone have the same factor.
   std::map<LatticeStep, double> known;
   for (int x = 0; x <= width_[0]; ++x) {
     for (int y = 0; y <= width_[1]; ++y) {

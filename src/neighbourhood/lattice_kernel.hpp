@@ -12,22 +12,21 @@ namespace peristat {
 /// Steps along a lattice's axes from a point to another.
 using LatticeStep = std::array<int, 3>;
 
-/// What a kernel makes of a lattice that goes on without end: found once for all points that are as
-/// far apart.
+/// A kernel on an unbounded lattice, evaluated once per step between points.
 class LatticeKernel {
  public:
   LatticeKernel(const Kernel& kernel, const Spacing& spacing);
 
-  /// What the weight of a bond has beside the volumes of its points, nu omega(r') r'/r: share nu of
-  /// the neighbour's cell within the horizon, and the distance r' at which it counts, that of the
-  /// points or, with `exact_centroids`, of the part's centroid. 0 for points that don't see each
-  /// other, and for a point itself.
+  /// Factor of a bond's weight beside the volumes of its points, nu omega(r') r'/r: share nu of the
+  /// neighbour's cell within the horizon, and the distance r' at which it counts, that of the
+  /// points or, with `exact_centroids`, of the part's centroid. 0 for points that are no
+  /// neighbours, and for a point itself.
   [[nodiscard]] double factor(const LatticeStep& step) const;
 
   /// Distance of the points [m].
   [[nodiscard]] double distance(const LatticeStep& step) const;
 
-  /// Steps along an axis up to which neighbours are to be looked for; 0 beyond the dimension.
+  /// Steps along an axis within which neighbours may lie; 0 beyond the dimension.
   [[nodiscard]] int width(int axis) const { return width_[std::size_t(axis)]; }
 
   /// Calls visit(step, factor) for the neighbours of a point, in ascending order.

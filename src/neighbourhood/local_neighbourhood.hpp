@@ -6,7 +6,7 @@
 
 namespace peristat {
 
-/// What a thread holds of the point that it works on: the partners above it with their reference
+/// Neighbourhood of the point that a thread works on: the partners above it with their reference
 /// arms (vectors from the point to them) [m].
 template <int D>
 struct LocalNeighbourhood {

@@ -8,18 +8,18 @@
 
 namespace peristat {
 
-/// Blocks of lane_count that `count` entries fill.
+/// Number of blocks of lane_count lanes for `count` entries.
 constexpr int block_count(int count) { return (count + lane_count - 1) / lane_count; }
 
-/// A vector per local number, component by component, so that four neighbours in a row load as
-/// lanes. Entries that fill up the last block are zero.
+/// A vector per local number, component by component, so that four consecutive neighbours load as
+/// lanes. Entries that pad the last block are zero.
 template <int D>
 class LocalVectors {
  public:
   explicit LocalVectors(int most)
       : stride_(std::size_t(block_count(most)) * lane_count), values_(D * stride_, 0.0) {}
 
-  /// Takes vector(a)[c] for the local numbers a in [0, count).
+  /// Sets component c of entry a to vector(a, c), for the local numbers a in [0, count).
   template <class VectorOf>
   void assign(int count, const VectorOf& vector) {
     const int end = block_count(count) * lane_count;

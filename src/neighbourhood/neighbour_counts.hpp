@@ -7,11 +7,11 @@
 
 namespace peristat {
 
-/// Neighbours of every point, #N1.
+/// Number of neighbours of every point, #N1.
 [[nodiscard]] std::vector<std::int32_t> neighbour_counts(const Bonds& bonds);
 
-/// Bonds that carry something: those between images, which triangles and tetrahedra may stand on,
-/// have no weight.
+/// Number of bonds with a weight: bonds between images, which are there as sides of triangles and
+/// tetrahedra, have none.
 [[nodiscard]] Offset weighted_bonds(const Bonds& bonds);
 
 }  // namespace peristat

@@ -20,7 +20,7 @@ namespace {
 
 using Exponents = std::array<int, 3>;
 
-/// Part of the largest eigenvalue (or pivot) of B B^T below which one counts as zero.
+/// Fraction of the largest eigenvalue (or pivot) of B B^T below which one counts as zero.
 constexpr double least_eigenvalue = 1e-11;
 
 /// int s^a / |s|^3 ds over the unit ball.
@@ -62,13 +62,13 @@ struct Monomials {
 
   [[nodiscard]] std::size_t size() const { return exponents.size(); }
 
-  /// All monomials of a place times the first of them, which is given.
+  /// Completes the monomials of a place, all of them times the first one, which is given.
   void fill(const std::array<Lanes, 3>& s, std::vector<Lanes>& of_place) const {
     for (std::size_t k = 1; k < size(); ++k) of_place[k] = of_place[factor[k]] * s[axis[k]];
   }
 };
 
-/// Weights of one point after another, for one degree.
+/// Solver for the weights of one point after another, for one degree.
 class WeightSolver {
  public:
   WeightSolver(int dimension, int degree)
@@ -115,7 +115,7 @@ class WeightSolver {
  private:
   static int sum(const Exponents& a) { return a[0] + a[1] + a[2]; }
 
-  /// Arms in lanes; those beyond the last count nothing.
+  /// Stores arms in lanes; lanes beyond the last arm have no effect.
   void take(std::span<const double> arms) {
     count_ = arms.size() / dimension_;
     const std::size_t lanes = (count_ + lane_count - 1) / lane_count;
@@ -132,8 +132,8 @@ class WeightSolver {
     }
   }
 
-  /// B B^T, whose entries are moments sum_j s_j^(a+b) / |s_j|^6: far fewer than entries. Its lower
-  /// half.
+  /// Builds the lower half of B B^T, whose entries are moments sum_j s_j^(a+b) / |s_j|^6: there are
+  /// far fewer moments than entries.
   void build_normal_matrix() {
     std::fill(sums_.begin(), sums_.end(), Lanes(0.0));
     for (std::size_t l = 0; l < arms_.size(); ++l) {
@@ -151,7 +151,7 @@ class WeightSolver {
     return pivots.minCoeff() > least_eigenvalue * pivots.maxCoeff();
   }
 
-  /// omega = B^T y, y the sum of inverse(g - B omega), once and again to the last digits.
+  /// Sets omega = B^T y, with y refined up to twice by inverse(g - B omega), to the last digits.
   template <class Inverse>
   double refine(std::span<double> weight, const Inverse& inverse) {
     Eigen::VectorXd y = inverse(goal_);
@@ -186,8 +186,8 @@ class WeightSolver {
     });
   }
 
-  /// omega = B^T y, and what is missing: g - B omega.
-  /// @return its largest entry
+  /// Sets omega = B^T y and missing_ = g - B omega.
+  /// @return the largest entry of missing_
   double evaluate(const Eigen::VectorXd& y, std::span<double> weight) {
     std::fill_n(sums_.begin(), conditions_.size(), Lanes(0.0));
     for (std::size_t l = 0; l < arms_.size(); ++l) {
@@ -208,20 +208,20 @@ class WeightSolver {
 
   std::size_t dimension_;
   Monomials conditions_, moments_;
-  std::size_t first_ = 0;  // of the conditions among all monomials
+  std::size_t first_ = 0;  // number of the first condition among all monomials
   Eigen::VectorXd goal_, missing_;
   Eigen::MatrixXd normal_;
   std::vector<std::size_t> moment_of_;  // by entry of the lower half
-  // Of some matrix, as what Eigen leaves undefined without one must not be copied.
+  // Initialised: members that Eigen leaves undefined without a matrix must not be copied.
   Eigen::LLT<Eigen::MatrixXd> factors_{Eigen::MatrixXd::Identity(1, 1)};
 
-  std::size_t count_ = 0;  // arms
+  std::size_t count_ = 0;  // number of arms
   std::vector<std::array<Lanes, 3>> arms_;
   std::vector<Lanes> kernel_;  // 1/|s|^3
   std::vector<Lanes> values_, powers_, sums_;
 };
 
-/// Weights with the highest degree that the neighbours allow.
+/// Solver with the highest degree that the neighbours allow.
 class LoweringSolver {
  public:
   struct Result {
@@ -234,7 +234,7 @@ class LoweringSolver {
       solvers_.emplace_back(dimension, lower);
   }
 
-  /// Nothing where no weights are exact.
+  /// Returns nothing if no weights are exact.
   std::optional<Result> solve(std::span<const double> arms, std::span<double> weight) {
     if (arms.empty()) return std::nullopt;
     for (WeightSolver& solver : solvers_) {
@@ -274,14 +274,14 @@ void check(int dimension, double horizon, int degree) {
                        "around, or a smaller perturbation");
 }
 
-/// Arms that a solution is known for, in an order that follows from them alone.
+/// Arms with a known solution, in an order that depends on them alone.
 struct KnownArms {
   std::vector<double> arms, weight;
   LoweringSolver::Result result;
 };
 
-/// Arms of one point in horizons, ordered by place, so that points of a lattice that number their
-/// neighbours differently are alike.
+/// Arms of one point in horizons, ordered by position, so that points of a lattice that number
+/// their neighbours differently agree.
 class OrderedArms {
  public:
   OrderedArms(int dimension, double horizon, const NeighbourLists& lists)
@@ -299,7 +299,7 @@ class OrderedArms {
         const double arm =
             lists_.reference[j * dimension_ + c] - lists_.reference[point * dimension_ + c];
         place.arm[c] = arm / horizon_;
-        // Of round-off, not of places that a body may have.
+        // Coarser than round-off, finer than distances between places of a body.
         place.rounded[c] = std::round(place.arm[c] * 0x1p36);
       }
     }
@@ -312,7 +312,7 @@ class OrderedArms {
 
   [[nodiscard]] const std::vector<double>& arms() const { return arms_; }
   [[nodiscard]] std::size_t count() const { return places_.size(); }
-  /// Place in the caller's order.
+  /// Number of the k-th arm in the caller's order.
   [[nodiscard]] std::size_t number(std::size_t k) const { return places_[k].number; }
 
   [[nodiscard]] bool are(const KnownArms& known) const {
@@ -333,10 +333,10 @@ class OrderedArms {
   std::vector<double> arms_;
 };
 
-/// Points that are worked on together. Their number is that for any number of threads, so that
-/// what is shared is, too.
+/// Points that are worked on together. Their number does not depend on the number of threads, so
+/// that the solutions that are shared do not, either.
 constexpr std::size_t points_per_part = 512;
-/// Solutions that a part keeps to share; a lattice has one.
+/// Most solutions that a part keeps to share; a lattice has one.
 constexpr std::size_t most_known = 4;
 
 struct Part {
@@ -356,7 +356,7 @@ class Batch {
         volume_(std::pow(horizon, dimension)),
         weight_(weight) {}
 
-  /// Of some points, with what is known of another one.
+  /// Finds the weights of some points, with the solutions that are known of others.
   Part run(std::size_t first, std::size_t last, std::vector<KnownArms>& known) {
     Part part;
     for (std::size_t point = first; point < last; ++point) {
@@ -436,7 +436,7 @@ OptimisedWeights optimised_weights(int dimension, double horizon, int degree,
   const auto parts = std::ptrdiff_t((points + points_per_part - 1) / points_per_part);
   std::vector<Part> of_part(std::size_t(parts) + 1);
   Batch first(dimension, horizon, degree, neighbours, result.weight);
-  std::vector<KnownArms> shared;  // by all: the first point's
+  std::vector<KnownArms> shared;  // solution of the first point, known to all
   of_part.back() = first.run(0, 1, shared);
 #pragma omp parallel num_threads(threads)
   {

@@ -6,7 +6,7 @@
 namespace peristat {
 namespace {
 
-/// Of an interval in the interval of a radius about the origin.
+/// Part of an interval in the interval of a radius about the origin.
 PolygonPart interval_in_interval(const std::vector<PlaneVector>& ends, double radius) {
   const auto [low, high] = std::minmax(ends[0][0], ends[1][0]);
   const double from = std::max(low, -radius), to = std::min(high, radius);

@@ -6,24 +6,24 @@
 
 namespace peristat {
 
-/// What a kernel makes of points whose cells are polygons, or intervals of a line, each of its own
-/// form: the counterpart of LatticeKernel.
+/// A kernel for points whose cells are polygons, or intervals of a line, each of its own form: the
+/// counterpart of LatticeKernel.
 class PolygonKernel {
  public:
   /// @param points with `polygons`; they must outlive this
   PolygonKernel(const Points& points, const Kernel& kernel);
 
-  /// What the weight of a bond has beside the volumes of its points,
+  /// Factor of a bond's weight beside the volumes of its points,
   ///
   ///   1/2 (nu_ij omega(r'_ij) r'_ij + nu_ji omega(r'_ji) r'_ji) / r,
   ///
-  /// nu_ij the share of j's cell within the horizon of i, and r'_ij the distance at which i counts
-  /// it, that of the points or, with `exact_centroids`, of the part's centroid. 0 for points that
-  /// don't see each other.
+  /// with the share nu_ij of j's cell within the horizon of i, and the distance r'_ij at which i
+  /// counts it, that of the points or, with `exact_centroids`, of the part's centroid. 0 for points
+  /// that are no neighbours.
   [[nodiscard]] double factor(Index i, Index j, double distance) const;
 
   /// Part of a point's cell, or of an image's, in the ball of the horizon about another point; in
-  /// 1D the area is a length. To round-off of the cell.
+  /// 1D the area is a length. Exact to round-off of the cell.
   [[nodiscard]] PolygonPart part(Index of, Index about) const;
 
   /// Farthest distance at which cells count [m].
@@ -34,7 +34,7 @@ class PolygonKernel {
 
   const Points& points_;
   const Kernel kernel_;
-  std::vector<double> reach_;  // of the cell of each point that stands for itself [m]
+  std::vector<double> reach_;  // of the cell of each point that is no image [m]
   double farthest_ = 0.0;
 };
 

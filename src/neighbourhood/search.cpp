@@ -17,7 +17,7 @@ namespace {
 constexpr int cells_per_radius = 2;
 
 /// Cells of at least radius / cells_per_radius; the last direction is the fastest. Points of a cell
-/// stand next to each other, in ascending order.
+/// are contiguous, in ascending order.
 template <int D>
 struct CellList {
   std::array<double, D> lower{};
@@ -83,12 +83,12 @@ struct CellList {
   }
 
   [[nodiscard]] int coordinate(double at, int direction) const {
-    // Clamped before the conversion: a body that is thin by round-off only has huge numbers here.
+    // Clamped before the conversion: a body whose thickness is round-off has huge numbers here.
     const double cell = (at - lower[direction]) * cells_per_length[direction];
     return static_cast<int>(std::clamp(cell, 0.0, extent[direction] - 1.0));
   }
 
-  /// Range of places [first, last) of a run of cells along the fastest direction.
+  /// Calls visit(first, last) for the places of each run of cells along the fastest direction.
   template <class Visit>
   void for_each_run(const std::array<double, D>& at, double radius, const Visit& visit) const {
     std::array<int, D> from, to;
@@ -114,8 +114,8 @@ struct CellList {
   }
 };
 
-/// Rows that are searched together. Their number is that for any number of threads, so that kinds
-/// of bonds are, too.
+/// Rows that are searched together. Their number does not depend on the number of threads, so that
+/// kinds of bonds do not, either.
 constexpr Index rows_per_part = 8192;
 
 /// Bonds of a part's rows.

@@ -13,7 +13,7 @@ namespace peristat {
 /// `make_bonds` to set. The result does not depend on the number of threads.
 [[nodiscard]] Bonds search_bonds(const Points& points, double radius, int threads);
 
-/// Neighbours within `radius` of the first points, without finding bonds.
+/// Numbers of neighbours within `radius` of the first points, without finding bonds.
 [[nodiscard]] std::vector<std::int32_t> count_neighbours(const Points& points, Index first,
                                                          double radius, int threads);
 

@@ -9,8 +9,8 @@
 
 namespace peristat {
 
-/// Influence of a triangle or tetrahedron: the product of those of its sides, so that it goes with
-/// each of its bonds.
+/// Influence of a triangle or tetrahedron: the product of those of its sides, so that it vanishes
+/// with that of any side.
 template <std::size_t points>
 [[nodiscard]] double influence_of_sides(const Kernel& kernel,
                                         const std::array<Coordinates, points>& at) {

@@ -8,10 +8,10 @@
 
 namespace peristat {
 
-/// The part of the bond graph that interactions with lowest point i live on: the partners of i
-/// above it, numbered locally 0, 1, … in ascending order, and which of them share a bond. Three
-/// (four) points with all mutual distances within the horizon are i and two (three) partners that
-/// are mutually bonded, so that each triangle (tetrahedron) belongs to exactly one i.
+/// The part of the bond graph in which the interactions with lowest point i lie: the partners of i
+/// above it, numbered locally 0, 1, … in ascending order, and the bonds between them. Three (four)
+/// points with all mutual distances within the horizon are i and two (three) partners that are
+/// mutually bonded, so that each triangle (tetrahedron) belongs to exactly one i.
 class UpperNeighbourhood {
  public:
   /// Two bonded partners a < b, and their bond.
@@ -25,7 +25,7 @@ class UpperNeighbourhood {
 
   void move_to(Index i);
 
-  /// Finds the pairs of the present point; before that they are those of no point.
+  /// Finds the pairs of the present point; until then pairs() is empty and mutual() not valid.
   void find_pairs();
 
   [[nodiscard]] Index own() const { return own_; }
@@ -35,7 +35,7 @@ class UpperNeighbourhood {
   /// Bonded pairs in ascending order of a, then b.
   [[nodiscard]] const std::vector<Pair>& pairs() const { return pairs_; }
 
-  /// Bit b of the words of a: whether b > a is bonded to a.
+  /// Bit b of the words of a is set if b > a is bonded to a.
   [[nodiscard]] const std::uint64_t* mutual(int a) const {
     return &mutual_[std::size_t(a) * words_];
   }
