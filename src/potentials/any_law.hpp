@@ -11,8 +11,8 @@
 
 namespace peristat {
 
-/// One of the laws of damage, chosen where it is evaluated: for bonds that fail in different ways.
-/// See Degraded for what its members mean.
+/// One of several laws of damage, chosen when it is evaluated: for bonds that fail in different
+/// ways. See Degraded for the meaning of its members.
 template <class... Laws>
 struct OneLawOf {
   std::variant<Laws...> law;
@@ -29,11 +29,11 @@ struct OneLawOf {
   [[nodiscard]] double slope(double s) const {
     return std::visit([s](const auto& one) { return one.slope(s); }, law);
   }
-  /// Whether stiffness is lost by drops alone, between which a bond is elastic.
+  /// True if stiffness is lost in drops alone, between which a bond is elastic.
   [[nodiscard]] bool falls_by_steps() const {
     return std::visit([]<class Law>(const Law&) { return StepwiseLaw<Law>; }, law);
   }
-  /// Of a law that falls by steps.
+  /// Strength after a drop, for a law that falls by steps; else the critical stretch.
   [[nodiscard]] double borne_after(double strength) const {
     return std::visit(
         [&]<class Law>(const Law& one) {
@@ -54,7 +54,7 @@ struct OneLawOf {
 /// The laws that a material may have.
 using AnyLaw = OneLawOf<CriticalStretch, TanhDegradation, ForceEnvelope>;
 
-/// What bonds follow: one of these, or the saw-tooth of one.
+/// Law of a bond: one of these, or the saw-tooth of one.
 using AnyBondLaw = OneLawOf<CriticalStretch, TanhDegradation, ForceEnvelope, SawTooth>;
 
 [[nodiscard]] inline AnyBondLaw bond_law(const AnyLaw& law) {

@@ -16,14 +16,14 @@ struct DamageRange {
   Real onset, critical;
 };
 
-/// Laws that the bonds of a body may be of: each keeps a byte of which.
+/// Most laws that the bonds of a body may have: each bond keeps the number of its law in a byte.
 inline constexpr std::size_t most_bond_laws = 256;
 
-/// The laws of damage of bonds that fail in different ways: a law of a few, and stretches of each
-/// bond's own.
+/// The laws of damage of bonds that fail in different ways: one of a few laws for each bond, with
+/// stretches of its own.
 class BondLaws {
  public:
-  /// @param laws that bonds are of, at least one; their stretches don't matter
+  /// @param laws of the bonds, at least one; their stretches are not used
   BondLaws(std::vector<AnyBondLaw> laws, std::size_t bonds)
       : laws_(std::move(laws)),
         onset_(bonds + lane_count, 1.0),  // kernels read a batch of lanes
@@ -37,14 +37,14 @@ class BondLaws {
   }
 
   [[nodiscard]] Offset bonds() const { return Offset(law_.size()) - lane_count; }
-  /// Which of the laws a bond is of.
+  /// Number of the law of a bond.
   [[nodiscard]] std::size_t law_of(Offset bond) const { return law_[std::size_t(bond)]; }
   [[nodiscard]] AnyBondLaw at(Offset bond) const {
     const auto b = std::size_t(bond);
     return laws_[law_[b]].between(onset_[b], critical_[b]);
   }
 
-  /// Of the bonds from the first on; those past the last are of no bond.
+  /// Ranges of the bonds from the first on; lanes past the last bond belong to none.
   [[nodiscard]] DamageRange<Lanes> ranges(Offset first) const {
     const auto lanes_at = [first](const std::vector<double>& of) {
       return Lanes(of.data() + first);

@@ -4,8 +4,8 @@
 
 namespace peristat {
 
-/// Brittle bond: whole below the critical stretch s_c, broken from it on ([GPMB] eq. 9). The force
-/// jumps from c s_c to zero.
+/// Brittle bond: undamaged below the critical stretch s_c, broken from it on ([GPMB] eq. 9). The
+/// force jumps from c s_c to zero.
 struct CriticalStretch {
   double critical_stretch = 0.0;  ///< s_c
 
@@ -16,7 +16,7 @@ struct CriticalStretch {
   [[nodiscard]] double work(const auto& whole, double s) const {
     return whole(std::min(s, critical_stretch)).value;
   }
-  /// What a bond bears once its strength is exceeded: the critical stretch of a broken bond.
+  /// Strength after a drop: the critical stretch, as for a broken bond.
   [[nodiscard]] double borne_after(double) const { return critical_stretch; }
   [[nodiscard]] CriticalStretch between(double, double critical) const { return {critical}; }
 };

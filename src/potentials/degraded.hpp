@@ -13,13 +13,13 @@
 
 namespace peristat {
 
-/// History of a bond that stays whole whatever happens.
+/// History of a bond that is never damaged.
 inline constexpr double never_failing = -1.0;
 
-/// The density of a batch of bonds: nearly all of them are whole or broken, and only where one is
-/// neither each is asked for.
+/// The density of a batch of bonds. Nearly all of them are undamaged or broken; each one is
+/// evaluated by itself only if some bond is neither.
 /// @param range of their laws, see DamageRange
-/// @param whole the potential of the whole bonds
+/// @param whole the potential of the undamaged bonds
 /// @param of_lane(l) density of one of them
 template <class Real, class Whole, class OfLane>
 [[nodiscard, gnu::always_inline]] inline PotentialDensity<Lanes> degraded_batch(
@@ -30,7 +30,7 @@ template <class Real, class Whole, class OfLane>
   PotentialDensity<Lanes> result;
   if (none_of(degraded && !broken)) {
     result = whole(e);
-    // One by one: in a loop over their addresses they would leave their registers.
+    // One by one: a loop over their addresses would move them out of their registers.
     result.value = chosen(broken, 0.0, result.value);
     result.first = chosen(broken, 0.0, result.first);
     result.second = chosen(broken, 0.0, result.second);
@@ -45,38 +45,39 @@ template <class Real, class Whole, class OfLane>
   return result;
 }
 
-/// A bond that loses its stiffness as it is stretched, for good. With the potential phi_0 of the
-/// whole bond, the integrity T(s) of a law, s the stretch and kappa the largest stretch over the
-/// accepted states:
+/// A bond that loses its stiffness for good as it is stretched. With the potential phi_0 of the
+/// undamaged bond, the integrity T(s) of a law, s the stretch and kappa the largest stretch over
+/// the accepted states:
 ///
 ///   s <= kappa  phi' = T(kappa) phi_0'(s)   unloading and reloading along the secant
 ///   s >  kappa  phi' = T(s) phi_0'(s)       loading: damage would grow
 ///
-/// phi is what the bond takes up from its unloaded state with the history kappa:
+/// phi is the energy density that the bond takes up from its unloaded state with the history kappa:
 ///
 ///   s <= kappa  phi = T(kappa) phi_0(s)                                      all of it stored
 ///   s >  kappa  phi = T(kappa) phi_0(kappa) + int_kappa^s T phi_0' dr        partly dissipated
 ///
-/// so that force and tangent are derivatives of one energy while kappa is held, which it is between
-/// accepted states. Of that energy T(max(s, kappa)) phi_0(s) is stored. For the harmonic potential
-/// the force density is eq. 13 of [ADAPT] and phi'' for s > kappa its eqs. 14-15; the history is
-/// ours: [ADAPT] evaluates T at the present stretch alone, which would let a bond heal.
+/// so that force and tangent are derivatives of one energy while kappa is held, as it is between
+/// accepted states. The part T(max(s, kappa)) phi_0(s) of that energy is stored. For the harmonic
+/// potential the force density is eq. 13 of [ADAPT] and phi'' for s > kappa its eqs. 14-15. The
+/// history is not from [ADAPT], which evaluates T at the present stretch alone, so that a bond
+/// would heal.
 ///
 /// A law is an aggregate with
 ///   onset(), critical()   stretches where damage begins and is complete,
 ///   integrity(s)          T: 1 up to the onset, 0 from the critical stretch on,
 ///   slope(s)              dT/ds,
-///   work(whole, s)        int_0^s T phi_0' dr of the potentials for which it knows that in closed
-///                         form; of the others it is integrated.
+///   work(whole, s)        int_0^s T phi_0' dr for the potentials with a closed form; for others it
+///                         is integrated numerically.
 template <class Law, class Whole = Harmonic>
 struct Degraded {
-  double modulus = 0.0;  ///< of the whole bond
+  double modulus = 0.0;  ///< of the undamaged bond
   Law law;
   Whole shape{1.0};           ///< its potential with the modulus 1
   bool holds_damage = false;  ///< phi' = T(kappa) phi_0'(s) at every stretch, also beyond kappa
 
   /// @param e stretch s
-  /// @param largest_stretch kappa; `never_fails` for a bond that stays whole whatever happens
+  /// @param largest_stretch kappa; `never_fails` for a bond that is never damaged
   [[nodiscard]] PotentialDensity<double> operator()(double e, double largest_stretch) const {
     if (holds_damage || !is_loading(e, largest_stretch)) {
       return whole(modulus * integrity_after(largest_stretch))(e);
@@ -97,20 +98,20 @@ struct Degraded {
                           [&](int l) { return (*this)(double(e[l]), double(largest_stretch[l])); });
   }
 
-  /// The potential of one of the bonds, which all have this one; see DegradedByBond.
+  /// The potential of one of the bonds, here the same for all; see DegradedByBond.
   [[nodiscard]] const Degraded& of_bond(Offset) const { return *this; }
   [[nodiscard]] DamageRange<double> ranges(Offset) const { return {law.onset(), law.critical()}; }
   [[nodiscard]] double bytes() const { return 0.0; }
 
   static constexpr double never_fails = never_failing;
 
-  /// Whether an accepted state with this stretch would damage the bond further.
+  /// True if accepting a state with this stretch would damage the bond further.
   [[nodiscard]] bool is_loading(double e, double largest_stretch) const {
     return e > law.onset() && e > largest_stretch && largest_stretch != never_fails &&
            !is_broken(largest_stretch);
   }
 
-  /// Stretch beyond which the bond is damaged (further); infinite for one that has nothing to lose.
+  /// Stretch beyond which the bond is damaged (further); infinite if it is broken or never fails.
   [[nodiscard]] double borne(double largest_stretch) const {
     if (largest_stretch == never_fails || is_broken(largest_stretch)) {
       return std::numeric_limits<double>::infinity();
@@ -118,7 +119,7 @@ struct Degraded {
     return std::max(law.onset(), largest_stretch);
   }
 
-  /// Stretch over what is borne.
+  /// Stretch over the borne stretch.
   [[nodiscard]] double utilisation(double e, double largest_stretch) const {
     return e / borne(largest_stretch);
   }
@@ -127,7 +128,7 @@ struct Degraded {
     return largest_stretch >= law.critical();
   }
 
-  /// Integrity T(kappa) that is left.
+  /// Remaining integrity T(kappa).
   [[nodiscard]] double integrity_after(double largest_stretch) const {
     return law.integrity(std::max(largest_stretch, 0.0));
   }
@@ -142,7 +143,7 @@ struct Degraded {
   }
 
  private:
-  /// The whole bond with another modulus.
+  /// Potential of the undamaged bond with another modulus.
   [[nodiscard]] Whole whole(double its_modulus) const {
     Whole potential = shape;
     potential.modulus = its_modulus;
@@ -161,10 +162,10 @@ struct Degraded {
   }
 };
 
-/// Bonds that lose their stiffness as Degraded ones do, each by a law of its own.
+/// Bonds that lose their stiffness like Degraded ones, each by a law of its own.
 template <class Whole = Harmonic>
 struct DegradedByBond {
-  double modulus = 0.0;  ///< of the whole bonds
+  double modulus = 0.0;  ///< of the undamaged bonds
   std::shared_ptr<const BondLaws> laws;
   Whole shape{1.0};           ///< their potential with the modulus 1
   bool holds_damage = false;  ///< see Degraded

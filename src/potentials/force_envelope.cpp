@@ -6,7 +6,7 @@
 namespace peristat {
 namespace {
 
-/// g, what is left of the peak force.
+/// g, the remaining fraction of the peak force.
 double left(double x, double decay) {
   return decay == 0.0 ? 1.0 - x : std::expm1(decay * (1.0 - x)) / std::expm1(decay);
 }

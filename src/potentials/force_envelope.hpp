@@ -4,8 +4,8 @@
 
 namespace peristat {
 
-/// Bond whose force c f(s) is given by what a test shows of it: linear up to the onset s_m, on a
-/// lower slope h up to the peak s_p, and from there down to zero at the critical stretch s_c,
+/// Bond whose force c f(s) has a form that tests show: linear up to the onset s_m, with a lower
+/// slope h up to the peak s_p, and from there down to zero at the critical stretch s_c,
 ///
 ///   f(s) = s                          s <= s_m
 ///          s_m + h (s - s_m)          s_m < s <= s_p,   f_p = f(s_p)

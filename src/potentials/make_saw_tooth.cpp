@@ -13,13 +13,13 @@ namespace {
 /// Two ratios of stretches nearer than this differ by the round-off of a common factor.
 constexpr double same_ratio = 1e-9;
 
-/// Of the band, at the strength of a whole bond.
+/// Fraction of the band that is allowed at the strength of an undamaged bond.
 constexpr double share_at_strength = 0.1;
 
-/// Shares of an interval that a bisection ends at, after so many halvings.
+/// Halvings of a bisection.
 constexpr int halvings = 60;
 
-/// Where a condition that holds at the low end ceases to.
+/// Bisects for the value at which a condition that holds at the low end ceases to hold.
 template <class Holds>
 double last_of(double low, double high, const Holds& holds) {
   for (int k = 0; k < halvings; ++k) {
@@ -29,7 +29,7 @@ double last_of(double low, double high, const Holds& holds) {
   return low;
 }
 
-/// Secants of a law with the modulus 1.
+/// Finds the secants of a law with the modulus 1.
 class ToothMaker {
  public:
   explicit ToothMaker(const AnyBondLaw& law) : law_(law), bond_{1.0, law} {
@@ -40,7 +40,7 @@ class ToothMaker {
     }
   }
 
-  /// With as narrow a band as the number of teeth allows.
+  /// Teeth with the narrowest band that the number of teeth allows.
   [[nodiscard]] Teeth with_at_most(int most) const {
     const auto too_narrow = [&](double band) { return int(in_band(band).strength.size()) > most; };
     double wide = 1.0;
@@ -64,13 +64,14 @@ class ToothMaker {
     const double dissipated = bond_.dissipated(to) - bond_.dissipated(from);
     return std::clamp(std::sqrt(2.0 * dissipated / lost), from, to);
   }
-  /// Force at the end of a secant above the law's there, over the largest.
+  /// Excess of the force at the end of a secant over the law's there, relative to the largest
+  /// force.
   [[nodiscard]] double above_law(double from, double to) const {
     const double s = strength(from, to);
     return (law_.integrity(from) * s - force(s)) / largest_force_;
   }
 
-  /// The strength decides where a crack begins: the first teeth are the finest.
+  /// The strength decides where a crack begins, so the first teeth are the finest.
   [[nodiscard]] double allowed_at(double from, double band) const {
     return band * std::max(share_at_strength, 1.0 - law_.integrity(from));
   }
@@ -95,7 +96,7 @@ class ToothMaker {
           std::max(teeth.excess_strength, law_.integrity(from) * s / largest_force_ - 1.0);
       from = to;
     }
-    // A bond that is broken has a history of its own.
+    // A broken bond has the critical stretch as its history, so the last strength stays below it.
     double& last = teeth.strength.back();
     last = std::min(last, end * (1.0 - 1e-9));
     return teeth;

@@ -7,17 +7,17 @@
 
 namespace peristat {
 
-/// The saw-tooth of a law whose force falls smoothly; see SawTooth. A law that falls by steps is
-/// left as it is.
-/// @param most of teeth, at least 1
+/// Returns the saw-tooth of a law whose force falls smoothly; see SawTooth. A law that falls by
+/// steps is returned as it is.
+/// @param most largest number of teeth, at least 1
 [[nodiscard]] AnyBondLaw saw_tooth(const AnyBondLaw& law, int most);
 
-/// A potential with the saw-teeth of its laws.
-/// @throws std::length_error if the bonds' laws have more ratios of their stretches than can be
-///         told apart
+/// Returns a potential with the saw-teeth of its laws.
+/// @throws std::length_error if the bonds' laws have more different ratios of their stretches than
+///         most_bond_laws
 [[nodiscard]] BondPotential with_teeth(const BondPotential& potential, int most);
 
-/// The largest band and excess of strength of the teeth of a potential's bonds; none without teeth.
+/// Largest band and excess strength of the teeth of a potential's bonds; zero without teeth.
 struct ToothedStrength {
   int teeth = 0;
   double band = 0.0, excess_strength = 0.0;

@@ -36,7 +36,7 @@ concept PotentialWithHistory = requires(const P potential, Offset bond, double n
   { potential.of_bond(bond).is_loading(number, number) } -> std::same_as<bool>;
 };
 
-/// Potentials of whole bonds, and each of them with every law of damage, and with laws that differ
+/// Potentials of undamaged bonds, each also with every law of damage, and with laws that differ
 /// from bond to bond.
 template <Potential... Whole>
 struct BondPotentials {
@@ -51,7 +51,7 @@ struct BondPotentials {
   }
 };
 
-/// The list of potentials that a whole bond can have; a case file chooses by their names.
+/// The list of potentials that an undamaged bond can have; a case file chooses by their names.
 using WholeBondPotentials = BondPotentials<Harmonic>;
 
 /// Every potential that a bond can have; the choice is made once, outside the loop over bonds.

@@ -7,14 +7,14 @@
 
 namespace peristat {
 
-/// The secants of a saw-tooth, from the whole bond to the last that bears anything. Stretches are
-/// in units of the critical one.
+/// The secants of a saw-tooth, from the undamaged bond to the last secant with any stiffness.
+/// Stretches are in units of the critical one.
 struct Teeth {
   std::vector<double> strength;   ///< stretch s_k at which a bond leaves its secant, ascending
   std::vector<double> integrity;  ///< T_k of the secants, from 1 downwards
   /// Largest force above the law's at the same stretch, over the law's largest force.
   double band = 0.0;
-  /// Largest force over the law's largest, minus 1: by so much the strength is overestimated.
+  /// Largest force over the law's largest, minus 1: the strength is overestimated by this.
   double excess_strength = 0.0;
 };
 
@@ -29,11 +29,11 @@ struct Teeth {
 ///                                                                        - T(kappa) phi_0(kappa),
 ///
 /// so that every drop dissipates exactly what the law does between the two secants; s_k then lies
-/// between their stretches. The kappa_k are where the force exceeds the law's by the same amount
-/// each time, the least that so many teeth allow.
+/// between their stretches. The kappa_k are chosen so that the force exceeds the law's by the same
+/// multiple of max(0.1, 1 - T_k) each time, the least that so many teeth allow.
 ///
-/// The history of a bond is the strength of the secant that it is on, the critical stretch of a
-/// broken one.
+/// The history of a bond is the strength of its present secant, or the critical stretch if it is
+/// broken.
 struct SawTooth {
   std::shared_ptr<const Teeth> teeth;
   double critical_stretch = 0.0;  ///< s_c
@@ -57,8 +57,8 @@ struct SawTooth {
   /// The same law between stretches of the same ratio.
   [[nodiscard]] SawTooth between(double, double critical) const { return {teeth, critical}; }
 
-  /// What a bond bears once it has left the secant whose strength this is: the strength of the next
-  /// secant, or the critical stretch of a broken bond.
+  /// Strength after a drop from the secant with the given strength: that of the next secant, or the
+  /// critical stretch of a broken bond.
   [[nodiscard]] double borne_after(double strength) const {
     const std::size_t next = tooth_at(strength) + 1;
     return next < teeth->strength.size() ? teeth->strength[next] * critical_stretch
@@ -66,7 +66,7 @@ struct SawTooth {
   }
 
  private:
-  /// The secant on which a stretch lies, their count beyond the last.
+  /// Number of the secant on which a stretch lies; beyond the last, the number of secants.
   [[nodiscard]] std::size_t tooth_at(double s) const {
     // A strength that was multiplied and divided by the critical stretch is still the same one.
     constexpr double round_off = 1e-12;
