@@ -17,7 +17,7 @@ std::array<Index, 3> sizes_of(const std::array<ConvolutionAxis, 3>& axes) {
 Index ConvolutionAxis::size(bool is_last) const {
   if (is_periodic) return count;
   Index size = good_size(count + reach);
-  // Real transforms are those of half as many complex numbers where they are even.
+  // An even real transform is one of half as many complex numbers.
   while (is_last && size > 1 && size % 2 == 1) size = good_size(size + 1);
   return size;
 }

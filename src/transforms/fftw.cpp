@@ -13,7 +13,7 @@ namespace {
 /// Lines that are transformed together: two cache lines of doubles side by side.
 constexpr Index lines_of_batch = 16;
 
-/// FFTW's planner is one for the process, and none of its calls may meet.
+/// FFTW has one planner for the process, and calls of it must not overlap.
 std::mutex& planner() {
   static std::mutex mutex;
   return mutex;

@@ -13,8 +13,8 @@ namespace peristat::fftw {
 class Plan {
  public:
   Plan() = default;
-  /// @param make returns the plan; estimated plans (FFTW_ESTIMATE) alone are the same in every run
-  /// @throws std::logic_error for a null plan: arguments that FFTW does not know
+  /// @param make returns the plan; only estimated plans (FFTW_ESTIMATE) are the same in every run
+  /// @throws std::logic_error for a null plan: arguments that FFTW does not support
   explicit Plan(const std::function<void*()>& make);
 
   [[nodiscard]] void* get() const { return plan_.get(); }
@@ -26,7 +26,7 @@ class Plan {
   std::unique_ptr<void, Destroy> plan_;
 };
 
-/// Aligned as FFTW likes it, zeros at first.
+/// Memory with the alignment that FFTW needs, zero at first.
 class Buffer {
  public:
   Buffer() = default;
@@ -44,7 +44,7 @@ class Buffer {
   std::size_t count_ = 0;
 };
 
-/// A box of elements as one of its axes sees it: `outer` planes, each of `inner` lines side by side
+/// A box of elements seen along one of its axes: `outer` planes, each of `inner` lines side by side
 /// with `count` elements, `inner` apart.
 struct Lines {
   Index outer = 1, count = 1, inner = 1;

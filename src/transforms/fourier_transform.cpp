@@ -18,7 +18,7 @@ FourierTransform::FourierTransform(const std::array<Index, 3>& size, int threads
   for (const Index count : size) {
     if (count < 1) throw std::logic_error("a transform of no places");
   }
-  // Where the field that is planned with begins decides with which instructions.
+  // The alignment of the field given to the planner decides which instructions are used.
   fftw::Buffer field = make_field();
   double* const data = field.data();
   const fftw::Lines rows{this->rows(), row_modes(), 1};

@@ -13,14 +13,13 @@ namespace peristat {
 ///
 ///   b^(k) = sum_x b(x) exp(-i k.x),   k_a = 2 pi m_a / M_a.
 ///
-/// A field has a row of values for each line along the last axis, padded to row_length(), and after
-/// `to_modes` the M_last / 2 + 1 complex amplitudes of half of the modes in its place: the others
-/// are their conjugates. Sizes may be odd. The same box gives the same bits on any number of
+/// A field has a row of values for each line along the last axis, padded to row_length(). After
+/// `to_modes` it holds instead the M_last / 2 + 1 complex amplitudes of half of the modes: the
+/// others are their conjugates. Sizes may be odd. The same box gives the same bits on any number of
 /// threads.
 class FourierTransform {
  public:
-  /// @param size places along each axis, 1 beyond the dimension; the last one's are next to each
-  ///             other
+  /// @param size places along each axis, 1 beyond the dimension; contiguous along the last one
   FourierTransform(const std::array<Index, 3>& size, int threads);
 
   [[nodiscard]] const std::array<Index, 3>& size() const { return size_; }
@@ -31,16 +30,16 @@ class FourierTransform {
   [[nodiscard]] Index row_length() const { return 2 * row_modes(); }
   [[nodiscard]] Index row_modes() const { return size_[2] / 2 + 1; }
   [[nodiscard]] std::size_t modes() const { return std::size_t(rows()) * std::size_t(row_modes()); }
-  /// Where a field has the value of a place.
+  /// Position of a place's value in a field.
   [[nodiscard]] std::size_t at(Index i, Index j, Index k) const {
     return (std::size_t(i) * std::size_t(size_[1]) + std::size_t(j)) * std::size_t(row_length()) +
            std::size_t(k);
   }
 
-  /// Zeros.
+  /// A field of zeros.
   [[nodiscard]] fftw::Buffer make_field() const { return fftw::Buffer(2 * modes()); }
 
-  /// To the amplitudes of the modes and back; one after the other multiplies by places().
+  /// Transform values to amplitudes of the modes and back; both together multiply by places().
   void to_modes(fftw::Buffer& field) const;
   void to_places(fftw::Buffer& field) const;
 

@@ -59,7 +59,7 @@ TrigonometricTransform::TrigonometricTransform(std::span<const TransformAxis> ax
     const auto pass = [&](fftw_r2r_kind kind) {
       return fftw::AxisPass(lines, [&](int many, int stride, int distance) -> void* {
         double* const data = plans_->values.data();
-        // Lines begin anywhere.
+        // Lines may begin at any address.
         return fftw_plan_many_r2r(1, &axis.count, many, data, nullptr, stride, distance, data,
                                   nullptr, stride, distance, &kind, FFTW_ESTIMATE | FFTW_UNALIGNED);
       });

@@ -8,8 +8,8 @@
 
 namespace peristat {
 
-/// What values on a row of places do beyond its end: go on as their mirror image, or as that with
-/// the other sign; the mirror stands half a spacing beyond the last place.
+/// How values on a row of places continue beyond its end: as their mirror image (free), or as that
+/// with the opposite sign (held); the mirror stands half a spacing beyond the last place.
 enum class RowEnd { free, held };
 
 struct TransformAxis {
@@ -27,13 +27,13 @@ struct TransformAxis {
 ///
 ///   cos k_j (i + 1/2)  free below,   sin k_j (i + 1/2)  held below,   i, j = 0 ... n-1,
 ///
-/// k_j as told by wave_number (discrete cosine and sine transforms of kind II, and of kind IV
+/// with k_j from wave_number (discrete cosine and sine transforms of kind II, and of kind IV
 /// between a free and a held end). Every operator that commutes with shifts and reflections of the
 /// unbounded lattice is diagonal in them. The same axes give the same numbers to the last bit,
 /// whatever the number of threads.
 class TrigonometricTransform {
  public:
-  /// @param axes one to three, the last one's places are next to each other
+  /// @param axes one to three; places are contiguous along the last one
   TrigonometricTransform(std::span<const TransformAxis> axes, int threads);
   ~TrigonometricTransform();
   TrigonometricTransform(TrigonometricTransform&&) noexcept;
@@ -41,10 +41,11 @@ class TrigonometricTransform {
 
   [[nodiscard]] const std::vector<TransformAxis>& axes() const { return axes_; }
   [[nodiscard]] std::size_t count() const { return count_; }  ///< places of the box
-  /// Room for one value per place, zeros at first, in which the transforms work.
+  /// Memory for one value per place, zero at first, on which the transforms work.
   [[nodiscard]] std::span<double> values();
 
-  /// Values of places to amplitudes of modes, and back; one after the other multiplies by `factor`.
+  /// Transform values of places to amplitudes of modes, and back; both together multiply by
+  /// `factor`.
   void to_modes();
   void to_places();
   [[nodiscard]] double factor() const;
