@@ -36,7 +36,7 @@ class Foundations {
 
   [[nodiscard]] bool none() const { return foundations_.empty(); }
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
-  /// Whether any spring acts along an axis.
+  /// True if any spring acts along an axis.
   [[nodiscard]] bool hold(int axis) const { return holds_[std::size_t(axis)]; }
 
   /// Summary of a foundation for reports.

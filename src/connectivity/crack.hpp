@@ -56,7 +56,7 @@ inline constexpr double polygon_tolerance = 1e-9;
 /// @throws InputError
 void check_crack(const Crack& crack, int dimension, const std::string& table);
 
-/// Whether the bond from a to b, its ends included, meets the crack:
+/// True if the bond from a to b, its ends included, meets the crack:
 ///
 ///   min |x - y| <= touching_tolerance |b - a|   over x on the bond and y on the crack
 ///

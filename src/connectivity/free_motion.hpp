@@ -20,7 +20,7 @@ struct Components {
   [[nodiscard]] std::vector<std::vector<Index>> members() const;
 };
 
-/// Numbered by their lowest points.
+/// Returns the connected components, numbered by their lowest points.
 /// @param broken one flag per bond; flagged bonds do not connect. Empty: all bonds do.
 /// @param links pairs of points that are connected, too
 [[nodiscard]] Components connected_components(const Bonds& bonds, std::span<const char> broken = {},

@@ -34,7 +34,7 @@ struct Holding {
   /// that this rank owns, or -1 if it owns none. All ranks have as many entries.
   std::vector<Index> ties{};
   std::vector<FreeHandle> handles{};
-  /// Whether component [c] of the jump over the period across an axis [a] is free.
+  /// True if component [c] of the jump over the period across an axis [a] is free.
   std::array<std::array<bool, 3>, 3> free_jump{};
 };
 

@@ -37,10 +37,10 @@ class Expression {
   [[nodiscard]] double operator()(const Coordinates& place,
                                   std::span<const double> parameters = {}) const;
 
-  /// Whether the value depends on neither place nor parameters.
+  /// True if the value depends on neither place nor parameters.
   [[nodiscard]] bool is_constant() const;
 
-  /// Whether a parameter occurs in it.
+  /// True if a parameter occurs in it.
   [[nodiscard]] bool has_parameters() const;
 
   [[nodiscard]] const std::string& text() const;

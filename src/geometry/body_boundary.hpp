@@ -44,7 +44,7 @@ class BodyBoundary {
   /// Height along the side's axis of the body's outermost face there, if that is flat [m].
   [[nodiscard]] std::optional<double> outermost(const Side& side) const;
 
-  /// Whether a foot is on the body's outermost flat face on a side.
+  /// True if a foot is on the body's outermost flat face on a side.
   [[nodiscard]] bool is_on(const Foot& foot, const Side& side) const;
 
  private:

@@ -22,8 +22,8 @@ class BoundaryCurves : public BoundaryFaces {
                    std::vector<Foot>& feet) const override;
   [[nodiscard]] std::optional<double> outermost(const Side& side) const override;
 
-  /// The places from + t along for t up to `length`, or centre + radius (cos t, sin t) for t from
-  /// `from_angle` on.
+  /// The places start + t along of a segment, or start + radius (cos t, sin t) of an arc, for t
+  /// between `from` and `to`.
   struct Piece {
     ShapeSide part{};
     double radius = 0.0;          ///< 0: a segment [m]

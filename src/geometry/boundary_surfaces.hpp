@@ -9,7 +9,7 @@
 
 namespace peristat {
 
-/// The boundary of a body in 3D: planes, cylinders and spheres as far as they have the body on one
+/// The boundary of a body in 3D: planes, cylinders and spheres where they have the body on one
 /// side.
 class BoundarySurfaces : public BoundaryFaces {
  public:

@@ -10,7 +10,7 @@
 namespace peristat {
 namespace {
 
-/// Depth below a face, in spacings, at which a foot on it is looked for: far above round-off.
+/// Depth below a face, in spacings, at which a foot on it is tested: far above round-off.
 constexpr double below_face = 1e-3;
 
 }  // namespace

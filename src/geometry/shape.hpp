@@ -49,13 +49,13 @@ using Shape = std::variant<Box, Disk, Cylinder, Sphere, Polygon>;
 
 /// Refuses a shape that has no inside or that does not fit the dimension (disk: 2; cylinder,
 /// sphere: 3; polygon: 2 or 3; box: all). Only a box and a cylinder's length may be infinite.
-/// @param table    what holds the shape's numbers, for errors ("shapes[0]")
-/// @param kind_key what names the kind of shape ("shapes[0].action")
+/// @param table    table of the shape's numbers, for errors ("shapes[0]")
+/// @param kind_key key that names the kind of shape ("shapes[0].action")
 /// @throws InputError
 void check_shape(const Shape& shape, int dimension, const std::string& table,
                  const std::string& kind_key);
 
-/// Whether the place lies inside the shape or, up to `boundary_tolerance`, on its boundary.
+/// True if the place lies inside the shape or, up to `boundary_tolerance`, on its boundary.
 [[nodiscard]] bool contains(const Shape& shape, const Coordinates& place);
 
 /// Smallest box around the shape; unbounded directions are infinite.

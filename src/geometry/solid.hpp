@@ -36,7 +36,7 @@ class Region {
   /// Appends, per axis, the coordinates of planes across it that contain the whole boundary.
   /// @return false if the boundary has other parts
   virtual bool append_planes(std::array<std::vector<double>, 3>& at) const = 0;
-  /// Whether the boundary may pass within a distance of the place.
+  /// True if the boundary may pass within a distance of the place.
   [[nodiscard]] virtual bool may_end_near(const Coordinates& place, double distance) const = 0;
 };
 

@@ -47,7 +47,7 @@ void drop_weightless(Bonds& bonds);
                                                const Kernel& kernel, std::span<const char> broken);
 
 /// Largest deviation from 1 of (discrete energy density / classical) over points and axes under a
-/// confined unit strain: the error of the quadrature, and what a surface correction leaves of it.
+/// confined unit strain: the error of the quadrature, or its rest after a surface correction.
 [[nodiscard]] double confined_energy_error(const Points& points, const Bonds& bonds,
                                            const BondSetting& setting);
 

@@ -14,7 +14,7 @@ namespace peristat {
 ///   Hessian    d2a/db2 = |c|^2 n n^T/a,  d2a/dc2 = |b|^2 n n^T/a,
 ///              d2a/dbdc = -(b.c) n n^T/a - [n]x                          [-]
 ///
-/// (eq. 71 of [CPD] in a shorter form: what it adds within the triangle's plane cancels.) An area
+/// (eq. 71 of [CPD] in a shorter form: its terms within the triangle's plane cancel.) An area
 /// of zero has no gradient: the results are then not finite, and assembly reports the state as
 /// degenerate.
 ///

@@ -18,7 +18,7 @@ struct Length {
   /// Relative vectors (arms) that the measure depends on.
   static constexpr int arms = 1;
 
-  /// Whether a value of zero has no gradient.
+  /// True if a value of zero has no gradient.
   template <int D>
   static constexpr bool singular_at_zero = true;
 

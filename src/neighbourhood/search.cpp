@@ -25,7 +25,7 @@ struct CellList {
   std::array<int, D> extent{};
   std::vector<Index> begin;                     // first place of each cell, cells + 1
   std::vector<Index> point;                     // points in the order of their cells
-  std::vector<std::array<double, D>> position;  // their positions, to read along
+  std::vector<std::array<double, D>> position;  // their positions in this order
 
   CellList(const Points& points, double radius) {
     std::array<double, D> upper;

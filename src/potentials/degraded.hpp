@@ -119,7 +119,7 @@ struct Degraded {
     return std::max(law.onset(), largest_stretch);
   }
 
-  /// Stretch over the borne stretch.
+  /// Utilisation ratio: the stretch over `borne`.
   [[nodiscard]] double utilisation(double e, double largest_stretch) const {
     return e / borne(largest_stretch);
   }
