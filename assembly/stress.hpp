@@ -21,8 +21,8 @@ namespace peristat {
 /// For the linear solid of model lps F - I is the nonlocal displacement gradient, whose trace is
 /// the dilatation; E = (F + F^T) / 2 - I, and sigma = P = lambda tr(E) I + 2 mu E.
 ///
-/// A point whose F is not determined or, unless the solid is linear, has det F <= 0 gets F = I, E =
-/// 0 and sigma = 0; P keeps its value.
+/// A point whose F is not determined or, unless the solid is linear, has det F <= 0 gets F = I,
+/// E = 0 and sigma = 0; P keeps its value.
 struct Stress {
   std::vector<double> deformation_gradient, strain, first_piola, cauchy;
   std::vector<double> von_mises;            ///< per point [Pa]

@@ -320,8 +320,8 @@ void Correspondence::outline_tangent(std::span<const double> displacement,
 }
 
 /// A displacement u of a point changes its H by u g, with g = -K^-1 sum q' kappa xi: at rest the
-/// energy of that is V ((lambda + mu) (u . g)^2 + mu u^2 g^2) / 2. The stabilisation adds sum q'
-/// kappa u^2 at the point and its neighbours, less the part that H represents.
+/// energy of that is V ((lambda + mu) (u . g)^2 + mu u^2 g^2) / 2. The stabilisation adds
+/// sum q' kappa u^2 at the point and its neighbours, less the part that H represents.
 template <int D>
 void Correspondence::outline_blocks(std::span<double> diagonal) {
   const auto& [lambda, mu] = setting_.constants;

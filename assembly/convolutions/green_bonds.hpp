@@ -22,11 +22,11 @@ namespace peristat {
 /// A law of l^2 alone is a polynomial of u, cubic in the force: products of u' and kernels, which
 /// are convolutions, times products of u. The harmonic law in l is no polynomial. Both laws agree
 /// at small strains; at a strain e the Green bond's force is 1 + 3 e / 2 times as large. Forces and
-/// energies do not depend on rotations, but are differences of numbers as large as s u^3 and s u^4.
-/// So sums are those of u without its mean and without the mean rotation of the body
-/// (LatticeTurns), which is then applied to the forces. Round-off remains where parts bend or
-/// rotate against the rest: parts n spacings wide with strains e have relative errors of 2e-16 n^3
-/// / e and 1e-16 n^4 / e^2, as measured.
+/// energies are frame-indifferent, but differences of numbers as large as s u^3 and s u^4. So sums
+/// are those of u without its mean and without the mean rotation of the body (LatticeTurns), which
+/// is then applied to the forces. Round-off remains where parts bend or rotate against the rest:
+/// parts n spacings wide with strains e have relative errors of 2e-16 n^3 / e and 1e-16 n^4 / e^2,
+/// as measured.
 ///
 /// The product with the tangent is exact: it is found from rates of fields and sums.
 class GreenBonds : public LatticeForces {

@@ -54,8 +54,8 @@ struct LatticeSpectrum {
 ///
 ///   sum over xi of g(xi) b(x + xi),
 ///
-/// of several fields b = q times a value at once, at the cost of one transform (convolutions [g *
-/// b] of [FCBM] app. A but for the sign of odd kernels). Sites without a point have q = 0. Cut
+/// of several fields b = q times a value at once, at the cost of one transform (convolutions
+/// [g * b] of [FCBM] app. A but for the sign of odd kernels). Sites without a point have q = 0. Cut
 /// pairs of points (CutLattice) are summed one by one and subtracted, since convolutions ignore
 /// cracks. Results are the same bits on any number of threads.
 class LatticeFields {

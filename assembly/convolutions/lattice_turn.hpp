@@ -32,9 +32,9 @@ struct LatticeTurn {
 
 /// Finds the mean rotation of a lattice body, and takes it off displacements.
 ///
-/// For laws that do not depend on rotations, and whose sums by convolutions are differences of
-/// powers of u: in a rotated body n spacings wide these are n^3 and n^4 times as large as their
-/// differences. The choice of the rotation changes nothing but round-off.
+/// For frame-indifferent laws whose sums by convolutions are differences of powers of u: in a
+/// rotated body n spacings wide these are n^3 and n^4 times as large as their differences. The
+/// choice of the rotation changes nothing but round-off.
 class LatticeTurns {
  public:
   /// @param is_periodic along any axis: no rotation is taken off, as images do not rotate

@@ -85,8 +85,8 @@ void LinearBonds::find_forces(std::span<const double> displacement, double sign,
   });
 }
 
-/// Uses the forces f of the same displacements, since q u.v = u.f + q u.P u: w = (q [C_ij * q u_i
-/// u_j] - q u.P u) / 4 - u.f / 2.
+/// Uses the forces f of the same displacements, since q u.v = u.f + q u.P u:
+/// w = (q [C_ij * q u_i u_j] - q u.P u) / 4 - u.f / 2.
 template <int D>
 void LinearBonds::find_energies(std::span<const double> displacement, std::span<const double> force,
                                 std::span<double> energy) {

@@ -38,8 +38,8 @@ class LinearBonds : public LatticeForces {
   /// K is symmetric and the same in all states.
   void multiply(std::span<const double> displacement, std::span<const double> v,
                 std::span<double> product) override;
-  /// Beside the diagonal block the absolute entries of the row of component a sum to no more than q
-  /// (tr P + d P_aa) / 2, since |n_a n_b| <= (n_a^2 + n_b^2) / 2.
+  /// Beside the diagonal block the absolute entries of the row of component a sum to no more than
+  /// q (tr P + d P_aa) / 2, since |n_a n_b| <= (n_a^2 + n_b^2) / 2.
   void outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
                        std::span<double> row_sums) override;
   /// Uses the numbers of pairs, a convolution of q with itself.

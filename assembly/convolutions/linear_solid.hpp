@@ -111,8 +111,8 @@ class LinearSolid : public LatticeForces {
   std::vector<LatticeSpectrum> arm_;     // kappa xi, by component
   std::vector<LatticeSpectrum> square_;  // kappa n n, by pair
   double whole_moment_ = 0.0;
-  // Per point, updated with q: 1/M, the sums of q' kappa xi, of q' kappa n n, and of q' kappa n n /
-  // M'.
+  // Per point, updated with q: 1/M, the sums of q' kappa xi, of q' kappa n n, and of
+  // q' kappa n n / M'.
   std::vector<double> inverse_moment_, arms_left_, squares_left_, weighted_squares_;
   std::vector<double> displacement_;  // without its mean
   std::vector<double> dilatation_;    // theta

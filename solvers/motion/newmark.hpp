@@ -31,18 +31,18 @@ struct NewmarkCoefficients {
 ///   v^(n+1) = v^n + dt ((1 - gamma) a^n + gamma a^(n+1)),
 ///   (1 - alpha_m) M a^(n+1) + alpha_m M a^n = (1 - alpha_f) F^(n+1) + alpha_f F^n
 ///
-/// Spectral radius 1 is Newmark's method of average acceleration, beta = 1/4, gamma = 1/2, since M
-/// a^0 = F^0: where forces are linear it keeps kinetic and stored energy at any step. Below 1
+/// Spectral radius 1 is Newmark's method of average acceleration, beta = 1/4, gamma = 1/2, since
+/// M a^0 = F^0: where forces are linear it keeps kinetic and stored energy at any step. Below 1
 /// frequencies that a step does not resolve are damped, the highest ones by that factor a step.
 ///
-/// A step is a search for equilibrium in which springs replace the inertia, of stiffness k = (1 -
-/// alpha_m) / ((1 - alpha_f) beta dt^2) M, from where inertia alone would take the points:
+/// A step is a search for equilibrium in which springs replace the inertia, of stiffness
+/// k = (1 - alpha_m) / ((1 - alpha_f) beta dt^2) M, from where inertia alone would take the points:
 ///
 ///   F(u) = k (u - p) + c,   p = u^n + dt v^n + dt^2 (1/2 - beta) a^n,
 ///   c = (alpha_m M a^n - alpha_f F^n) / (1 - alpha_f)
 ///
-/// With a drag (Drag), dt v^n becomes phi1 dt v^n and decay v^n, 1/2 and beta become phi2 and 2
-/// beta phi2, 1 and gamma become phi1 and gamma phi1: exact under a constant force. With the mean
+/// With a drag (Drag), dt v^n becomes phi1 dt v^n and decay v^n, 1/2 and beta become phi2 and
+/// 2 beta phi2, 1 and gamma become phi1 and gamma phi1: exact under a constant force. With the mean
 /// acceleration a of the step the drag absorbs, by the integral of eta M v.v over it,
 ///
 ///   M ((1 - decay^2)/2 v.v + phi1 (1 - decay) dt v.a + (phi2 - phi1^2/2) dt^2 a.a)

@@ -12,10 +12,10 @@ namespace peristat {
 /// Prescribed degrees of freedom move to their values at t^(n+1), and bonds that are stretched too
 /// far there are damaged irreversibly before F^(n+1) is found ([GPMB] algorithm 3).
 ///
-/// With T = v.Mv/2 a step changes T - dt^2/8 F.M^-1 F by exactly the trapezoidal work of F, (F^n +
-/// F^(n+1))/2 . (u^(n+1) - u^n). Where forces are linear in u that is the change of the energy: the
-/// modified energy T + E - dt^2/8 F.M^-1 F is then conserved to round-off, and T + E to the second
-/// order of the step. The sums' correction is the change of dt^2/8 F.M^-1 F.
+/// With T = v.Mv/2 a step changes T - dt^2/8 F.M^-1 F by exactly the trapezoidal work of F,
+/// (F^n + F^(n+1))/2 . (u^(n+1) - u^n). Where forces are linear in u that is the change of the
+/// energy: the modified energy T + E - dt^2/8 F.M^-1 F is then conserved to round-off, and T + E to
+/// the second order of the step. The sums' correction is the change of dt^2/8 F.M^-1 F.
 ///
 /// With a drag (Drag) the step is that of van Gunsteren and Berendsen [1982] without their random
 /// force, which is Verlet's where x = eta dt is 0, and exact under a constant force:
@@ -23,8 +23,9 @@ namespace peristat {
 ///   u^(n+1) = u^n + phi1 dt v^n + phi2 dt^2 M^-1 F^n,
 ///   v^(n+1) = exp(-x) v^n + dt M^-1 ((phi1 - phi2) F^n + phi2 F^(n+1))
 ///
-/// It is stable wherever Verlet's is. The energy of the scheme beside T is then phi2^2 dt^2/2
-/// F.M^-1 F; the drag has absorbed the work of F less the change of T - phi2^2 dt^2/2 F.M^-1 F.
+/// It is stable wherever Verlet's is. The energy of the scheme beside T is then
+/// phi2^2 dt^2/2 F.M^-1 F; the drag has absorbed the work of F less the change of
+/// T - phi2^2 dt^2/2 F.M^-1 F.
 class VelocityVerlet : public Motion {
  public:
   using Motion::Motion;

@@ -174,7 +174,7 @@ std::string check_energies(const EquilibriumProblem& problem, const TangentOpera
 std::string check_magnitude(const Sums& sums, const FoundState& found) {
   const double forces = sums.norm(found.trial.gradient),
                moved = sums.norm(found.trial.displacement);
-  // What has come apart may be left without forces.
+  // A body that has come apart may be left without forces.
   const bool has_worked = std::abs(found.after.external_work) >= smallest_energy;
   if (has_worked || forces == 0.0 || moved == 0.0 || forces * moved >= smallest_energy) return {};
   return "forces and displacements are so small that their products vanish in double precision; "

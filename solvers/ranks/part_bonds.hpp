@@ -10,8 +10,7 @@ namespace peristat {
 /// Which of a body's bonds a part has. A bond between points of two ranks is on both.
 enum class PartBonds {
   of_owned,          ///< all with a point that its rank owns
-  among_neighbours,  ///< and those between neighbours of owned points, edges of triangles and
-                     ///< tetrahedra
+  among_neighbours,  ///< and those between neighbours of owned points, edges of triangles
   of_neighbours  ///< all of owned points and of their neighbours, which then have complete states
 };
 

@@ -31,10 +31,10 @@ struct CollocationSetting {
 ///
 ///   B_i = -2 d (lambda - mu) theta_i a_i - 2 d (d + 2) S_i : mu E_i
 ///
-/// with a_i = sum k xi and S_i = sum k xi xi xi / r^2 over what is missing, and mu E_i from sigma_i
-/// n_i = T_i and tr E_i = theta_i ([LPS] eq. 4.6-4.8 is the form `paper`). In 3D these fix only the
-/// mean of the tangential strains: their deviator is that of the nonlocal strain with the form
-/// `full`, and zero with `paper`. Patch tests are exact with the form `full`.
+/// with a_i = sum k xi and S_i = sum k xi xi xi / r^2 over what is missing, and mu E_i from
+/// sigma_i n_i = T_i and tr E_i = theta_i ([LPS] eq. 4.6-4.8 is the form `paper`). In 3D these fix
+/// only the mean of the tangential strains: their deviator is that of the nonlocal strain with the
+/// form `full`, and zero with `paper`. Patch tests are exact with the form `full`.
 ///
 /// Points that have lost more than three fifths of their initial balls are torn: debris, of which
 /// nothing is continued. There M_i = 1 and B_i = B_i(0, T_i), with which the operator stays

@@ -12,7 +12,7 @@
 
 namespace peristat {
 
-/// What the energies of triangles and tetrahedra depend on beside positions; empty: not at all.
+/// Data that the energies of triangles and tetrahedra depend on beside positions; empty: none.
 struct Influences {
   std::span<const double> of_bond;       ///< integrity of bonds
   std::span<const double> of_point;      ///< smallest integrity of a point's bonds

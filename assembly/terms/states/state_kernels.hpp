@@ -141,8 +141,8 @@ class StateKernels {
     });
   }
 
-  /// Adds d2Pi/du2, row by row: two points j and k with a common neighbour i get the block V
-  /// (lambda - mu) g_j g_k from it, g_j = (d/M_i) kappa_ij xi and minus the sum of these for i
+  /// Adds d2Pi/du2, row by row: two points j and k with a common neighbour i get the block
+  /// V (lambda - mu) g_j g_k from it, g_j = (d/M_i) kappa_ij xi and minus the sum of these for i
   /// itself.
   void add_tangent(const BlockPattern& pattern, std::span<double> off_diagonal,
                    std::span<double> diagonal) const {

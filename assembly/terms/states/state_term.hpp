@@ -58,8 +58,8 @@ class StateTerm : public BondTerm {
   StateNetwork network_;
 };
 
-/// Bounds of Pi over the bonds' part of it: at most R, the largest of 1 and (d lambda + 2 mu) / ((d
-/// + 2) mu) of the points, and at least R', the smallest of these.
+/// Bounds of Pi over the bonds' part of it: at most R, the largest of 1 and
+/// (d lambda + 2 mu) / ((d + 2) mu) of the points, and at least R', the smallest of these.
 struct StateRatios {
   double most = 1.0, least = 1.0;
 
