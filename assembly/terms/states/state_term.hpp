@@ -29,8 +29,8 @@ namespace peristat {
 /// Bonds break as those of brittle bond models do, by their stretch in the deformed configuration,
 /// which the term remembers as a term of bonds. The energy that a commit removes at fixed
 /// displacements counts as dissipated, with what each bond held when it passed the stretch that it
-/// bears. What bonds of the network's modulus dissipate by their law is reported as dissipation by
-/// the law, and the difference, of either sign, as released energy.
+/// bears. The part that the bonds' law dissipates, with the network's modulus, is reported as
+/// dissipated by the law; the difference, of either sign, as released energy.
 class StateTerm : public BondTerm {
  public:
   /// @param bonds uncut bonds, with the weights that dissipation by the law is computed with
