@@ -10,7 +10,7 @@
 namespace peristat {
 namespace {
 
-/// What ghosts and their images have is other ranks'.
+/// Clears the entries of ghosts and of their images, which belong to other ranks.
 void clear_ghosts(const Sharing& sharing, int dimension, std::span<double> gradient) {
   if (gradient.empty()) return;
   const auto fill = [&](Index first, std::ptrdiff_t last) {
@@ -20,7 +20,7 @@ void clear_ghosts(const Sharing& sharing, int dimension, std::span<double> gradi
   fill(sharing.first_image() + sharing.owned_images(), std::ptrdiff_t(gradient.size()));
 }
 
-/// What ranks have found together. Without a utilisation, see Evaluation.
+/// Sums the ranks' evaluations, except for the utilisation, see Evaluation. Collective.
 Evaluation sum_of(const Communicator& ranks, const Evaluation& mine) {
   const std::vector<double> sums =
       ranks.sum({mine.energy, mine.round_off, mine.released, double(mine.degenerate),
@@ -156,7 +156,7 @@ DamageState Assembler::assess(const History& history, std::span<const double> cu
   DamageState state = assess_damage(model_, history, cut_weight, damage, &points_);
   if (!sharing_) return state;
   const Communicator& ranks = sharing_->ranks();
-  // What points that fail have dissipated all ranks know.
+  // All ranks know what failing points have dissipated in total: it is counted once.
   if (model_.fails_in_avalanches() && ranks.rank() > 0) state.dissipated_energy = 0.0;
   const std::vector<double> sums = ranks.sum({state.dissipated_energy, double(state.broken_bonds)});
   return {sums[0], Index(sums[1]), ranks.max(state.max_damage)};

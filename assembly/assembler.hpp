@@ -20,23 +20,23 @@ namespace peristat {
 ///
 /// All arrays are points x dimension, row major. No call but visit_tangent and commit allocates.
 /// For a given number of threads every result is reproducible to the last bit. A model whose bonds
-/// can be damaged is evaluated after a history (initial_history), which only `commit` changes.
+/// can be damaged needs a history (initial_history), which only `commit` changes.
 class Assembler : public Energy {
  public:
   /// Points and model must outlive the assembler.
-  /// @param sharing null: the body is whole. Otherwise these are a part of it: energies are those
-  ///        of all of it, and of dE/dx and products the rows of owned points are right, once ghosts
-  ///        have what their owners have. dE/dx of ghosts is zero. All ranks make the same calls.
-  /// @throws std::logic_error for a model without terms, and for a part of what has no ranks:
-  ///         convolutions
+  /// @param sharing null: the body is whole. Otherwise points and model are one rank's part of it:
+  ///        energies are those of the whole body, and dE/dx and products are right in the rows of
+  ///        owned points, once ghosts hold their owners' values. dE/dx of ghosts is zero. All calls
+  ///        are collective.
+  /// @throws std::logic_error for a model without terms, and for convolutions on a part of a body
   Assembler(const Points& points, const Model& model, int threads,
             const Sharing* sharing = nullptr);
   ~Assembler() override;
 
-  /// History of a body to which nothing has happened.
+  /// Initial history, before any load.
   [[nodiscard]] History initial_history() const;
 
-  /// History of a body whose bonds remember these stretches (see bond_stretches).
+  /// History that holds these largest stretches of the bonds (see bond_stretches).
   [[nodiscard]] History history_of(std::span<const double> bond_stretches) const;
 
   /// E [J]
@@ -45,26 +45,27 @@ class Assembler : public Energy {
   /// E [J] and dE/dx [N] (minus the internal force).
   [[nodiscard]] Evaluation gradient(const StateView& at, std::span<double> gradient);
 
-  /// Commits a state: moves the history of every bond that it damages to it. E is then what is
-  /// stored after that. dE/dx, unless it is left out, is the bonds' as before and that of terms
-  /// that stand on bonds after their loss. Only accepted states are committed, and in relaxation
-  /// that breaks bonds on the way, every iteration.
+  /// Commits a state: updates the history of every bond that the state damages. E is then the
+  /// energy that is stored after the update. dE/dx, unless it is left out, has the bonds' forces,
+  /// which the update does not change, and the forces of other terms after they have lost stiffness
+  /// with the bonds. Only accepted states are committed; relaxation that breaks bonds on the way
+  /// commits every iteration.
   Evaluation commit(std::span<const double> displacement, History& history,
                     std::span<double> gradient = {}, const SharedEnvironment& environment = {});
 
-  /// As `commit`, but the energy is not found, and values that are not finite show in dE/dx alone:
-  /// for time steps, of which there are many.
+  /// As `commit` without the energy, for time steps. Values that are not finite show in dE/dx
+  /// alone.
   Evaluation commit_forces(std::span<const double> displacement, History& history,
                            std::span<double> gradient, const SharedEnvironment& environment = {});
 
-  /// Forces of loads that follow the deformation [N], every entry overwritten. They have no part in
-  /// E; in dE/dx they are, with the other sign.
+  /// Follower forces of the loads [N], every entry overwritten. They do not contribute to E, and
+  /// enter dE/dx with the other sign.
   void follower_force(const StateView& at, std::span<double> force);
 
-  /// What committing a state would damage.
+  /// Damage that committing the state would cause.
   [[nodiscard]] DamageGrowth growth(const StateView& at);
 
-  /// What a history means, see assess_damage; damage of ghosts means nothing.
+  /// Damage state of a history, see assess_damage; the damage of ghosts is meaningless.
   [[nodiscard]] DamageState assess(const History& history, std::span<const double> cut_weight,
                                    std::span<double> damage) const;
 
@@ -82,12 +83,12 @@ class Assembler : public Energy {
   void outline_rows(const StateView& at, std::span<double> diagonal,
                     std::span<double> row_sums) override;
 
-  /// Energy of each point, an equal share of its interactions' [J].
+  /// Energy of each point: an equal share of the energy of each of its interactions [J].
   void point_energies(const StateView& at, std::span<double> energies);
 
   /// Virial of each point, an equal share of its interactions' [J]: points x dimension x dimension,
-  /// see TermPasses::add_virials. Over its volume it is the derivative of the energy density with
-  /// respect to a homogeneous deformation gradient.
+  /// see TermPasses::add_virials. Divided by the point's volume it is the derivative of the energy
+  /// density with respect to a homogeneous deformation gradient.
   void virials(const StateView& at, std::span<double> virials);
 
   [[nodiscard]] const Model& model() const { return model_; }
@@ -100,16 +101,18 @@ class Assembler : public Energy {
   [[nodiscard]] double seconds_spent() const { return seconds_; }  ///< wall time of all calls [s]
 
  private:
-  /// What a pass of a term has found, of a part with the energy of owned points alone.
+  /// Returns a term's evaluation, on a part of a body with the energy of owned points alone.
   [[nodiscard]] Evaluation of_part(TermPasses& term, const StateView& at, Evaluation found);
-  /// Of the whole body, and forces of owned points, from what passes over the part have found.
+  /// Sums the ranks' evaluations to that of the whole body, and clears the forces of ghosts.
+  /// Collective.
   [[nodiscard]] Evaluation of_all(const Evaluation& mine, std::span<double> gradient) const;
   [[nodiscard]] DamageGrowth of_all(const DamageGrowth& mine) const;
 
-  /// Whether a term tells no more of its tangent than an outline.
+  /// True if a term has no tangent blocks, only an outline (and possibly rows): it lacks a
+  /// potential or rows.
   [[nodiscard]] bool is_outlined(std::size_t term) const;
-  /// Diagonal blocks of all other terms, points x dimension x dimension: beside one that is
-  /// outlined they are springs of points.
+  /// Diagonal blocks of all other terms, points x dimension x dimension: beside an outlined term
+  /// they are springs attached to points.
   [[nodiscard]] std::vector<double> blocks_of_springs(const StateView& at);
 
   /// Calls visit(passes, how) for every term: the first writes its result, the others add to it.
@@ -122,7 +125,7 @@ class Assembler : public Energy {
   Workspace workspace_;
   std::vector<std::unique_ptr<TermPasses>> terms_;
   const Sharing* sharing_;
-  std::vector<double> of_points_;  // energies, of a part
+  std::vector<double> of_points_;  // energies of points, on a part of a body
   double seconds_ = 0.0;
 };
 

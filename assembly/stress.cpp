@@ -71,7 +71,7 @@ Stress stress_from(const Points& points, DeformationGradients gradients,
       E = 0.5 * (H + H.transpose());
       sigma = P;
     } else if (found.is_determined[i]) {
-      // Of H, not of F^T F - I: small strains keep their digits.
+      // Computed from H, not from F^T F - I: small strains keep their digits.
       E = 0.5 * (H + H.transpose() + H.transpose() * H);
       sigma = P * F.transpose() / volume_ratio;
     } else {
@@ -92,7 +92,8 @@ Stress stress_from(const Points& points, DeformationGradients gradients,
 
 namespace {
 
-/// What a linear solid's own dilatations and stresses are found from, in the place of the fit.
+/// Replaces the fitted gradients by the linear solid's nonlocal ones, from which its own
+/// dilatations and stresses are computed.
 void use_nonlocal_gradients(Assembler& assembler, const CollocationTerm& term, const StateView& at,
                             DeformationGradients& gradients) {
   const Points& points = assembler.points();

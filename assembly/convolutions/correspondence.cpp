@@ -153,7 +153,7 @@ void Correspondence::renew_shapes() {
       size_, 0, [&](std::size_t i, double sum) { shared_sizes_[i] = share(i) * sizes_[i] + sum; });
 }
 
-/// sum q' kappa eta xi, or its rate for the rate of u, and fields 0 ... D - 1 of u.
+/// Finds sum q' kappa eta xi, or its rate for a rate u, and leaves u in fields 0 ... D - 1.
 template <int D>
 void Correspondence::find_moments(const std::vector<double>& u, std::vector<double>& moments) {
   moments.resize(fields_.points() * D * D);
@@ -167,7 +167,7 @@ void Correspondence::find_moments(const std::vector<double>& u, std::vector<doub
   }
 }
 
-/// H, or its rate for the rate of u, and fields 0 ... D - 1 of u.
+/// Finds H, or its rate for a rate u, and leaves u in fields 0 ... D - 1.
 template <int D>
 void Correspondence::find_gradients(const std::vector<double>& u, std::vector<double>& gradients) {
   find_moments<D>(u, gradients);
@@ -216,7 +216,7 @@ void Correspondence::find_stress_rates() {
   });
 }
 
-/// sign f, or its rate, from R and u, or theirs, and fields 0 ... D - 1 of u.
+/// Finds sign f, or its rate, from R, u and fields 0 ... D - 1 of u, or from their rates.
 template <int D>
 void Correspondence::find_pulls(const std::vector<double>& u, double sign,
                                 std::span<double> force) {
@@ -264,8 +264,8 @@ void Correspondence::find_forces_and_energies(std::span<const double> displaceme
   if (fields_.dimension() == 3) find_energies<3>(energy);
 }
 
-/// sum q' kappa z^2 = sum q' kappa eta^2 - H K : H, as H is what makes it least. After the forces
-/// of the same displacements, whose fields are still there.
+/// sum q' kappa z^2 = sum q' kappa eta^2 - H K : H, since H minimises it. Uses the fields that the
+/// forces of the same displacements have left.
 template <int D>
 void Correspondence::find_energies(std::span<double> energy) {
   const std::vector<double>& u = displacement_;
@@ -319,9 +319,9 @@ void Correspondence::outline_tangent(std::span<const double> displacement,
   });
 }
 
-/// H changes by u g where a point moves by u, with g = -K^-1 sum q' kappa xi of the point itself:
-/// at rest the energy of that is V ((lambda + mu) (u . g)^2 + mu u^2 g^2) / 2. Of the stabilisation
-/// sum q' kappa u^2 is left at the point and its neighbours, less the part of H.
+/// A displacement u of a point changes its H by u g, with g = -K^-1 sum q' kappa xi: at rest the
+/// energy of that is V ((lambda + mu) (u . g)^2 + mu u^2 g^2) / 2. The stabilisation adds
+/// sum q' kappa u^2 at the point and its neighbours, less the part that H represents.
 template <int D>
 void Correspondence::outline_blocks(std::span<double> diagonal) {
   const auto& [lambda, mu] = setting_.constants;
@@ -335,8 +335,8 @@ void Correspondence::outline_blocks(std::span<double> diagonal) {
   });
 }
 
-/// The same of the neighbours' H, which change by u g' with g' = q kappa K'^-1 xi: sums of kappa^2
-/// xi xi with the neighbours' K'^-1 on both sides.
+/// Adds the same for the neighbours' H, which change by u g' with g' = q kappa K'^-1 xi: sums of
+/// kappa^2 xi xi with the neighbours' K'^-1 on both sides.
 template <int D>
 void Correspondence::add_neighbours_blocks(std::span<double> diagonal) {
   const auto& [lambda, mu] = setting_.constants;
@@ -352,7 +352,7 @@ void Correspondence::add_neighbours_blocks(std::span<double> diagonal) {
     }
   }
   for (std::size_t p = 0; p < kernels.size(); ++p) products.push_back({&kernels[p], p});
-  // add(point, sum) with the sum of q' kappa^2 xi . weights(neighbour) xi
+  // Calls add(point, sum) with the sum of q' kappa^2 xi . weights(neighbour) xi.
   const auto find = [&](const auto& weight, const auto& add) {
     for (int k = 0; k < D; ++k) {
       for (int l = k; l < D; ++l) {
@@ -385,8 +385,8 @@ void Correspondence::add_neighbours_blocks(std::span<double> diagonal) {
 }
 
 /// With P = F S, dP = dH S + F (lambda tr(dE) + 2 mu dE) and dE = (F^T dH + dH^T F) / 2, every H
-/// adds to a row V (|S| + |F|^2 sqrt(d) (|lambda| + 2 mu)) |g| or less times the sum of all its
-/// |g|, whose stabilisation adds beta |K^-1 g|-like terms, and its first part 4 beta q q' kappa.
+/// adds to a row at most V (|S| + |F|^2 sqrt(d) (|lambda| + 2 mu)) |g| times the sum of all its
+/// |g|. The stabilisation adds terms like beta |K^-1 g| for H, and 4 beta q q' kappa for eta.
 template <int D>
 void Correspondence::bound_rows(std::span<double> row_sums) {
   const auto& [lambda, mu] = setting_.constants;
@@ -416,14 +416,14 @@ void Correspondence::bound_rows(std::span<double> row_sums) {
 }
 
 void Correspondence::add_virials(std::span<const double> displacement, std::span<double> virials) {
-  std::vector<double> u;  // products may be asked for at the state that is known
+  std::vector<double> u;  // displacement_ stays at the state that is known
   fields_.take_off_mean(displacement, u);
   if (fields_.dimension() == 2) add_virials<2>(u, virials);
   if (fields_.dimension() == 3) add_virials<3>(u, virials);
 }
 
-/// q (V F S + beta sum q' kappa z xi) per point: H K is all of sum q' kappa eta xi where there is
-/// an H, and z has nothing of it.
+/// q (V F S + beta sum q' kappa z xi) per point: where there is an H, H K equals sum q' kappa eta
+/// xi, and the sum of z vanishes.
 template <int D>
 void Correspondence::add_virials(const std::vector<double>& u, std::span<double> virials) {
   std::vector<double> moments;
@@ -452,9 +452,8 @@ std::size_t Correspondence::points_without_gradient() const {
 double Correspondence::expected_bytes(const LatticeBox& box,
                                       std::span<const LatticeSpring> springs) {
   const double d = box.dimension, pairs = d * (d + 1.0) / 2.0;
-  // Of a place the fields of u and of stresses and their sum, and kernels on half of the modes; of
-  // a point where it is and its integrity, its size, its arms, three displacements and five
-  // matrices.
+  // Per site: fields of u and of stresses, their sum, kernels on half of the modes. Per point: site
+  // and integrity, size, arms, three displacements, five matrices.
   return 8.0 * lattice_places(box, steps_of(springs)) * (2.0 * d + 1.0 + 0.5 * (pairs + d + 1.0)) +
          8.0 * double(box.place.size()) * (3.0 + 4.0 * d + 5.0 * d * d);
 }

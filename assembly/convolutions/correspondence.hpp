@@ -12,8 +12,8 @@
 
 namespace peristat {
 
-/// Least eigenvalue of a shape tensor, relative to that of a whole neighbourhood, that a
-/// deformation gradient is told with.
+/// Least eigenvalue of a shape tensor, relative to that of a whole neighbourhood, from which a
+/// deformation gradient is computed.
 inline constexpr double least_shape = 1e-3;
 
 /// A correspondence material of St. Venant and Kirchhoff at any deformation, in 2D and 3D, on a
@@ -26,13 +26,13 @@ inline constexpr double least_shape = 1e-3;
 ///   w = q (V S : E / 2 + beta / 2 sum q' kappa z^2)                                         [J]
 ///   f = q sum q' (kappa (R + R') xi + 2 beta kappa eta),   R = V F S K^-1 - beta H          [N]
 ///
-/// The energy of z, of what H does not tell, keeps points of a lattice from moving against each
-/// other at no cost. beta is constant: with one that varies inside the force, as it is printed,
-/// forces have no potential.
+/// The stabilising energy of z, the part of eta that H does not represent, keeps points of a
+/// lattice from moving against each other at no cost. beta is constant: with one that varies inside
+/// the force, as it is printed, forces have no potential.
 ///
-/// K is renewed with q. Where its least eigenvalue is not more than `least_shape` of a whole
-/// neighbourhood's mean one there is no H: the point has the energy of z = eta alone, which resists
-/// turns, too. So a point that loses its neighbours loses its stress in one step.
+/// K is updated with q. Where its least eigenvalue is not more than `least_shape` of a whole
+/// neighbourhood's mean one there is no H: the point has only the stabilising energy with z = eta,
+/// which also resists rotations. So a point that loses its neighbours loses its stress in one step.
 ///
 /// The product with the tangent is exact: F S is a polynomial of H, and all else is linear.
 class Correspondence : public LatticeForces {
@@ -41,48 +41,48 @@ class Correspondence : public LatticeForces {
     LamePair constants;          ///< in plane stress those of the plane [Pa]
     double volume = 0.0;         ///< V of each point [m3]
     double stabilisation = 0.0;  ///< beta [N/m7] for shares kappa in m6
-    /// Points from this one on stand for others, whose energy theirs is: they have no H and no z.
+    /// Points from this one on are images, whose energy belongs to their sources: they have no H
+    /// and no z.
     std::size_t own = std::numeric_limits<std::size_t>::max();
   };
 
-  /// @param box the points and their places
-  /// @param is_periodic axes along which the lattice goes on as it began: points see their images
-  /// @param arms of two opposite steps one
+  /// @param box the points and their sites
+  /// @param is_periodic axes with a period: points interact with their images
+  /// @param arms one per opposite pair
   /// @throws std::logic_error for a period that is not longer than the arms, or another dimension
   Correspondence(const CutLattice& box, const std::array<bool, 3>& is_periodic,
                  std::vector<LatticeArm> arms, const Setting& setting, int threads);
 
-  /// 7 real transforms in 2D and 11 in 3D.
+  /// Costs 7 real transforms in 2D and 11 in 3D.
   void set_integrity(std::span<const double> integrity) override;
-  /// 12 and 24.
+  /// Costs 12 and 24.
   void find_forces(std::span<const double> displacement, std::span<double> force) override;
-  /// 4 and 5 more.
+  /// Costs 4 and 5 more than forces.
   void find_forces_and_energies(std::span<const double> displacement, std::span<double> force,
                                 std::span<double> energy) override;
-  /// As many as for forces, if those at u were the last ones that were found; 6 and 12 more
-  /// otherwise.
+  /// Costs as much as forces if the last forces were found at u; 6 and 12 more otherwise.
   void multiply(std::span<const double> displacement, std::span<const double> v,
                 std::span<double> product) override;
   /// Blocks are those at rest, exact as long as periods are longer than two arms, at the cost of 20
-  /// and 53 transforms; sums by the triangle inequality over what each gradient contributes, which
-  /// is up to twenty times too much.
+  /// and 53 transforms. Row sums use the triangle inequality over the contributions of each
+  /// gradient, and are up to twenty times too large.
   void outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
                        std::span<double> row_sums) override;
-  /// V F S, and where there is no H what the stabilisation has.
+  /// V F S, and at points without H the virial of the stabilisation.
   void add_virials(std::span<const double> displacement, std::span<double> virials) override;
-  /// Points with neighbours that tell no gradient.
+  /// Number of points without a gradient: their neighbours, if any, don't determine one.
   [[nodiscard]] std::size_t points_without_gradient() const;
-  /// Memory that one holds that has multiplied and told energies.
+  /// Expected memory after products and energies have been found [bytes].
   [[nodiscard]] static double expected_bytes(const LatticeBox& box,
                                              std::span<const LatticeSpring> springs);
-  /// Memory that it holds.
+  /// Memory in use [bytes].
   [[nodiscard]] double bytes() const;
 
   [[nodiscard]] const LatticeFields& fields() const { return fields_; }
 
  private:
   [[nodiscard]] bool has_images() const { return setting_.own < fields_.points(); }
-  /// 1 of points with an energy of their own, 0 of others.
+  /// 1 at points with an energy of their own, 0 at images.
   [[nodiscard]] double share(std::size_t point) const { return point < setting_.own ? 1.0 : 0.0; }
   void take_up(std::span<const double> displacement);
   template <int D>
@@ -95,7 +95,7 @@ class Correspondence : public LatticeForces {
   void find_stresses();
   template <int D>
   void find_stress_rates();
-  /// Sum of q' kappa over the ends of bonds.
+  /// Sum of q' kappa over the bonds, once for each end that has an energy.
   [[nodiscard]] double sizes_of_ends(std::size_t point) const {
     return shared_sizes_.empty() ? 2.0 * sizes_[point] : shared_sizes_[point];
   }
@@ -119,13 +119,14 @@ class Correspondence : public LatticeForces {
   std::vector<LatticeSpectrum> arm_;    // kappa xi, by component
   std::vector<LatticeSpectrum> shape_;  // kappa xi xi, by pair
   double whole_size_ = 0.0, whole_shape_ = 0.0;
-  // Sums of q' times these, per point, and K^-1, 0 where it has none; matrices row by row.
+  // Sums of q' times these kernels, per point, and K^-1, 0 where there is none; matrices row by
+  // row.
   std::vector<double> sizes_, arms_left_, shapes_, inverse_shapes_;
-  // Sums of q' kappa, one for each end of a bond that has an energy; empty: both have.
+  // Sums of q' kappa, once for each end of a bond that has an energy; empty: both have.
   std::vector<double> shared_sizes_;
   std::vector<double> state_;                       // u that gradients_ belong to; empty: none
   std::vector<double> displacement_;                // the same without its mean
-  std::vector<double> direction_;                   // of the rates, without its mean
+  std::vector<double> direction_;                   // v without its mean
   std::vector<double> gradients_, gradient_rates_;  // H
   std::vector<double> stresses_;                    // R, or its rate
 };

@@ -8,7 +8,7 @@
 
 namespace peristat {
 
-/// A lattice's box, and which of its points do not see each other.
+/// A lattice's box, and pairs of its points that do not interact.
 struct CutLattice : LatticeBox {
   CutLattice() = default;
   CutLattice(LatticeBox box, std::vector<std::array<Index, 2>> pairs = {})

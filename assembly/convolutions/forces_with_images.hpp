@@ -8,21 +8,21 @@
 
 namespace peristat {
 
-/// Forces of the bonds of a body whose last points are images of others, beyond planes of symmetry
-/// and periods. A bond counts as far as its points are the body's own: one with an image half, as
-/// its twin at the other end does, and one between images not at all.
+/// Forces of the bonds of a body whose last points are images beyond planes of symmetry and
+/// periods. A bond counts by the share of its points that are the body's own: half if one is an
+/// image, as its twin at the other end counts the other half, and not at all if both are.
 ///
-/// With m = 1 of own points and 1/2 of images, and all energies products of both points'
+/// With m = 1 at own points and 1/2 at images, and energies that are products of both points'
 /// integrities, that is
 ///
 ///   E(q) = E_whole(m q) - E_whole(q of images alone) / 4,
 ///
-/// so that one operator, twice, knows everything: forces on images are what constraints fold onto
-/// the sources and onto the jumps over periods. Energies and virials of images belong to sources.
+/// so that two evaluations of one operator suffice. Constraints fold the forces on images onto the
+/// sources and onto the jumps over periods. Energies and virials of images belong to their sources.
 class ForcesWithImages : public LatticeForces {
  public:
-  /// @param of_all, of_images the same forces of pairs of points, of all points
-  /// @param own the points that are no images, the first ones
+  /// @param of_all, of_images two instances of the same forces between all points
+  /// @param own number of points that are no images; they come first
   ForcesWithImages(std::unique_ptr<LatticeForces> of_all, std::unique_ptr<LatticeForces> of_images,
                    std::size_t points, std::size_t own);
 
@@ -32,13 +32,13 @@ class ForcesWithImages : public LatticeForces {
                                 std::span<double> energy) override;
   void multiply(std::span<const double> displacement, std::span<const double> v,
                 std::span<double> product) override;
-  /// Row sums are those without what is taken off.
+  /// Row sums are bounds, from which nothing is subtracted.
   void outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
                        std::span<double> row_sums) override;
   void add_virials(std::span<const double> displacement, std::span<double> virials) override;
 
  private:
-  /// from -= a quarter of what find puts into an array of that size.
+  /// Subtracts from `from` a quarter of what find writes into an array of that size.
   template <class Find>
   void take_off(std::span<double> from, const Find& find);
 

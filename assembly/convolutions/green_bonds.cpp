@@ -32,7 +32,7 @@ struct Fields {
   static constexpr std::size_t squares = D, cubes = squares + pairs_of(D), quartic = cubes + D;
 };
 
-/// Where a point has its sums over neighbours, with a = s xi,
+/// Positions of a point's sums over neighbours, with a = s xi,
 ///   q' (k n n . u' + a . u' u' + a u'^2 / 2 + s u'^2 u' / 2) | A_ij = q' a_j u'_i | S_i = q' s
 ///   u'_i | T_ij = q' s u'_i u'_j.
 template <int D>
@@ -41,17 +41,17 @@ struct Sums {
                                count = squares + pairs_of(D);
 };
 
-/// Where it has those of kernels alone: q' k n n | q' a | q' s.
+/// Positions of a point's sums of kernels alone: q' k n n | q' a | q' s.
 template <int D>
 struct Constants {
   static constexpr std::size_t arms = pairs_of(D), size = arms + D, count = size + 1;
 };
 
-/// What a field has of a number: itself, or its rate.
+/// Number to store in a field: itself, or its rate.
 double part(double number) { return number; }
 double part(const Dual& number) { return number.rate; }
 
-/// f / q, from what a point knows: u, its sums and its constants.
+/// f / q of a point, from u, its sums and its constants.
 template <int D, class Real, class Sum>
 Vector<D, Real> force_of(const Vector<D, Real>& u, const Sum& sum, const double* constants) {
   using At = Sums<D>;
@@ -79,7 +79,7 @@ Vector<D, Real> force_of(const Vector<D, Real>& u, const Sum& sum, const double*
   return force;
 }
 
-/// Sum of q' s g^2 but for the part that depends on u' alone.
+/// Sum of q' s g^2 without the part that depends on u' alone.
 template <int D>
 double squares_of(const Vector<D, double>& u, const double* sum, const double* constants) {
   using At = Sums<D>;
@@ -105,7 +105,7 @@ double squares_of(const Vector<D, double>& u, const double* sum, const double* c
   return result;
 }
 
-/// Of y = xi + eta: sums of q' s y y, and of q' s g.
+/// With y = xi + eta: sums of q' s y y, and of q' s g.
 template <int D>
 struct Blocks {
   Matrix<D, double> squares;
@@ -153,7 +153,7 @@ GreenBonds::GreenBonds(const CutLattice& box, const std::array<bool, 3>& is_peri
   set_integrity(std::vector<double>(box.place.size(), 1.0));
 }
 
-/// The kernels times a factor of each spring, which may turn round with the step.
+/// The kernels times a factor of each spring, which is odd if it changes its sign with the step.
 template <class Factor>
 GreenBonds::Kernels GreenBonds::make_kernels(bool is_odd, const Factor& factor) const {
   const auto spectrum = [&](bool turns, const auto& value) {
@@ -204,7 +204,7 @@ void GreenBonds::find_constants(const Kernels& kernels, std::vector<double>& con
                            [&](std::size_t i) { return constants_[i * At::count + At::size]; });
 }
 
-/// @param get (point) u, or u with its rate, of which the sums have the rates
+/// @param get (point) u, or u with its rate: sums are then rates
 template <int D, class Get>
 void GreenBonds::find_sums(const Kernels& kernels, const Get& get, std::vector<double>& sums) {
   using In = Fields<D>;
@@ -254,7 +254,7 @@ void GreenBonds::take_off_motion(std::span<const double> displacement, LatticeTu
   fields_.take_off_mean(turned, u);
 }
 
-/// Sums of u, unless they are known.
+/// Finds the sums of u.
 void GreenBonds::take_up(std::span<const double> displacement) {
   state_.assign(displacement.begin(), displacement.end());
   take_off_motion(displacement, turn_, displacement_);
@@ -290,7 +290,7 @@ void GreenBonds::find_forces_and_energies(std::span<const double> displacement,
                  [&](auto dimension) { find_energies<decltype(dimension)::value>(energy); });
 }
 
-/// After the sums of the same displacements, whose fields are still there.
+/// Uses the fields that the sums of the same displacements have left.
 template <int D>
 void GreenBonds::find_energies(std::span<double> energy) {
   using In = Fields<D>;
@@ -354,10 +354,10 @@ void GreenBonds::outline_tangent(std::span<const double> displacement, std::span
   add_rounded_up(bounds, row_sums);
 }
 
-/// With y = xi + eta, K has -q q' s (y y + g) of bonds and their sums on its diagonal. Of a row of
-/// the former Cauchy's inequality knows more than each component's sum of squares:
-/// sum q' s |y_r y_c| is not more than the root of the product of those of y_r and y_c, nor is
-/// sum q' s |g| more than that of sum q' s and sum q' s g^2.
+/// With y = xi + eta, K has blocks -q q' s (y y + g) of bonds, and minus their sums on its
+/// diagonal. For a row Cauchy's inequality gives better bounds than each component's sum of
+/// squares: sum q' s |y_r y_c| is at most the root of the product of the sums of y_r^2 and y_c^2,
+/// and sum q' s |g| at most that of sum q' s and sum q' s g^2.
 template <int D>
 void GreenBonds::outline(std::span<double> diagonal, std::span<double> row_sums) {
   std::vector<double> energy(fields_.points());
@@ -389,7 +389,7 @@ void GreenBonds::outline(std::span<double> diagonal, std::span<double> row_sums)
 }
 
 void GreenBonds::add_virials(std::span<const double> displacement, std::span<double> virials) {
-  std::vector<double> u;  // products may be asked for at the state that is known
+  std::vector<double> u;  // displacement_ stays at the state that is known
   LatticeTurn turn;
   take_off_motion(displacement, turn, u);
   with_dimension(fields_.dimension(), [&](auto dimension) {
@@ -422,9 +422,8 @@ void GreenBonds::add_virials(const std::vector<double>& u, const LatticeTurn& tu
 
 double GreenBonds::expected_bytes(const LatticeBox& box, std::span<const LatticeSpring> springs) {
   const double d = box.dimension, pairs = d * (d + 1.0) / 2.0;
-  // Of a place the fields and their sum, and kernels on half of the modes; of a point where it is
-  // and its integrity, three displacements and its place, and sums and rates beside those of
-  // kernels.
+  // Per site: fields, their sum, kernels on half of the modes. Per point: site and integrity, three
+  // displacements and the position, sums and rates, sums of kernels alone.
   return 8.0 * lattice_places(box, steps_of(springs)) *
              (2.0 * d + pairs + 2.0 + 0.5 * (pairs + d + 1.0)) +
          8.0 * double(box.place.size()) *

@@ -10,7 +10,8 @@
 namespace peristat {
 namespace {
 
-/// The lattice's axes as the last ones of the box: the last one has the real values of a row.
+/// Moves the lattice's axes to the last axes of the box: real values of a row run along the last
+/// one.
 template <class T>
 std::array<T, 3> as_last(const std::array<T, 3>& of_lattice, int dimension) {
   std::array<T, 3> result{};
@@ -18,7 +19,7 @@ std::array<T, 3> as_last(const std::array<T, 3>& of_lattice, int dimension) {
   return result;
 }
 
-/// The box with room for what the steps reach.
+/// Axes of the box with the reach of the steps.
 std::array<ConvolutionAxis, 3> axes_of(const LatticeBox& box,
                                        const std::array<bool, 3>& is_periodic,
                                        std::span<const LatticeStep> steps) {
@@ -36,9 +37,9 @@ std::array<ConvolutionAxis, 3> axes_of(const LatticeBox& box,
   return as_last(axes, box.dimension);
 }
 
-/// 1 or -1 if a kernel, of which half of the steps are here, is that much of its mirror image along
-/// an axis; otherwise 0. All zeros are 1.
-/// @param opposite what the value of an opposite step is of that of the step
+/// Factor 1 or -1 of a kernel, of which half of the steps are given, when it is mirrored along an
+/// axis; 0: neither. A kernel of zeros returns 1.
+/// @param opposite factor of the value when the step is reversed
 int mirrored_sign(const std::map<std::array<int, 3>, double>& kernel, std::size_t axis,
                   double opposite) {
   bool is_same = true, is_opposite = true;
@@ -61,7 +62,7 @@ int mirrored_sign(const std::map<std::array<int, 3>, double>& kernel, std::size_
 
 Index half_of(Index count) { return count / 2 + 1; }
 
-/// Rows of amplitudes that a spectrum keeps of a box.
+/// Rows of amplitudes of a box that a spectrum stores.
 class KeptRows {
  public:
   KeptRows(const LatticeSpectrum& of, const FourierTransform& transform)
@@ -76,7 +77,7 @@ class KeptRows {
   [[nodiscard]] std::size_t start(Index i, Index j) const {
     return (std::size_t(i) * std::size_t(count(1)) + std::size_t(j)) * std::size_t(row_modes_);
   }
-  /// Where the amplitudes of a row of the box are, and with which sign.
+  /// Where the amplitudes of a row of the box are stored, and their sign.
   struct Row {
     std::size_t start = 0;
     double sign = 1.0;
@@ -98,7 +99,7 @@ class KeptRows {
   Index row_modes_;
 };
 
-/// to += the product in a row of modes.
+/// to += the product, for one row of modes.
 void add_product(const LatticeFields::Product& product, const double* c, double factor,
                  const double* from, std::ptrdiff_t modes, double* to) {
   if (product.kernel->parity == Convolution::Parity::even) {

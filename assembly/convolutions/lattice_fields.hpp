@@ -14,18 +14,18 @@
 
 namespace peristat {
 
-/// Pairs of components, the order of the two left out.
+/// Number of unordered pairs of components.
 constexpr std::size_t pairs_of(int dimension) {
   return std::size_t(dimension) * std::size_t(dimension + 1) / 2;
 }
 
-/// Number of the pair (i, j) of components, whichever comes first: xx xy xz yy yz zz.
+/// Number of the pair (i, j) of components, in either order: xx xy xz yy yz zz.
 constexpr std::size_t pair_of(int i, int j, int dimension) {
   if (i > j) std::swap(i, j);
   return std::size_t(i * dimension - i * (i - 1) / 2 + j - i);
 }
 
-/// body(std::integral_constant<int, D>) for a dimension known at run time.
+/// Calls body(std::integral_constant<int, D>) for a dimension known at run time.
 template <class Body>
 void with_dimension(int dimension, const Body& body) {
   if (dimension == 1) body(std::integral_constant<int, 1>{});
@@ -33,37 +33,38 @@ void with_dimension(int dimension, const Body& body) {
   if (dimension == 3) body(std::integral_constant<int, 3>{});
 }
 
-/// Less than this part of what a whole neighbourhood has is round-off of convolutions, which is
-/// some 1e-15 of it: the point has no neighbours left.
+/// Sums below this share of those of a whole neighbourhood are round-off of convolutions, which is
+/// some 1e-15 of them: the point has no neighbours left.
 inline constexpr double least_neighbourhood = 1e-10;
 
-/// A kernel as amplitudes, one number each, and whether they are real or imaginary. Along an axis
-/// whose mirror image it is, but for the sign, half of them are kept.
+/// Fourier amplitudes of a kernel, one number each: real for even kernels, imaginary for odd ones.
+/// Along an axis in which the kernel is symmetric or antisymmetric half of them are kept.
 struct LatticeSpectrum {
   std::vector<double> amplitudes;
   Convolution::Parity parity = Convolution::Parity::even;
-  /// g of the step with this component turned round is that much of g; 0: neither g nor -g.
+  /// Per axis, the factor 1 or -1 of g when this component of the step changes its sign; 0:
+  /// neither.
   std::array<int, 3> mirror{};
-  std::vector<double> values{};  ///< g of each step, in a lattice with pairs that are cut
+  std::vector<double> values{};  ///< g of each step, only in a lattice with cut pairs
 };
 
-/// What all operators of a lattice's points by convolutions share: the points' places on a padded
-/// box, an integrity q of each point, numbered fields on the box as amplitudes, and sums over
+/// Common part of all operators by convolutions on a lattice: the points' sites on a padded box, an
+/// integrity q of each point, numbered fields on the box as Fourier amplitudes, and sums over
 /// neighbours
 ///
 ///   sum over xi of g(xi) b(x + xi),
 ///
 /// of several fields b = q times a value at once, at the cost of one transform (convolutions
-/// [g * b] of [FCBM] app. A but for the sign of odd kernels). Places without a point have q = 0.
-/// Pairs of points that are cut (CutLattice) are summed one by one and taken off: the lattice
-/// itself goes on through a crack. The same bits on any number of threads.
+/// [g * b] of [FCBM] app. A but for the sign of odd kernels). Sites without a point have q = 0. Cut
+/// pairs of points (CutLattice) are summed one by one and subtracted, since convolutions ignore
+/// cracks. Results are the same bits on any number of threads.
 class LatticeFields {
  public:
   using Parity = Convolution::Parity;
 
-  /// @param box the points and their places
-  /// @param is_periodic axes along which the lattice goes on as it began: points see their images
-  /// @param steps to neighbours, of two opposite ones one
+  /// @param box the points and their sites
+  /// @param is_periodic axes with a period: points interact with their images
+  /// @param steps to neighbours, one per opposite pair
   /// @throws std::logic_error for a period that is not longer than the steps, or for fields of more
   ///                          than 2^32 numbers
   LatticeFields(const CutLattice& box, const std::array<bool, 3>& is_periodic,
@@ -74,15 +75,15 @@ class LatticeFields {
   [[nodiscard]] int threads() const { return convolution_.transform().threads(); }
   [[nodiscard]] const FourierTransform& transform() const { return convolution_.transform(); }
 
-  /// @param value g of the step with this number; of the opposite one g, or -g for odd kernels
+  /// @param value g of the step with this number; the opposite step has g, or -g for odd kernels
   [[nodiscard]] LatticeSpectrum spectrum(Parity parity,
                                          const std::function<double(std::size_t)>& value) const;
 
   void set_integrity(std::span<const double> integrity);
   [[nodiscard]] double integrity(std::size_t point) const { return integrity_[point]; }
-  /// Sets q = 0 where a sum over the neighbours, none of whose terms are negative, is nothing
-  /// beside that of a whole neighbourhood: such a point has no neighbours, and what convolutions
-  /// find for it is round-off. Nobody sees it, either.
+  /// Sets q = 0 where a sum of non-negative terms over the neighbours vanishes beside that of a
+  /// whole neighbourhood: such a point has no neighbours, acts on no other point, and convolutions
+  /// find only round-off for it.
   template <class Sum>
   void leave_out_lonely(double whole, const Sum& sum) {
     for_points([&](std::size_t point) {
@@ -92,12 +93,12 @@ class LatticeFields {
 
   /// Mean of u over the points, weighted with q.
   [[nodiscard]] std::array<double, 3> mean(std::span<const double> u) const;
-  /// u without it: a free translation, and whatever points that are gone do, would cost digits of
-  /// sums that should cancel.
+  /// u without its mean: a free translation, or displacements of failed points, would cost digits
+  /// of sums that should cancel.
   void take_off_mean(std::span<const double> u, std::vector<double>& result) const;
 
-  /// Makes field number `field` from q value(point), as amplitudes. Fields appear when they are
-  /// first named.
+  /// Makes field number `field` from q value(point), as amplitudes. Fields are allocated on first
+  /// use.
   template <class Value>
   void fill(std::size_t field, const Value& value) {
     double* const to = cleared(field);
@@ -113,7 +114,7 @@ class LatticeFields {
     double factor = 1.0;
   };
 
-  /// take(point, sum) with the sum of all these products over the point's neighbours.
+  /// Calls take(point, sum) with the sum of all these products over the point's neighbours.
   template <class Take>
   void find_sums(std::span<const Product> products, const Take& take) {
     gather(products, true);
@@ -125,8 +126,8 @@ class LatticeFields {
     find_sums(std::span(&product, 1), take);
   }
 
-  /// The same in parts between which fields may change: what `gather` adds to what it has gathered
-  /// since it was told to begin.
+  /// The same in parts between which fields may change: `gather` adds products to the sums gathered
+  /// so far, or starts new sums.
   void gather(std::span<const Product> products, bool begins);
   template <class Take>
   void take_sums(const Take& take) {
@@ -134,21 +135,21 @@ class LatticeFields {
     for_points([&](std::size_t point) { take(point, from[where_[point]]); });
   }
 
-  /// Each field c < dimension becomes the sum over c' of kernel (c, c') times field c', in its
-  /// place: see pair_of. Kernels are even.
+  /// Replaces each field c < dimension by the sum over c' of kernel (c, c') times field c', no
+  /// longer as amplitudes. Kernels are even and numbered by pair_of.
   void mix(std::span<const LatticeSpectrum> kernels);
-  /// Of a field that `mix` has made.
+  /// Value of a field that `mix` has made.
   [[nodiscard]] double at(std::size_t field, std::size_t point) const {
     return fields_[field].data()[where_[point]];
   }
 
-  /// Sums are made in the place of this field from now on, which has no values of its own then.
+  /// Sums overwrite this field from now on, which then has no values of its own.
   void keep_sums_in(std::size_t field) { sum_ = field; }
 
   /// Sum over the points of q(x) q(x + xi), for each step.
   [[nodiscard]] std::vector<double> pairs();
 
-  /// body(point) for all points.
+  /// Calls body(point) for all points.
   template <class Body>
   void for_points(const Body& body) const {
     const auto count = static_cast<std::ptrdiff_t>(where_.size());
@@ -156,9 +157,9 @@ class LatticeFields {
     for (std::ptrdiff_t i = 0; i < count; ++i) body(std::size_t(i));
   }
 
-  /// Real transforms so far, those of kernels left out.
+  /// Number of real transforms so far, without those of kernels.
   [[nodiscard]] std::size_t transforms() const { return transforms_; }
-  /// Of fields and places, and of spectra each.
+  /// Memory of fields and sites, and of one spectrum [bytes].
   [[nodiscard]] double bytes() const;
   [[nodiscard]] double spectrum_bytes() const { return 8.0 * double(transform().modes()); }
 
@@ -168,11 +169,11 @@ class LatticeFields {
   fftw::Buffer& buffer(std::size_t field);
   [[nodiscard]] double* cleared(std::size_t field);
   void find_cuts(const CutLattice& box);
-  /// Before its values become modes.
+  /// Stores a field's values at points beside cuts, before they become modes.
   void keep_beside_cuts(std::size_t field);
-  /// sums += what products have over the pairs that are cut.
+  /// sums += the product over the cut pairs.
   void add_cuts(const Product& product, std::vector<double>& sums) const;
-  /// Takes sums over pairs that are cut off those over all neighbours.
+  /// Subtracts sums over cut pairs from those over all neighbours.
   void take_off_cuts(std::span<const double> sums, double* from) const;
   void to_modes(std::size_t field);
   [[nodiscard]] const double* sums_to_places();
@@ -182,15 +183,15 @@ class LatticeFields {
   int dimension_;
   std::vector<LatticeStep> steps_;
   Convolution convolution_;
-  std::vector<std::uint32_t> where_;  // a point's place in a field
+  std::vector<std::uint32_t> where_;  // site of each point in a field
   std::vector<double> integrity_;
   std::vector<fftw::Buffer> fields_;
   fftw::Buffer own_sum_;
   std::size_t sum_ = of_its_own;
   std::size_t transforms_ = 0;
 
-  /// One point of a pair that is cut, and the step that the other one is away from it: numbers of
-  /// points beside cuts, and of steps.
+  /// One point of a cut pair, the other one and the step to it: numbers of points beside cuts, and
+  /// of steps.
   struct Cut {
     std::uint32_t at = 0, neighbour = 0, step = 0;
     bool is_opposite = false;
@@ -198,21 +199,21 @@ class LatticeFields {
   std::vector<Cut> cuts_;
   std::vector<Index> beside_cuts_;                  // points with a neighbour that is cut off
   std::vector<std::vector<double>> values_beside_;  // of each field, at these
-  std::vector<double> sums_of_cuts_;                // at these, of what has been gathered
+  std::vector<double> sums_of_cuts_;                // at these, over the cut pairs gathered so far
 };
 
-/// Of springs or arms.
+/// Steps of springs or arms.
 [[nodiscard]] std::vector<LatticeStep> steps_of(const auto& neighbours) {
   std::vector<LatticeStep> steps;
   for (const auto& one : neighbours) steps.push_back(one.step);
   return steps;
 }
 
-/// Places of the padded box that LatticeFields transform.
+/// Sites of the padded box that LatticeFields transforms.
 [[nodiscard]] double lattice_places(const LatticeBox& box, std::span<const LatticeStep> steps);
 
-/// total += numbers not less than sums of absolute values that convolutions have found, which may
-/// be too small by round-off of the largest of them.
+/// total += upper bounds of sums of absolute values that convolutions have found, which may be too
+/// small by round-off of the largest of them.
 void add_rounded_up(std::span<const double> sums, std::span<double> total);
 
 }  // namespace peristat

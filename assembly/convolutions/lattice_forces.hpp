@@ -6,8 +6,8 @@
 
 namespace peristat {
 
-/// Forces that points of a lattice exert on one another, each with an integrity q in [0, 1] that
-/// all it takes part in has as a factor. Arrays are points x dimension, row major.
+/// Forces between the points of a lattice. Each point has an integrity q in [0, 1], a factor of all
+/// its interactions. Arrays are points x dimension, row major.
 class LatticeForces {
  public:
   virtual ~LatticeForces() = default;
@@ -27,17 +27,16 @@ class LatticeForces {
   virtual void multiply(std::span<const double> displacement, std::span<const double> v,
                         std::span<double> product) = 0;
 
-  /// Adds to both.
+  /// Adds to both arrays.
   /// @param diagonal blocks of K at u, or at rest, points x dimension x dimension [N/m]
-  /// @param row_sums numbers not less than the sums of the absolute entries of each row of K at u
-  ///                 [N/m]
+  /// @param row_sums upper bounds of the sums of the absolute entries of each row of K at u [N/m]
   virtual void outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
                                std::span<double> row_sums) = 0;
 
-  /// The same by steps along the lattice.
+  /// The tangent by steps along the lattice; empty if it is not known.
   [[nodiscard]] virtual LatticeStencil stencil() { return {}; }
 
-  /// Adds each point's half of what its forces times their reference arms are, see
+  /// Adds each point's half of the products of its forces with their reference arms, see
   /// TermPasses::add_virials.
   /// @param virials points x dimension x dimension [J]
   virtual void add_virials(std::span<const double> displacement, std::span<double> virials) = 0;

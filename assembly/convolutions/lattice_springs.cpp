@@ -5,13 +5,14 @@
 namespace peristat {
 namespace {
 
-/// visit(step, direction, length, factor) for the neighbours of a point, of two opposite ones one.
+/// Calls visit(step, direction, length, factor) for the neighbours of a point, one per opposite
+/// pair.
 template <class Visit>
 void for_each_half(const Kernel& kernel, const Spacing& spacing, double angle, const Visit& visit) {
   const LatticeKernel lattice(kernel, spacing);
   const LatticeFrame frame(kernel.dimension, {}, 0.0, spacing, kernel.dimension > 1 ? angle : 0.0);
   lattice.for_each_neighbour([&](const LatticeStep& step, double factor) {
-    if (step < LatticeStep{}) return;  // its opposite is there
+    if (step < LatticeStep{}) return;  // its opposite is visited
     const double length = lattice.distance(step);
     Coordinates along{};
     for (int c = 0; c < kernel.dimension; ++c) {

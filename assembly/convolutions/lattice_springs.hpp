@@ -16,7 +16,7 @@ struct LatticeSpring {
   double stiffness = 0.0;   ///< k [N/m]
 };
 
-/// A step to a neighbour, and how much of it counts.
+/// A step to a neighbour, and its share.
 struct LatticeArm {
   LatticeStep step{};  ///< along the lattice's axes
   Coordinates xi{};    ///< the same in the axes of the body [m]
@@ -27,7 +27,7 @@ struct LatticeArm {
 ///
 ///   k = c w / r,   w = V^2 nu omega,
 ///
-/// of two opposite bonds one. Weights are those that make_bonds gives without a surface correction.
+/// one per opposite pair. Weights are those that make_bonds gives without a surface correction.
 /// @param angle of the lattice's axes to x and y about z [degrees]
 /// @param micromodulus c [N/m6]
 /// @param volume V of each point [m3]
@@ -35,8 +35,8 @@ struct LatticeArm {
                                                          const Spacing& spacing, double angle,
                                                          double micromodulus, double volume);
 
-/// The neighbours of a point of a lattice, with the shares that the kernel's influence omega and
-/// partial volumes nu make; of two opposite ones one.
+/// The neighbours of a point of a lattice, one per opposite pair, with shares from the kernel's
+/// influence omega and partial volumes nu.
 [[nodiscard]] std::vector<LatticeArm> lattice_arms(const Kernel& kernel, const Spacing& spacing,
                                                    double angle, double volume);
 

@@ -5,9 +5,9 @@
 
 namespace peristat {
 
-/// What a tangent is between points of a lattice that are so many steps apart.
+/// Tangent between points of a lattice that are `step` apart.
 struct StencilEntry {
-  std::array<int, 3> step{};  ///< along the lattice's axes, of two opposite ones one
+  std::array<int, 3> step{};  ///< along the lattice's axes, one per opposite pair
   /// Minus the sums of the blocks' diagonal components over all pairs of points [N/m].
   std::array<double, 3> sum{};
 };

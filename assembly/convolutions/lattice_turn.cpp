@@ -11,7 +11,7 @@
 namespace peristat {
 namespace {
 
-/// Vectors of a point, R v or R^T v.
+/// Rotates the vectors of all points: R v or R^T v.
 void rotate(const LatticeTurn& turn, bool is_back, int dimension, std::span<double> v) {
   if (turn.is_one) return;
   const auto d = std::size_t(dimension);
@@ -26,8 +26,8 @@ void rotate(const LatticeTurn& turn, bool is_back, int dimension, std::span<doub
   }
 }
 
-/// The lattice's steps in the axes of the body, from springs that know both; 0 in directions that
-/// no spring has.
+/// The lattice's steps in the axes of the body, fitted to springs, which have both; 0 in directions
+/// without a spring.
 Eigen::Matrix3d cell_of(std::span<const LatticeSpring> springs) {
   Eigen::Matrix3d arms = Eigen::Matrix3d::Zero(), steps = Eigen::Matrix3d::Zero();
   for (const LatticeSpring& spring : springs) {
@@ -48,7 +48,7 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& tensor) {
   return found.matrixU() * signs * found.matrixV().transpose();
 }
 
-/// In 2D the one in the plane, in closed form.
+/// The same in 2D, in closed form.
 Eigen::Matrix3d nearest_rotation_in_plane(const Eigen::Matrix3d& tensor) {
   const double along = tensor(0, 0) + tensor(1, 1), across = tensor(1, 0) - tensor(0, 1);
   const double length = std::hypot(along, across);

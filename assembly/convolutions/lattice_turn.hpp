@@ -12,7 +12,7 @@
 
 namespace peristat {
 
-/// A rotation R of a whole body, or none.
+/// A rotation R of a whole body, or the identity.
 struct LatticeTurn {
   bool is_one = true;
   std::array<std::array<double, 3>, 3> rotation{};
@@ -24,37 +24,36 @@ struct LatticeTurn {
   /// B := R B R^T
   template <int D>
   void put_on(Matrix<D, double>& block) const;
-  /// Sums of the absolute entries of a point's rows become numbers that are not less than those of
-  /// R K R^T: a row of it is a mean of rows with |R|, each of whose blocks grows by sqrt(D) at
-  /// most.
+  /// Replaces upper bounds of a point's absolute row sums of K by those of R K R^T: its rows are
+  /// sums of rows weighted with |R|, and blocks grow by sqrt(D) at most.
   template <int D>
   void bound(Vector<D, double>& rows) const;
 };
 
-/// Finds the rotation that a body of a lattice has on average, and displacements without it.
+/// Finds the mean rotation of a lattice body, and takes it off displacements.
 ///
-/// For laws that turn with the body, whose sums by convolutions are differences of powers of u: of
-/// a body n spacings wide that has turned these are n^3 and n^4 times what they leave. Which
-/// rotation is taken off changes nothing but round-off.
+/// For frame-indifferent laws whose sums by convolutions are differences of powers of u: in a
+/// rotated body n spacings wide these are n^3 and n^4 times as large as their differences. The
+/// choice of the rotation changes nothing but round-off.
 class LatticeTurns {
  public:
-  /// @param is_periodic along any axis: nothing is taken off, as images do not turn
+  /// @param is_periodic along any axis: no rotation is taken off, as images do not rotate
   LatticeTurns(const LatticeBox& box, const std::array<bool, 3>& is_periodic,
                std::span<const LatticeSpring> springs);
 
-  /// R where it moves the body's ends by more than a bond's length: less costs no digits, and small
-  /// displacements stay as they are.
+  /// R if it moves the body's ends by more than a bond's length: a smaller rotation costs no
+  /// digits, and small displacements stay as they are.
   /// @param u without its mean
   [[nodiscard]] LatticeTurn find(const LatticeFields& fields, std::span<const double> u) const;
 
-  /// u := R^T (X + u) - X, but for its mean
+  /// u := R^T (X + u) - X, up to its mean
   void take_off(const LatticeTurn& turn, std::span<double> u) const;
 
   [[nodiscard]] double bytes() const { return 8.0 * double(places_.size()); }
 
  private:
   int dimension_;
-  std::vector<double> places_;  // X from the middle of the box, per point; empty: nothing turns
+  std::vector<double> places_;  // X from the middle of the box, per point; empty: no rotation
   double reach_ = 0.0, bond_ = 0.0;
 };
 

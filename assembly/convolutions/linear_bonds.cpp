@@ -50,7 +50,7 @@ LinearBonds::LinearBonds(const CutLattice& box, const std::array<bool, 3>& is_pe
       }));
     }
   }
-  // Of displacements that have been mixed the last one is not needed when sums are made.
+  // Sums may overwrite the last field of displacements, which is not needed once these are mixed.
   fields_.keep_sums_in(std::size_t(std::max(box.dimension - 1, 1)));
   set_integrity(std::vector<double>(box.place.size(), 1.0));
 }
@@ -85,7 +85,7 @@ void LinearBonds::find_forces(std::span<const double> displacement, double sign,
   });
 }
 
-/// After the forces f of the same displacements, since q u.v = u.f + q u.P u:
+/// Uses the forces f of the same displacements, since q u.v = u.f + q u.P u:
 /// w = (q [C_ij * q u_i u_j] - q u.P u) / 4 - u.f / 2.
 template <int D>
 void LinearBonds::find_energies(std::span<const double> displacement, std::span<const double> force,
@@ -153,8 +153,8 @@ void LinearBonds::outline_tangent(std::span<const double> /*displacement*/,
 
 LatticeStencil LinearBonds::stencil() { return stencil_of(fields_, springs_); }
 
-/// q sum_j q_j K_abc (u_j - u_i)_b with the odd kernel K_abc(xi) = k n_a n_b xi_c / 2, the same in
-/// whichever order its components are.
+/// q sum_j q_j K_abc (u_j - u_i)_b with the odd kernel K_abc(xi) = k n_a n_b xi_c / 2, which is
+/// symmetric in its components.
 void LinearBonds::add_virials(std::span<const double> displacement, std::span<double> virials) {
   const std::array<double, 3> mean = fields_.mean(displacement);
   const int d = fields_.dimension();
@@ -205,8 +205,8 @@ double convolved_bytes(const LatticeBox& box, std::span<const LatticeSpring> spr
     return is_off;
   });
   const double kept = is_turned ? 0.5 : std::pow(0.5, d);
-  // Of a place fields by component, and the amplitudes that are kept; of a point its place,
-  // integrity and sums.
+  // Per site: fields by component, and the amplitudes that are kept. Per point: site, integrity and
+  // sums.
   return 8.0 * lattice_places(box, steps) * (std::max(d, 2.0) + kept * pairs) +
          double(box.place.size()) * (12.0 + 8.0 * pairs);
 }

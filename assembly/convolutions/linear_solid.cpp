@@ -38,7 +38,7 @@ LinearSolid::LinearSolid(const CutLattice& box, const std::array<bool, 3>& is_pe
   deviatoric_ = setting.volume * d * (d + 2) * mu;
   moment_ = fields_.spectrum(Parity::even,
                              [&](std::size_t s) { return arms_[s].share * squared(arms_[s].xi); });
-  std::ranges::fill(moment_.values, 0.0);  // a pre-crack takes nothing off M
+  std::ranges::fill(moment_.values, 0.0);  // a pre-crack does not change M
   for (const LatticeArm& arm : arms_) whole_moment_ += 2.0 * arm.share * squared(arm.xi);
   for (int i = 0; i < d; ++i) {
     arm_.push_back(fields_.spectrum(
@@ -86,7 +86,7 @@ void LinearSolid::renew_sums() {
   }
 }
 
-/// theta, and fields 0 ... D - 1 of the displacements.
+/// Finds theta, and leaves the displacements in fields 0 ... D - 1.
 template <int D>
 void LinearSolid::find_dilatations() {
   dilatation_.resize(fields_.points());
@@ -101,7 +101,7 @@ void LinearSolid::find_dilatations() {
   });
 }
 
-/// Sums of q' kappa n n . u' alone, if asked for, and those of everything else.
+/// Finds the sums of q' kappa n n . u' alone, if asked for, and those of all other neighbour terms.
 template <int D>
 void LinearSolid::find_pulls(bool alone) {
   pulls_.resize(fields_.points() * D);
@@ -177,7 +177,7 @@ void LinearSolid::find_forces_and_energies(std::span<const double> displacement,
   if (fields_.dimension() == 3) find_energies<3>(energy);
 }
 
-/// After the forces of the same displacements, with sums of q' kappa n n . u' alone.
+/// Uses the forces of the same displacements, and sums of q' kappa n n . u' alone.
 template <int D>
 void LinearSolid::find_energies(std::span<double> energy) {
   constexpr std::size_t pairs = pairs_of(D);
@@ -226,7 +226,7 @@ void LinearSolid::outline_tangent(std::span<const double> /*displacement*/,
 ///
 ///   K = q V (lambda - mu) g g + sum q' V (lambda - mu) g' g' + q sum q' (b + b') V kappa n n,
 ///
-/// in form `printed` with M of the point itself as a factor.
+/// in form `printed` with 1 / M of the point itself in the place of one 1 / M'.
 template <int D>
 void LinearSolid::outline_blocks(std::span<double> diagonal) {
   constexpr std::size_t pairs = pairs_of(D);
@@ -253,8 +253,8 @@ void LinearSolid::outline_blocks(std::span<double> diagonal) {
   }
 }
 
-/// A dilatation adds |g_row| times the sum of all its |g| to a row, a bond |n_row| (|n_x| + |n_y| +
-/// |n_z|) twice.
+/// A dilatation adds |g_row| times the sum of all its |g| to a row; a bond adds |n_row| (|n_x| +
+/// |n_y| + |n_z|) twice.
 template <int D>
 void LinearSolid::bound_rows(std::span<double> row_sums) {
   std::vector<double> reach(fields_.points());  // sums of |g| without d / M
@@ -340,9 +340,9 @@ double LinearSolid::bytes() const {
 
 double convolved_bytes(const LatticeBox& box, std::span<const LatticeArm> arms) {
   const double d = box.dimension, pairs = 0.5 * d * (d + 1.0);
-  // Fields of forces or of energies, with that of sums; all kernels at half of the modes, as on
-  // turned lattices. Of points 1 / M, theta, sums of arms, displacements and both pulls, sums of
-  // squares with and without 1 / M, a place and an integrity.
+  // Per site: fields of forces or of energies, that of sums, and all kernels at half of the modes,
+  // as on turned lattices. Per point: 1 / M, theta, sums of arms, displacements and both pulls,
+  // sums of squares with and without 1 / M, site and integrity.
   const double fields = std::max(2.0 * d + 1.0, d + pairs) + 1.0;
   return 8.0 * lattice_places(box, steps_of(arms)) * (fields + 0.5 * (1.0 + d + pairs)) +
          double(box.place.size()) * (8.0 * (2.0 + 4.0 * d + 2.0 * pairs) + 12.0);

@@ -30,52 +30,51 @@ enum class SolidForces {
 ///
 ///   f = q V sum q' kappa ((p + p') xi + (b + b') n n . eta)                                 [N]
 ///
-/// Form `printed` has p + p' = d (lambda - mu) (theta + theta') / M and b + b' = 2 b instead, M of
-/// the point itself for both ends: forces that do not add up to zero and do work around closed
-/// paths where M varies, for comparisons alone. Its energies are the same.
+/// Form `printed` has p + p' = d (lambda - mu) (theta + theta') / M and b + b' = 2 b instead, with
+/// M of the point itself for both ends. Where M varies its forces do not add up to zero and do work
+/// around closed paths: it is for comparisons alone. Its energies are the same.
 ///
-/// M counts neighbours that a pre-crack hides, as that of StateTerm does. On bodies without damage
-/// this is StateTerm with moments of the neighbours that are there. With
-/// damage it is not: StateTerm keeps M of the whole neighbourhood, here M is renewed with q as in
-/// [FCBM], so that theta of a uniform dilation stays right and points that have lost neighbours are
-/// stiffer.
+/// M counts neighbours beyond a pre-crack, too, as that of StateTerm does. On bodies without damage
+/// this is StateTerm with moments of the existing neighbours. With damage it is not: StateTerm
+/// keeps M of the whole neighbourhood, here M is updated with q as in [FCBM], so that theta of a
+/// uniform dilation stays right and points that have lost neighbours are stiffer.
 ///
-/// Of q between 0 and 1 the whole energy of a point has a factor, as have all bonds to it.
+/// An integrity q between 0 and 1 is a factor of a point's whole energy and of all bonds to it.
 class LinearSolid : public LatticeForces {
  public:
   struct Setting {
     LamePair constants;   ///< in plane stress those of the plane [Pa]
     double volume = 0.0;  ///< V of each point [m3]
     SolidForces form = SolidForces::energy;
-    /// Points from this one on stand for others, whose energy theirs is: they have neither b nor p.
-    /// For form `energy`.
+    /// Points from this one on are images, whose energy belongs to their sources: they have neither
+    /// b nor p. For form `energy`.
     std::size_t own = std::numeric_limits<std::size_t>::max();
   };
 
-  /// @param box the points and their places
-  /// @param is_periodic axes along which the lattice goes on as it began: points see their images
-  /// @param arms of two opposite steps one; a factor that all shares have does not matter
+  /// @param box the points and their sites
+  /// @param is_periodic axes with a period: points interact with their images
+  /// @param arms one per opposite pair; a common factor of all shares does not matter
   /// @throws std::logic_error for a period that is not longer than the arms, or another dimension
   LinearSolid(const CutLattice& box, const std::array<bool, 3>& is_periodic,
               std::vector<LatticeArm> arms, const Setting& setting, int threads);
 
-  /// 11 real transforms in 2D and 18 in 3D.
+  /// Costs 11 real transforms in 2D and 18 in 3D.
   void set_integrity(std::span<const double> integrity) override;
-  /// 10 and 14, form `printed` 6 and 8.
+  /// Costs 10 and 14, in form `printed` 6 and 8.
   void find_forces(std::span<const double> displacement, std::span<double> force) override;
-  /// 14 and 21, form `printed` 12 and 18.
+  /// Costs 14 and 21, in form `printed` 12 and 18.
   void find_forces_and_energies(std::span<const double> displacement, std::span<double> force,
                                 std::span<double> energy) override;
-  /// K does not depend on u. Of form `printed` it is not symmetric.
+  /// K does not depend on u. In form `printed` it is not symmetric.
   void multiply(std::span<const double> displacement, std::span<const double> v,
                 std::span<double> product) override;
-  /// Blocks are exact, as long as periods are longer than two arms; sums by the triangle
-  /// inequality over what each dilatation and each bond contributes.
+  /// Blocks are exact, as long as periods are longer than two arms; row sums use the triangle
+  /// inequality over the contributions of each dilatation and each bond.
   void outline_tangent(std::span<const double> displacement, std::span<double> diagonal,
                        std::span<double> row_sums) override;
-  /// Those of its own dilatation and deviatoric state; kernels are made and dropped again.
+  /// Virials of a point's own dilatation and deviatoric state; kernels are made in each call.
   void add_virials(std::span<const double> displacement, std::span<double> virials) override;
-  /// Memory that it holds.
+  /// Memory in use [bytes].
   [[nodiscard]] double bytes() const;
 
   [[nodiscard]] const LatticeFields& fields() const { return fields_; }
@@ -99,7 +98,7 @@ class LinearSolid : public LatticeForces {
   void add_virials(std::span<double> virials);
   void find_forces(std::span<const double> displacement, std::span<double> force, bool alone);
   [[nodiscard]] bool is_printed() const { return setting_.form == SolidForces::printed; }
-  /// What the forces of a point have instead of 1 / M'.
+  /// 1 / M' of a neighbour in the forces; 1 in form `printed`, which uses M of the point itself.
   [[nodiscard]] double inverse_moment_beside(std::size_t point) const {
     return is_printed() ? 1.0 : inverse_moment_[point];
   }
@@ -112,12 +111,12 @@ class LinearSolid : public LatticeForces {
   std::vector<LatticeSpectrum> arm_;     // kappa xi, by component
   std::vector<LatticeSpectrum> square_;  // kappa n n, by pair
   double whole_moment_ = 0.0;
-  // Per point and kept while q is: 1/M, the sums of q' kappa xi, of q' kappa n n, and of q' kappa n
-  // n / M'.
+  // Per point, updated with q: 1/M, the sums of q' kappa xi, of q' kappa n n, and of
+  // q' kappa n n / M'.
   std::vector<double> inverse_moment_, arms_left_, squares_left_, weighted_squares_;
   std::vector<double> displacement_;  // without its mean
   std::vector<double> dilatation_;    // theta
-  // Sums of q' kappa n n . u', and of all that forces have of q' theta' / M' and q' u' / M'.
+  // Sums of q' kappa n n . u', and all sums of q' theta' / M' and q' u' / M' in the forces.
   std::vector<double> pulls_, weighted_pulls_;
 };
 

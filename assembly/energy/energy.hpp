@@ -18,11 +18,11 @@ struct Tangent;
 /// dimension, row major, in the order of its pattern. Rows of a thread come in ascending order.
 using RowVisitor = std::function<void(int thread, Index i, std::span<const double> blocks)>;
 
-/// Rows of the derivative of forces: all of them, or those of a stand-in between points that are
-/// next to one another.
+/// Rows of the derivative of forces: the whole operator, or its short-range surrogate between
+/// adjacent points.
 enum class RowReach { whole, local };
 
-/// An energy E(u) as the operators see it that are linearised from it; see Assembler.
+/// An energy E(u) as seen by the operators that are linearised from it; see Assembler.
 class Energy {
  public:
   virtual ~Energy() = default;
@@ -32,12 +32,12 @@ class Energy {
   [[nodiscard]] virtual int threads() const = 0;
   /// Whether each off-diagonal block of its tangent is symmetric.
   [[nodiscard]] virtual bool has_symmetric_blocks() const = 0;
-  /// Whether its tangent can do without being stored: rows are found one by one, and product and v
-  /// may be one array.
+  /// True if the tangent need not be stored: rows are computed one by one, and product and v may be
+  /// one array.
   [[nodiscard]] virtual bool visits_rows() const = 0;
 
-  /// Whether its tangent has rows at all: forces by convolutions have products only, and what
-  /// `outline_rows` and `stencil` tell.
+  /// True if the tangent has rows. Forces by convolutions have none, only products, `outline_rows`
+  /// and `stencil`.
   [[nodiscard]] virtual bool has_rows() const { return true; }
 
   /// d2E/dx2 [N/m], every entry overwritten.
@@ -56,18 +56,18 @@ class Energy {
   virtual void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                              std::span<double> diagonal) = 0;
 
-  /// Whether forces are minus the derivative of the energy. Elsewhere there are the rows of their
-  /// derivative instead of a tangent, which is not symmetric; `product` is theirs.
+  /// True if forces are minus the derivative of the energy. Otherwise the rows of their derivative
+  /// replace the tangent: they are not symmetric, and `product` multiplies by them.
   [[nodiscard]] virtual bool has_potential() const { return true; }
   [[nodiscard]] virtual SparseRows rows(const StateView&, RowReach) {
     throw std::logic_error("an energy has a tangent");
   }
-  /// What all of them take [bytes].
+  /// Memory that all rows take [bytes].
   [[nodiscard]] virtual double bytes_of_rows() const { return 0.0; }
-  /// Of forces by convolutions.
+  /// Stencil of forces by convolutions; empty for others.
   [[nodiscard]] virtual LatticeStencil stencil(const StateView&) { return {}; }
-  /// Diagonal blocks of the rows, points x dimension x dimension, and numbers not less than the
-  /// sums of their absolute entries, one per degree of freedom [N/m].
+  /// Diagonal blocks of the rows, points x dimension x dimension, and upper bounds of the sums of
+  /// their absolute entries, one per degree of freedom [N/m].
   virtual void outline_rows(const StateView&, std::span<double> /*diagonal*/,
                             std::span<double> /*row_sums*/) {
     throw std::logic_error("an energy has a tangent");

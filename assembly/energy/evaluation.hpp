@@ -9,25 +9,26 @@ namespace peristat {
 /// Bonds that are stretched beyond their history.
 struct DamageGrowth {
   Index degrading = 0;  ///< bonds that lose integrity
-  Index breaking = 0;   ///< of these, bonds that lose the last of it
-  /// Largest ratio of a bond's stretch to that beyond which it is damaged: damage grows above 1.
-  /// Only of a pass that does not commit.
+  Index breaking = 0;   ///< of these, bonds that lose the last of it and break
+  /// Largest ratio of a bond's stretch to the stretch that it bears: damage grows above 1. Only
+  /// from a pass that does not commit.
   double utilisation = 0.0;
 };
 
-/// What a pass over the interactions finds besides what it adds up.
+/// Result of a pass over the interactions, beside the arrays that it fills.
 struct Evaluation {
   double energy = 0.0;      ///< [J]
-  bool degenerate = false;  ///< a measure without gradient at zero has reached it, or a value is
+  bool degenerate = false;  ///< a measure has reached zero, where it has no gradient, or a value is
                             ///< not finite: reject the state
-  DamageGrowth growth{};    ///< only of a pass that commits
-  /// Only of a pass that commits: energy that triangles and tetrahedra lose with the integrity of
-  /// their bonds [J].
+  DamageGrowth growth{};    ///< only from a pass that commits
+  /// Only from a pass that commits: energy that triangles and tetrahedra lose with the integrity of
+  /// their bonds, or that states lose beyond what the bonds' law dissipates [J].
   double released = 0.0;
-  /// Only of a pass that commits: forces are no longer those of the bonds' loading, since others
-  /// have lost their stiffness with them.
+  /// Only from a pass that commits: the forces have changed, because more than the damaged bonds
+  /// has lost stiffness.
   bool moves_equilibrium = false;
-  /// What the energy is a difference of, times the unit round-off [J]; 0: no more than itself.
+  /// Magnitude of the terms whose difference the energy is, times the unit round-off [J]; 0: the
+  /// energy's own round-off suffices.
   double round_off = 0.0;
 
   /// Adds what another term has found.

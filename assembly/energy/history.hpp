@@ -7,20 +7,21 @@
 
 namespace peristat {
 
-/// What the terms of a model remember of the states that were committed: an array of numbers per
-/// term, which that term alone understands. A value: copies share an array until one of them
-/// changes it, so that keeping a history costs nothing, and giving up a step is dropping it.
+/// Internal variables that the terms of a model keep from committed states: one array of numbers
+/// per term, which that term alone interprets. A value type: copies share an array until one of
+/// them changes it, so that keeping a history is cheap, and giving up a step means dropping its
+/// copy.
 class History {
  public:
   [[nodiscard]] std::size_t terms() const { return terms_.size(); }
 
-  /// Of a term; empty if it remembers nothing.
+  /// Array of a term; empty if the term keeps nothing.
   [[nodiscard]] std::span<const double> of(std::size_t term) const {
     if (term >= terms_.size() || !terms_[term]) return {};
     return *terms_[term];
   }
 
-  /// The same to be written: no other history sees what is changed here.
+  /// Array of a term for writing, copied first if other histories share it.
   [[nodiscard]] std::span<double> change(std::size_t term) {
     std::shared_ptr<std::vector<double>>& array = terms_.at(term);
     if (array.use_count() > 1) array = std::make_shared<std::vector<double>>(*array);

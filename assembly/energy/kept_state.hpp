@@ -6,7 +6,7 @@
 
 namespace peristat {
 
-/// A state that an operator stays linearised at.
+/// State at which an operator stays linearised.
 class KeptState {
  public:
   void keep(const StateView& at) {
@@ -16,7 +16,7 @@ class KeptState {
     environment_ = at.environment;
   }
   [[nodiscard]] StateView view() const { return {displacement_, history_, damage_, environment_}; }
-  /// Of points of which these are the places in the reference.
+  /// Current positions of points with these reference positions.
   [[nodiscard]] std::vector<double> positions(std::vector<double> reference) const {
     for (std::size_t k = 0; k < displacement_.size(); ++k) reference[k] += displacement_[k];
     return reference;

@@ -7,8 +7,8 @@
 namespace peristat {
 
 /// Rows of a square matrix: row r has the entries [offset[r], offset[r + 1]), columns ascending. An
-/// entry may be zero: what is stored depends on what interacts, not on values, so that matrices of
-/// one body have one pattern.
+/// entry may be zero: the pattern depends on which points interact, not on values, so that all
+/// matrices of one body share it.
 struct SparseRows {
   std::vector<Offset> offset;  ///< rows + 1
   std::vector<Index> column;

@@ -12,23 +12,25 @@
 
 namespace peristat {
 
-/// What changes along a path of equilibria.
+/// State on a path of equilibria.
 struct State {
   std::vector<double> displacement;  ///< points x dimension, row major [m]
-  double stage = 0.0;                ///< of the loading programme: without tables the load factor
+  double stage = 0.0;  ///< position in the loading programme: without tables the load factor
   History history{};
-  /// First load parameter, where a control has found it; nothing: the loading programme's.
+  /// First load parameter, if a displacement control has found it; nothing: the loading
+  /// programme's.
   std::optional<double> load = std::nullopt;
-  SharedEnvironment environment = nullptr;  ///< that of its load point
+  SharedEnvironment environment = nullptr;  ///< loading data of its load point
   double preload = 1.0;                     ///< see LoadPoint
 };
 
-/// Bonds that are stretched beyond their histories: they soften, or follow their secants as if they
-/// did not. A state in which `growth` is zero is the same in both.
+/// Treatment of bonds that are stretched beyond their histories: they soften, or damage is frozen
+/// and they follow their secants. Both agree in a state in which `growth` is zero.
 enum class Damage { grows, held };
 
 /// Where energy, gradient, tangent and product are evaluated: a view of a displacement and of the
-/// history that it comes after, which must outlive the view, and what the load makes of the energy.
+/// history before it, both of which must outlive the view, and the loading data that the energy
+/// depends on.
 struct StateView {
   template <std::convertible_to<std::span<const double>> Displacement>
   StateView(const Displacement& at, const History& after = none(), Damage rule = Damage::grows,
@@ -40,11 +42,12 @@ struct StateView {
   std::span<const double> displacement;  ///< points x dimension, row major [m]
   const History& history;                ///< of the same model
   Damage damage;
-  /// Of rigid sets that turn, see Constraints::curvature; empty: none do, or nobody asks for it.
+  /// Curvature of rotating rigid sets, see Constraints::curvature; empty: none rotates, or it is
+  /// not needed.
   std::span<const Tensor> curvature{};
   SharedEnvironment environment;
 
-  /// Per point, or empty.
+  /// Eigenstretch per point, or empty.
   [[nodiscard]] std::span<const double> eigenstretch() const {
     return environment ? std::span<const double>(environment->eigenstretch)
                        : std::span<const double>();

@@ -22,7 +22,7 @@ BlockPattern BlockPattern::united(const std::vector<Couplings>& terms, Index poi
     if (!couplings.partner.empty() && !is_known) different.push_back(couplings);
   }
   if (different.size() == 1) return BlockPattern(different.front());
-  // Nothing couples, as on a lattice by convolutions: rows of nothing are there already.
+  // No couplings, as on a lattice by convolutions: the term's own empty rows are used.
   if (different.empty() && !terms.empty()) return BlockPattern(terms.front());
   Rows rows;
   rows.offset.push_back(0);
@@ -65,7 +65,7 @@ std::vector<RowRange> partition_rows(const BlockPattern& pattern, int threads) {
   const Index rows = pattern.points();
   Index first = 0;
   for (int thread = 0; thread < threads; ++thread) {
-    // Rows count as one block besides their own, so that rows without any are shared out too.
+    // Each row counts one block beside its own, so that rows without any are shared out, too.
     const double share = double(thread + 1) / threads * double(pattern.blocks() + rows);
     Index last = first;
     while (last < rows && double(pattern.offset[last + 1] + last + 1) <= share) ++last;

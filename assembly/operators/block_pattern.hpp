@@ -9,7 +9,7 @@
 
 namespace peristat {
 
-/// Which points share interactions: the partners of i above it are partner[offset[i]] ..
+/// Pairs of points that interact: the partners of i above it are partner[offset[i]] ..
 /// partner[offset[i+1]-1], ascending. A view.
 struct Couplings {
   std::span<const Offset> offset;  ///< points + 1
@@ -25,23 +25,24 @@ struct Couplings {
   }
 };
 
-/// Sparsity of a tangent: the diagonal blocks, and one block (i, j), i < j, per pair of points that
-/// some term couples. Copies share what they hold.
+/// Sparsity pattern of a tangent: the diagonal blocks, and one block (i, j), i < j, per pair of
+/// points that some term couples. Copies share their arrays.
 class BlockPattern : public Couplings {
  public:
-  /// A view of the couplings, which outlive it.
+  /// View of the couplings, which must outlive it.
   explicit BlockPattern(const Couplings& couplings) : Couplings(couplings) {}
 
-  /// All blocks that any of several terms has, each of them with the same points; a view if one of
-  /// the terms has all of them.
+  /// Union of the blocks of several terms with the same points; a view if one of the terms has all
+  /// of them.
   [[nodiscard]] static BlockPattern united(const std::vector<Couplings>& terms, Index points);
 
-  /// With rows of its own, laid out as those of Couplings.
+  /// Pattern with rows of its own, laid out as those of Couplings.
   [[nodiscard]] static BlockPattern of_rows(std::vector<Offset> offset, std::vector<Index> partner);
 
   [[nodiscard]] Offset blocks() const { return static_cast<Offset>(partner.size()); }
 
-  /// Where the blocks of one of its terms are, in the order of the couplings; empty: in that order.
+  /// Positions in this pattern of the blocks of one of its terms, in the order of the couplings;
+  /// empty: the two orders agree.
   /// @throws std::logic_error if it lacks one
   [[nodiscard]] std::vector<Offset> places_of(const Couplings& couplings) const;
 
@@ -53,7 +54,7 @@ class BlockPattern : public Couplings {
   explicit BlockPattern(std::shared_ptr<const Rows> rows)
       : Couplings(rows->offset, rows->partner), own_(std::move(rows)) {}
 
-  std::shared_ptr<const Rows> own_;  // nothing: a view
+  std::shared_ptr<const Rows> own_;  // null: a view
 };
 
 /// Rows [first, last) of one thread. Its interactions also touch rows up to `touched_end`,

@@ -127,14 +127,14 @@ void ConstrainedProduct::add_blocks_between_followers(std::vector<SharedBlock>& 
   });
   for (const std::vector<Pair>& of_thread : pairs) {
     for (const auto& [i, j, block] : of_thread) {
-      // Each of two ranks has the row of its own end.
+      // Each rank adds the row of the end that it owns.
       if (points_.owns(i)) add_block(i, block, j, shared);
       if (points_.owns(j)) add_block(j, transposed(block), i, shared);
     }
   }
 }
 
-/// Where K has no rows, blocks between a point and its images, in bodies thinner than the horizon,
+/// Where K has no rows, blocks between a point and its images (in bodies thinner than the horizon)
 /// are left out.
 void ConstrainedProduct::linearise(Energy& energy, const StateView& at, double projection) {
   whole_->linearise(energy, at, projection);

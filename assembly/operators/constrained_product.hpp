@@ -9,50 +9,52 @@
 
 namespace peristat {
 
-/// Tangent of a body whose degrees of freedom follow others, where K has products alone, or ranks
-/// have parts of it,
+/// Tangent of a body with dependent degrees of freedom, for a K that has products alone, or that is
+/// distributed over ranks,
 ///
 ///   K_q = J^T K J + sum (dE/du - f) . d2 phi / dq2
 ///
-/// over its points and handles, see Constraints: what ConstrainedTangent is of blocks. Entries of
-/// what follows are 0. Of a part of a body rank 0 has the rows of handles.
+/// over its points and generalised degrees of freedom (handles), see Constraints;
+/// ConstrainedTangent is its counterpart with stored blocks. Entries of dependent degrees of
+/// freedom are 0. On a part of a body rank 0 has the rows of handles.
 struct ConstrainedProduct final : TangentOperator {
-  /// All outlive it.
+  /// All references must outlive it.
   /// @param whole K, of the body's points
-  /// @param sharing of a part of a body, whose ghosts and their images have no rows of K; all ranks
-  ///        make the same calls. Null: the body is whole
+  /// @param sharing partition of a distributed body: ghosts and their images have no rows of K, and
+  ///        all calls are collective. Null: the body is whole
   ConstrainedProduct(std::unique_ptr<TangentOperator> whole, const Points& points,
                      const Constraints& constraints, const Sharing* sharing = nullptr);
 
   [[nodiscard]] std::vector<double> positions() const override;
   void linearise(Energy& energy, const StateView& at, double projection) override;
   void multiply(std::span<const double> v, std::span<double> result) const override;
-  /// Of K: those of K_q can't be visited.
+  /// True if K has rows; those of K_q can't be visited.
   [[nodiscard]] bool has_rows() const override { return whole_->has_rows(); }
   /// @throws std::logic_error
   void for_each_row(const RowVisitor& visit) const override;
-  /// Numbers that are not less: see bound_constrained_row_sums.
+  /// Upper bounds, see bound_constrained_row_sums.
   void absolute_row_sums(std::span<double> sums) const override;
   [[nodiscard]] bool is_symmetric() const override { return whole_->is_symmetric(); }
 
  private:
-  /// A block of K between two points of which masters of several ranks follow: numbers of these
-  /// followers, and what they have of the points.
+  /// A block of K between two points that follow masters of several ranks: the numbers of both
+  /// followers, and the block times the points' factors (see SharedDependence).
   struct SharedBlock {
     std::size_t i, j;
     Tensor block;
   };
 
-  /// Adds J_i^T block J_j to the diagonal block of each point or handle that both follow.
+  /// Adds J_i^T block J_j to the diagonal block of each master (point or handle) that both follow.
   void add_to_diagonal(const std::vector<Dependence>& of_i, const Tensor& block,
                        const std::vector<Dependence>& of_j);
-  /// Adds what a row of K has: of a point that this rank owns, and perhaps of others.
+  /// Adds a block of a row of K, i a point that this rank owns; blocks between shared followers are
+  /// collected in `shared`.
   void add_block(Index i, const Tensor& block, Index j, std::vector<SharedBlock>& shared);
-  /// Adds blocks between shared followers, those of all ranks.
+  /// Adds the blocks between shared followers of all ranks. Collective.
   void add_shared_blocks(const std::vector<SharedBlock>& mine);
-  /// Blocks of K between two points that follow the same.
+  /// Adds the blocks of K between two points that follow the same masters.
   void add_blocks_between_followers(std::vector<SharedBlock>& shared);
-  /// Replaces entries of handles, of which each rank has a share, by their sums.
+  /// Replaces entries of handles, of which each rank has a share, by their sums. Collective.
   void sum_handles(std::span<double> of_dofs) const;
 
   std::unique_ptr<TangentOperator> whole_;
@@ -60,7 +62,7 @@ struct ConstrainedProduct final : TangentOperator {
   const Constraints& constraints_;
   const Sharing* sharing_;
   std::vector<double> reference_;     // of points and handles
-  std::vector<double> displacement_;  // where K is
+  std::vector<double> displacement_;  // at which K is linearised
   std::vector<Tensor> curvature_;     // of rigid sets
   std::vector<double> no_force_;
   mutable std::vector<double> moved_;  // J v

@@ -9,7 +9,7 @@
 namespace peristat {
 namespace {
 
-/// Absolute entries of a row of J, added up: of one component of a point.
+/// Sum of the absolute entries of a row of J, that of one component of a point.
 double row_sum(const std::vector<Dependence>& masters, std::size_t component, std::size_t d) {
   double sum = 0.0;
   for (const Dependence& on : masters) {
@@ -18,7 +18,7 @@ double row_sum(const std::vector<Dependence>& masters, std::size_t component, st
   return sum;
 }
 
-/// Shares out the row sums of K that a point has among its masters by |J|.
+/// Distributes a point's row sums of K among its masters by |J|.
 void add_row_sums(const std::vector<Dependence>& masters, std::span<const double> of_point,
                   std::size_t d, std::span<double> sums) {
   for (const Dependence& on : masters) {
@@ -29,7 +29,8 @@ void add_row_sums(const std::vector<Dependence>& masters, std::span<const double
   }
 }
 
-/// Of each component of the shared followers, sums of |J| over masters of all ranks.
+/// Sums of |J| over the masters of all ranks, for each component of the shared followers.
+/// Collective.
 std::vector<double> row_sums_of_shared(const Constraints& constraints, std::size_t d,
                                        const Sharing* sharing) {
   std::vector<double> of_rows;
@@ -40,7 +41,7 @@ std::vector<double> row_sums_of_shared(const Constraints& constraints, std::size
   return of_rows;
 }
 
-/// |J| of ones, per degree of freedom of the points.
+/// |J| 1, per degree of freedom of the points.
 std::vector<double> absolute_followings(const Points& points, const Constraints& constraints,
                                         std::span<const double> displacement,
                                         const Sharing* sharing) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Offset nowhere = -1;
 
-/// Visits the blocks (i, bond) of a pattern with a point that follows.
+/// Visits the blocks (i, bond) of a pattern in which at least one point follows others.
 template <class Visit>
 void for_each_of_followers(const BlockPattern& pattern, const Constraints& constraints,
                            const Visit& visit) {
@@ -34,13 +34,13 @@ void make_unique(std::vector<Index>& numbers) {
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
-/// Whether a row is this rank's: that of an owned point, or its share of a handle's.
+/// True if a row is this rank's: that of an owned point, or its share of a handle's.
 bool has_row(const Sharing* sharing, Index row) {
   return !sharing || row < sharing->owned() || row >= sharing->count();
 }
 
-/// Couples the handles that points of any rank couple, so that their rows are laid out alike on all
-/// ranks.
+/// Couples the handles that points of any rank couple, so that their rows have one layout on all
+/// ranks. Collective.
 void agree_on_handles(const Sharing& sharing, std::vector<std::vector<Index>>& columns) {
   const Index first = sharing.count();  // each rank has as many handles, after its points
   std::vector<double> pairs;
@@ -158,7 +158,7 @@ void ConstrainedTangent::gather_handles() {
   }
 }
 
-/// Rows of handles are shares: each rank has the columns of its own points.
+/// Rows of handles are partial: each rank has the columns of its own points.
 void ConstrainedTangent::multiply(std::span<const double> v, std::span<double> result) const {
   if (!sharing_) {
     Tangent::multiply(v, result);
@@ -171,7 +171,7 @@ void ConstrainedTangent::multiply(std::span<const double> v, std::span<double> r
 }
 
 void ConstrainedTangent::absolute_row_sums(std::span<double> sums) const {
-  if (constraints_.couples_points()) {  // as of a part, whose rows are not all here
+  if (constraints_.couples_points()) {  // as on a part of a body, which lacks rows
     std::vector<double> displacement(position);
     for (std::size_t dof = 0; dof < position.size(); ++dof) displacement[dof] -= reference_[dof];
     bound_constrained_row_sums(whole_, points_, constraints_, displacement, sharing_, sums);
@@ -246,9 +246,9 @@ void ConstrainedTangent::add_reduced(const End& a, const End& b, const Tensor& b
           }
         }
       }
-      // The diagonal block of a point has both orders of its dependences; a block beside it stands
-      // for its transpose, too. What is kept is the row of the lower one of both masters, which is
-      // that of the point whose master it is.
+      // A point's diagonal block meets both orders of its dependences; an off-diagonal block also
+      // represents its transpose. The row that is kept is that of the lower master, and the rank
+      // that owns the point which follows this master adds it.
       const bool is_ascending = left.master <= right.master;
       if (is_ascending ? a.is_owned : b.is_owned && !is_diagonal) {
         add(left.master, right.master, reduced);

@@ -7,25 +7,24 @@
 
 namespace peristat {
 
-/// Tangent of forces that are found by convolutions: it multiplies, and knows its diagonal blocks,
-/// bounds of its rows' sums, and its mean stencil; there is no row to visit. The energy outlives
-/// it.
+/// Tangent of forces that are computed by convolutions: it has products, diagonal blocks, bounds of
+/// row sums and a mean stencil, but no rows. The energy must outlive it.
 struct ConvolvedTangent : TangentOperator {
   explicit ConvolvedTangent(Energy& energy);
 
   [[nodiscard]] std::vector<double> positions() const override;
-  /// @param projection see TermPasses::product; diagonal blocks and sums are without
+  /// @param projection see TermPasses::product; diagonal blocks and row sums ignore it
   void linearise(Energy& energy, const StateView& at, double projection) override;
-  /// Gives back what `linearise` finds again at little cost.
+  /// Frees what `linearise` computes again at little cost.
   void forget();
   void multiply(std::span<const double> v, std::span<double> result) const override;
   [[nodiscard]] bool has_rows() const override { return false; }
   /// @throws std::logic_error
   void for_each_row(const RowVisitor& visit) const override;
-  /// Numbers that are not less, found anew: they are asked for now and then, and a vector long.
+  /// Upper bounds, computed in each call: they are rarely needed, and storing them takes a vector.
   void absolute_row_sums(std::span<double> sums) const override;
   [[nodiscard]] LatticeStencil stencil() const override;
-  /// That of forces without a potential is not.
+  /// False for forces without a potential.
   [[nodiscard]] bool is_symmetric() const override;
 
  private:
@@ -34,9 +33,9 @@ struct ConvolvedTangent : TangentOperator {
   double projection_ = 0.0;
 };
 
-/// Lets a tangent of convolutions forget what it has found, until it is linearised again; others
-/// keep what took them long to find.
-/// @return whether it has
+/// Frees the arrays of a tangent by convolutions until it is linearised again; other tangents keep
+/// theirs, which take long to compute.
+/// @return whether the tangent is one by convolutions
 bool forget_if_convolved(TangentOperator& tangent);
 
 }  // namespace peristat

@@ -7,17 +7,17 @@
 
 namespace peristat {
 
-/// Derivative of forces that have no potential: products are computed anew each time, rows when
-/// they are asked for. The energy outlives it.
+/// Derivative of forces that have no potential: products are computed anew each time, rows on
+/// request. The energy must outlive it.
 struct RowsOfEnergy : UnsymmetricTangent {
   explicit RowsOfEnergy(Energy& energy);
 
   [[nodiscard]] std::vector<double> positions() const override;
-  /// Whatever the projection: the operator is linear.
+  /// Ignores the projection: the operator is linear.
   void linearise(Energy& energy, const StateView& at, double projection) override;
   void multiply(std::span<const double> v, std::span<double> result) const override;
   void for_each_row(const RowVisitor& visit) const override;
-  /// Numbers that are not less.
+  /// Upper bounds.
   void absolute_row_sums(std::span<double> sums) const override;
 
   [[nodiscard]] SparseRows rows() const override;

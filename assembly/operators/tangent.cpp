@@ -10,7 +10,7 @@
 namespace peristat {
 namespace {
 
-/// A whole block of those stored.
+/// Expands a stored block to a whole one.
 template <int D, Tangent::Blocks stored_as>
 [[gnu::always_inline]] inline std::array<double, D * D> whole_block(const double* stored) {
   std::array<double, D * D> block;
@@ -46,8 +46,8 @@ void dispatch(const Tangent& tangent, const Body& body) {
   }
 }
 
-/// result = K v. Each thread adds up its own rows and, apart, what its bonds give to later threads'
-/// rows; these are added in the order of the threads.
+/// result = K v. Each thread sums its own rows and, separately, what its bonds contribute to later
+/// threads' rows; these contributions are added in the order of the threads.
 template <int D, Tangent::Blocks stored_as>
 void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<double> result) {
   std::vector<std::vector<double>>& spilled = tangent.spilled;

@@ -15,20 +15,20 @@ struct Tangent : TangentOperator {
 
   Tangent(const BlockPattern& of, int dimension_of_points, int threads = 1,
           Blocks stored_as = Blocks::whole);
-  /// For an energy, with what its blocks need.
+  /// Tangent for an energy, with blocks stored as the energy needs them.
   explicit Tangent(const Energy& energy);
 
   Blocks blocks;
   std::vector<double> off_diagonal;  ///< block (i, partner), in the order of the pattern [N/m]
   std::vector<double> position;      ///< see positions
 
-  /// Numbers that are stored of an off-diagonal block.
+  /// Numbers that are stored per off-diagonal block.
   [[nodiscard]] std::size_t block_size() const;
   /// Entry (r, c) of an off-diagonal block [N/m].
   [[nodiscard]] double entry(Offset block, int r, int c) const {
     return off_diagonal[std::size_t(block) * block_size() + place_in_block(r, c)];
   }
-  /// Where a block keeps its entry (r, c).
+  /// Position of entry (r, c) in a stored block.
   [[nodiscard]] std::size_t place_in_block(int r, int c) const;
 
   /// Makes all blocks zero.
@@ -46,7 +46,8 @@ struct Tangent : TangentOperator {
   /// sqrt of the sum of squares of all entries, both halves counted [N/m].
   [[nodiscard]] double frobenius_norm() const;
 
-  /// Per thread, what a product adds to the rows of later threads; overwritten by each.
+  /// Per thread, contributions of a product to the rows of later threads; overwritten by each
+  /// product.
   mutable std::vector<std::vector<double>> spilled;
 };
 

@@ -13,8 +13,8 @@ struct UnsymmetricTangent;
 
 /// Tangent K = d2E/dx2 [N/m] of the stored energy over all degrees of freedom, as solvers see it:
 /// they multiply by it, and read its blocks (i, j), i <= j, each dimension x dimension, row major;
-/// block (j, i) is the transpose of block (i, j). Of an UnsymmetricTangent they only multiply, or
-/// ask for its rows.
+/// block (j, i) is the transpose of block (i, j). An UnsymmetricTangent has products and sparse
+/// rows only.
 struct TangentOperator {
   TangentOperator(const BlockPattern& of, int dimension_of_points, int threads);
   virtual ~TangentOperator() = default;
@@ -31,38 +31,38 @@ struct TangentOperator {
   /// Current positions, where K is linearised; points x d [m].
   [[nodiscard]] virtual std::vector<double> positions() const = 0;
 
-  /// Makes this the tangent at a state.
+  /// Linearises at a state.
   /// @param projection see Energy::tangent
   virtual void linearise(Energy& energy, const StateView& at, double projection) = 0;
 
-  /// result = K v; both have one entry per degree of freedom. They are the same array, if
-  /// multiplies_in_place, or don't overlap.
+  /// result = K v; both have one entry per degree of freedom. They may be one array if
+  /// multiplies_in_place; otherwise they must not overlap.
   virtual void multiply(std::span<const double> v, std::span<double> result) const = 0;
   [[nodiscard]] virtual bool multiplies_in_place() const { return false; }
 
-  /// Whether there are rows to visit: products by convolutions have none.
+  /// True if there are rows to visit: products by convolutions have none.
   [[nodiscard]] virtual bool has_rows() const { return true; }
-  /// Visits all rows, those of a thread in ascending order and the threads side by side.
+  /// Visits all rows, in parallel; each thread visits its own in ascending order.
   virtual void for_each_row(const RowVisitor& visit) const = 0;
 
   /// Sums of the absolute entries of each row, sum_j |K_ij| [N/m]: Gershgorin's bound of the
   /// largest eigenvalue, per degree of freedom.
   virtual void absolute_row_sums(std::span<double> sums) const;
 
-  /// result_i = sum_j |K_ij| weight_j, of a tangent with rows to visit.
+  /// result_i = sum_j |K_ij| weight_j; only for a tangent with rows to visit.
   void multiply_absolute(std::span<const double> weight, std::span<double> result) const;
 
-  /// On a lattice, of a tangent that has no rows to visit; empty for others.
+  /// Stencil of a tangent on a lattice that has no rows to visit; empty for others.
   [[nodiscard]] virtual LatticeStencil stencil() const { return {}; }
 
-  /// Itself with its stored blocks, or nothing if they are computed anew each time.
+  /// This tangent if its blocks are stored; null if they are computed anew each time.
   [[nodiscard]] virtual const Tangent* as_tangent() const { return nullptr; }
   [[nodiscard]] virtual Tangent* as_tangent() { return nullptr; }
 
   [[nodiscard]] virtual bool is_symmetric() const { return true; }
 
-  /// Itself if it is not symmetric and has rows: `pattern` then has no blocks, and there are no
-  /// rows to visit.
+  /// This tangent if it is not symmetric and has sparse rows, otherwise null: `pattern` then has no
+  /// blocks, and there are no rows to visit.
   [[nodiscard]] virtual const UnsymmetricTangent* as_unsymmetric() const { return nullptr; }
 };
 

@@ -7,17 +7,17 @@
 
 namespace peristat {
 
-/// Tangent that is no second derivative of an energy, and not symmetric. `pattern` has no blocks,
-/// `diagonal` those of the diagonal, and `multiply` is the operator itself.
+/// Unsymmetric tangent, which is no second derivative of an energy. `pattern` has no blocks,
+/// `diagonal` has the diagonal blocks, and `multiply` applies the operator.
 struct UnsymmetricTangent : TangentOperator {
   using TangentOperator::TangentOperator;
 
   /// All of K [N/m], over all degrees of freedom; large.
   [[nodiscard]] virtual SparseRows rows() const = 0;
-  /// What rows() takes [bytes], without making them.
+  /// Memory that rows() takes [bytes], without making them.
   [[nodiscard]] virtual double bytes_of_rows() const = 0;
 
-  /// A short-range stand-in of K [N/m] over all degrees of freedom, for preconditioning.
+  /// Short-range surrogate of K [N/m] over all degrees of freedom, for preconditioning.
   [[nodiscard]] virtual SparseRows local_rows() const = 0;
 
   [[nodiscard]] const UnsymmetricTangent* as_unsymmetric() const override { return this; }
@@ -28,7 +28,7 @@ struct UnsymmetricTangent : TangentOperator {
   /// @throws std::logic_error
   void for_each_row(const RowVisitor& visit) const override;
 
-  /// By rows(), unless one who knows K better overrides it.
+  /// Computed from rows(), unless overridden.
   void absolute_row_sums(std::span<double> sums) const override;
 };
 

@@ -2,9 +2,9 @@
 
 namespace peristat {
 
-/// What the forces and energies of interactions fulfil in every state. They owe the sums if their
-/// energy doesn't change when all of their points move or turn together, and a positive energy if
-/// no constant is negative.
+/// Conservation properties of the forces and energies of interactions, in every state. The sums are
+/// zero if the energy doesn't change when all points of an interaction move or turn together; the
+/// energy is positive if no constant is negative.
 struct Balances {
   bool force_sum = true;        ///< internal forces add up to zero
   bool moment_sum = true;       ///< so do their moments about any point, in the present positions
@@ -12,7 +12,7 @@ struct Balances {
   bool potential = true;        ///< forces are minus the derivative of the energy
   bool linear = false;  ///< forces are linear in the displacements, while nothing is damaged
 
-  /// What a sum of terms owes: what each of them does.
+  /// Keeps the balances that another term fulfils, too, as for a sum of terms.
   void restrict_to(const Balances& other) {
     force_sum = force_sum && other.force_sum;
     moment_sum = moment_sum && other.moment_sum;

@@ -17,7 +17,7 @@ void with_law(const Model& model, const Visit& visit) {
   if (const BondTerm* const bonds = model.failing_bonds()) bonds->with_damage_law(visit);
 }
 
-/// A bond of an image is its source's, and what a source has its images have.
+/// Adds the sums of images to those of their sources, and copies the result back to the images.
 void gather_images(std::span<const Index> sources, std::vector<double>& sums) {
   const std::size_t own = sums.size() - sources.size();
   for (std::size_t k = 0; k < sources.size(); ++k) sums[std::size_t(sources[k])] += sums[own + k];
@@ -29,13 +29,13 @@ std::span<const Index> sources_of_images(const Points* points) {
                            : std::span<const Index>();
 }
 
-/// How many of the damages of a body's points are told, the first ones: of a part those of points
+/// Number of points, the first ones, whose damage enters the maximum: on a part of a body those
 /// that its rank owns.
 std::size_t told_points(const Points* points, std::span<const double> damage) {
   return points != nullptr && points->owned ? std::size_t(*points->owned) : damage.size();
 }
 
-/// Bonds of points that have lost their integrity.
+/// Marks the bonds of points that have lost their integrity.
 std::vector<char> without_points(const Bonds& bonds, std::span<const double> integrity) {
   std::vector<char> broken(integrity.empty() ? 0 : std::size_t(bonds.count()));
   if (broken.empty()) return broken;
@@ -48,7 +48,7 @@ std::vector<char> without_points(const Bonds& bonds, std::span<const double> int
   return broken;
 }
 
-/// Of these, those that a part of a body counts.
+/// Number of such bonds, as far as a part of a body counts them.
 Index count_without_points(const Bonds& bonds, std::span<const double> integrity,
                            const Points& points) {
   const std::vector<char> broken = without_points(bonds, integrity);
@@ -61,7 +61,7 @@ Index count_without_points(const Bonds& bonds, std::span<const double> integrity
   return count;
 }
 
-/// Of points that have lost their integrity: with every point its bonds are broken.
+/// Damage of a body whose points lose their integrity, and with it all of their bonds.
 DamageState assess_points(const PointTerm& term, std::span<const double> history,
                           std::span<const double> cut_weight, std::span<double> damage,
                           const Points* points) {

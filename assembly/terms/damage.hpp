@@ -10,7 +10,7 @@
 
 namespace peristat {
 
-/// What the history of a body's bonds means.
+/// Damage that follows from the history of a body's bonds.
 struct DamageState {
   double dissipated_energy = 0.0;  ///< by degraded and broken bonds [J]
   Index broken_bonds = 0;
@@ -26,10 +26,10 @@ struct DamageState {
 /// either 0 or 1 this is one minus the share of unbroken bonds ([GPMB] eq. 13). A point without
 /// bonds has the damage 0, or 1 if a crack has cut them.
 /// @param cut_weight per point [m6], or empty
-/// @param points those of the body: a bond across a plane of symmetry counts half, and its twin for
-///        the other half; of a part of a body sums are over the bonds that it counts, but what
-///        points that fail have dissipated is of all of it, and damage is that of the points that
-///        its rank owns. Null: the body is whole and has no images
+/// @param points those of the body: a bond across a plane of symmetry counts half, and its twin
+///        counts the other half. On a part of a body sums are over the bonds that it counts, except
+///        that the dissipation of failing points is that of the whole body; damage is right at the
+///        points that its rank owns. Null: the body is whole and has no images
 [[nodiscard]] DamageState assess_damage(const Model& model, const History& history,
                                         std::span<const double> cut_weight,
                                         std::span<double> damage, const Points* points = nullptr);
@@ -38,19 +38,19 @@ struct DamageState {
 /// before, Degraded::never_fails where the model says so); empty for bonds that can't be damaged.
 [[nodiscard]] std::span<const double> bond_stretches(const Model& model, const History& history);
 
-/// Whether each bond is broken, in the order of the bonds; empty for bonds that can't be.
+/// True for each broken bond, in the order of the bonds; empty for bonds that can't break.
 [[nodiscard]] std::vector<char> broken_bonds(const Model& model, const History& history);
 
-/// Everything that holds a body together, and what of it is broken.
+/// All bonds of a body, and which of them are broken.
 struct DamagedNetwork {
   std::shared_ptr<const Bonds> bonds;
   std::vector<char> broken;  ///< per bond; empty: none
 };
 
-/// The model's bonds, or, of a lattice that is convolved, all of them, found for this once.
+/// The model's bonds; on a convolved lattice all of its bonds, found anew in each call.
 [[nodiscard]] std::shared_ptr<const Bonds> whole_network(const Model& model);
 
-/// With all bonds of the body (whole_network).
+/// Damaged network of all bonds of the body (whole_network).
 [[nodiscard]] DamagedNetwork damaged_network(const Model& model, const History& history);
 
 }  // namespace peristat

@@ -8,23 +8,23 @@
 
 namespace peristat {
 
-/// The discrete energy of a body: a sum of terms on a network of bonds, which tells what hangs
-/// together, what a crack cuts and what is damaged. Copies share their terms.
+/// The discrete energy of a body: a sum of terms on a network of bonds, which defines connectivity,
+/// what a crack cuts and what is damaged. Copies share their terms.
 class Model {
  public:
   Model() : Model(Bonds{{0}, {}, {}}) {}
 
-  /// Bonds that hold together what terms to come have energies of.
+  /// Network of bonds without an energy, for terms to be added.
   explicit Model(Bonds network) : bonds_(std::make_shared<const Bonds>(std::move(network))) {}
 
   /// Bonds with the energy sum_b w psi(l; L).
   /// @param never_fails per bond, 1: no damage whatever the stretch; empty: none
   Model(Bonds network, BondPotential potential, std::vector<char> never_fails = {});
 
-  /// With a term of bonds that is more than the sum of theirs.
+  /// With a bond term that is more than a sum over bonds.
   explicit Model(std::shared_ptr<BondTerm> bonds);
 
-  /// Bonds of their term, otherwise those of the network.
+  /// Number of bonds: of the bond term, otherwise of the network.
   [[nodiscard]] Offset count_of_bonds() const {
     return bond_term_ ? bond_term_->count() : bonds_->count();
   }
@@ -41,21 +41,21 @@ class Model {
   [[nodiscard]] const BondTerm* failing_bonds() const;
 
   [[nodiscard]] bool has_history() const;
-  /// Whether damage is of points or states, which have no strength of bonds that a load could be
-  /// led to: under the same load all fail that do.
+  /// True if points fail instead of bonds: there is no bond strength that a load could be scaled
+  /// to, and all points that exceed what they bear fail together under the same load.
   [[nodiscard]] bool fails_in_avalanches() const { return has_history() && !failing_bonds(); }
 
-  /// Where a History keeps what a term remembers.
+  /// Position of a term's array in a History.
   /// @throws std::logic_error if it is none of the terms
   [[nodiscard]] std::size_t slot_of(const Term& term) const;
 
-  /// Blocks that any term has.
+  /// Union of the blocks of all terms.
   [[nodiscard]] BlockPattern pattern() const;
 
   [[nodiscard]] bool has_symmetric_blocks() const;
-  /// Whether its tangent can do without being stored.
+  /// True if the tangent need not be stored.
   [[nodiscard]] bool visits_rows() const;
-  /// Whether its tangent has rows at all.
+  /// True if the tangent has rows.
   [[nodiscard]] bool has_rows() const;
   [[nodiscard]] Balances balances() const;
 

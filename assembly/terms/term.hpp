@@ -28,12 +28,12 @@ class TermPasses {
  public:
   virtual ~TermPasses() = default;
 
-  /// E [J] and dE/dx [N]; a pass that needs a value per point first finds it here, too.
+  /// E [J] and dE/dx [N]; also computes the values per point that some terms need first.
   /// @param gradient left out if empty
   virtual Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) = 0;
 
-  /// As `gradient`, and moves the term's history to the state: E is what is stored after that.
-  /// Terms before it have committed already.
+  /// As `gradient`, after updating the term's history to the state: E is the energy that is stored
+  /// after the update. Terms before it have committed already.
   virtual Evaluation commit(std::span<const double> displacement,
                             const SharedEnvironment& environment, History& history,
                             std::span<double> gradient, Write how) {
@@ -47,11 +47,10 @@ class TermPasses {
     return commit(displacement, environment, history, gradient, how);
   }
 
-  /// Adds the forces of loads that follow the deformation [N]: the gradient holds them with the
-  /// other sign.
+  /// Adds the follower forces of the loads [N], which the gradient has with the other sign.
   virtual void follower_force(const StateView&, std::span<double> /*force*/) {}
 
-  /// What committing the state would damage.
+  /// Damage that committing the state would cause.
   virtual DamageGrowth growth(const StateView&) { return {}; }
 
   /// d2E/dx2 [N/m], in the blocks of the pattern.
@@ -62,13 +61,13 @@ class TermPasses {
   virtual void product(const StateView& at, std::span<const double> v, double projection,
                        std::span<double> product, Write how) = 0;
 
-  /// Visits the rows of its tangent without storing it; only of a term that visits_rows.
+  /// Visits the rows of the tangent without storing it; only for a term that visits_rows.
   /// @param diagonal overwritten; empty: not wanted
   virtual void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                              std::span<double> diagonal);
 
-  /// Of a term without a potential or without rows: see Energy::rows, Energy::outline_rows and
-  /// Energy::stencil. What others have besides its diagonal blocks has no place there.
+  /// For a term without a potential or without rows, see Energy::rows, Energy::outline_rows and
+  /// Energy::stencil. Other terms beside it may have diagonal blocks only.
   [[nodiscard]] virtual SparseRows rows(const StateView& at, RowReach reach);
   [[nodiscard]] virtual double bytes_of_rows() const { return 0.0; }
   [[nodiscard]] virtual LatticeStencil stencil(const StateView&) { return {}; }
@@ -78,8 +77,8 @@ class TermPasses {
   /// An equal share of its interactions' energy for each of their points [J].
   virtual void point_energies(const StateView& at, std::span<double> energies, Write how) = 0;
 
-  /// Whether the energies that its passes find of a part of a body are, of each interaction, the
-  /// share of the points that the rank owns; otherwise they are of all interactions that it has.
+  /// True if the energies that passes return on a part of a body weight each interaction by the
+  /// share of its points that the rank owns; otherwise all interactions on the rank count in full.
   [[nodiscard]] virtual bool shares_energy() const { return false; }
 
   /// Adds to every point its equal share of the virials of its interactions, sum_a dE/dx_a (x) A_a
@@ -88,14 +87,14 @@ class TermPasses {
   virtual void add_virials(const StateView&, std::span<double> /*virials*/) {}
 };
 
-/// Where the passes of a term are to work; everything outlives them.
+/// Setting of a term's passes; everything in it outlives them.
 struct TermSetting {
   const Points& points;
   const Model& model;
   const BlockPattern& pattern;
   Workspace& workspace;
-  /// Null: the body is whole. Otherwise the points are a part of it, and a commit, which all ranks
-  /// make, may ask the others what history is to come of it. No other pass does.
+  /// Null: the body is whole. Otherwise the points are a part of it, and a commit, which is
+  /// collective, may communicate to agree on the new history. No other pass communicates.
   const Sharing* sharing = nullptr;
 };
 
@@ -104,41 +103,41 @@ struct InteractionCount {
   std::string name;  ///< "bonds"
   Offset count = 0;  ///< each counted once
   std::string per_point_name, per_point_meaning;
-  std::vector<std::int32_t> per_point;  ///< that a point takes part in
-  std::int32_t orders = 1;              ///< of an interaction's other points, if these count apart
+  std::vector<std::int32_t> per_point;  ///< interactions that each point takes part in
+  std::int32_t orders = 1;  ///< orderings of an interaction's other points that count apart
 };
 
-/// One kind of interaction with its law: what a model is a sum of. Constant in a solve, but for
-/// what is stored of it.
+/// One kind of interaction with its law; a model is a sum of these. Constant during a solve, except
+/// for stored interactions.
 class Term {
  public:
   virtual ~Term() = default;
 
-  /// The points it couples: the blocks of its tangent. The arrays belong to the term.
+  /// Points that it couples: the blocks of its tangent. The term owns the arrays.
   [[nodiscard]] virtual Couplings couplings() const = 0;
   /// Whether each of its off-diagonal blocks is symmetric.
   [[nodiscard]] virtual bool has_symmetric_blocks() const { return false; }
-  /// Whether the rows of its tangent can be found one by one, and product and v be one array: its
-  /// tangent need not be stored.
+  /// True if the tangent need not be stored: its rows can be computed one by one, and product and v
+  /// may be one array.
   [[nodiscard]] virtual bool visits_rows() const { return false; }
 
-  /// Whether its tangent has rows at all: see Energy::has_rows.
+  /// True if the tangent has rows, see Energy::has_rows.
   [[nodiscard]] virtual bool has_rows() const { return true; }
 
   [[nodiscard]] virtual Balances balances() const = 0;
 
-  /// Whether states damage it, for good.
+  /// True if states damage the term, irreversibly.
   [[nodiscard]] virtual bool can_be_damaged() const { return false; }
 
-  /// Of a body to which nothing has happened; empty if the term remembers nothing.
+  /// History before any load; empty if the term remembers nothing.
   [[nodiscard]] virtual std::vector<double> initial_history() const { return {}; }
-  /// Brings up to date what it remembers of other terms' histories.
+  /// Updates the part of its history that follows from other terms' histories.
   virtual void follow(const Model&, History&) const {}
 
   [[nodiscard]] virtual std::vector<InteractionCount> counts() const { return {}; }
 
-  /// Memory that storing its interactions takes, instead of finding them anew in every pass, and
-  /// that it has taken for it [bytes].
+  /// Memory that storing its interactions takes, instead of finding them in every pass, and memory
+  /// that stored ones take now [bytes].
   [[nodiscard]] virtual double bytes_to_store() const { return 0.0; }
   [[nodiscard]] virtual double stored_bytes() const { return 0.0; }
   virtual void store(const Points&, int /*threads*/) {}

@@ -4,7 +4,8 @@ namespace peristat {
 
 Workspace::Workspace(const BlockPattern& pattern, int dimension, int threads)
     : ranges(partition_rows(pattern, threads)), sums(ranges.size()), evaluations(ranges.size()) {
-  // What couples nothing, as a lattice by convolutions, hardly adds up rows.
+  // Terms without couplings, as a lattice by convolutions, rarely sum rows: they allocate on
+  // demand.
   if (!pattern.partner.empty()) make_room(block_width(dimension));
 }
 

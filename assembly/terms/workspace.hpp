@@ -11,12 +11,12 @@
 
 namespace peristat {
 
-/// Doubles of a point's sum: of a vector, and of the upper half of a symmetric block.
+/// Doubles per point of a sum: of a vector, and of the upper half of a symmetric block.
 constexpr int vector_width(int dimension) { return dimension == 3 ? 4 : dimension; }
 constexpr int block_width(int dimension) { return dimension == 3 ? 6 : 4; }
 
-/// What the passes of all terms add up in: the threads' ranges of rows and their sums, allocated
-/// once, where nothing couples when they are first asked for.
+/// Buffers in which the passes of all terms sum: the threads' ranges of rows and their sums,
+/// allocated once; without couplings on first use.
 struct Workspace {
   Workspace(const BlockPattern& pattern, int dimension, int threads);
 
@@ -57,7 +57,7 @@ struct Workspace {
     sum_rows<width>(body, write, [](int, RowRange) {});
   }
 
-  /// What the threads found, together.
+  /// Sum of the threads' evaluations.
   [[nodiscard]] Evaluation total_evaluation() const {
     Evaluation total;
     for (const Evaluation& part : evaluations) total += part;
@@ -66,7 +66,7 @@ struct Workspace {
   }
 
  private:
-  /// For so many doubles per row.
+  /// Grows the sums to so many doubles per row.
   void make_room(int width);
 };
 

@@ -7,7 +7,7 @@
 
 namespace peristat {
 
-/// Where a crack ends, and the ring about it over which its integrals are taken.
+/// Position of a crack's tip, and the ring about it over which its integrals are taken.
 struct CrackTipSpecification {
   std::string name{};
   Coordinates at{};                  ///< of the tip, in 3D any point of its straight front [m]
@@ -15,11 +15,11 @@ struct CrackTipSpecification {
   Coordinates front{0.0, 0.0, 1.0};  ///< 3D: along the front, of any length
   /// Radii of the ring [m]; 0: 2 and 4 horizons.
   double inner = 0.0, outer = 0.0;
-  /// Length of a cut ahead that energy release rates are found by [m]; 0: none.
+  /// Length of a cut ahead of the tip, by which energy release rates are found [m]; 0: none.
   double cut = 0.0;
 };
 
-/// What loads the tip of a crack.
+/// Loading of a crack's tip.
 struct CrackTipValues {
   double j = 0.0;       ///< J integral [J/m2]
   double spread = 0.0;  ///< largest difference between J and that of a third of the ring, over J
@@ -31,7 +31,7 @@ struct CrackTipValues {
 struct CrackTipFrame {
   Coordinates origin{}, e1{}, e2{}, e3{};
 
-  /// Components of a vector from the tip.
+  /// Components of the vector from the tip to a place.
   [[nodiscard]] Coordinates components(const Coordinates& place) const;
   [[nodiscard]] Coordinates vector(const Coordinates& components) const;
 };

@@ -36,7 +36,7 @@ CrackTipFrame frame_of(const CrackTipSpecification& tip, int dimension, const st
   return frame;
 }
 
-/// From 1 to 0 over [0, 1], smoothly, and its slope.
+/// Falls smoothly from 1 to 0 over [0, 1]; returns the value and its slope.
 std::array<double, 2> fall(double t) {
   if (t <= 0.0) return {1.0, 0.0};
   if (t >= 1.0) return {0.0, 0.0};
@@ -105,15 +105,15 @@ void CrackTipIntegrals::check_planes(const std::string& key) {
   }
 }
 
-/// The ring, and half a horizon beyond it, must be full of points: within the body's extent, and
-/// in all directions but for a slot behind the tip.
+/// Requires that the ring, and half a horizon beyond it, are full of points: within the body's
+/// extent, and in all directions but for a slot behind the tip.
 void CrackTipIntegrals::check_ring(const std::string& key) const {
   constexpr std::size_t sectors = 16;
   constexpr double full = 0.7, slot = 0.9;  // shares of a sector's volume, of a half turn
   const double outer = tip_.outer + 0.5 * setting_.horizon;
   std::array<double, sectors> volume{};
   std::array<double, 4> extent{};  // ahead, behind, above, below
-  double above = 0.0;              // the crack, where it lies in a plane of symmetry
+  double above = 0.0;              // positive if the points that are no images lie above the crack
   for (Index i = 0; i < points_.count(); ++i) {
     if (!points_.owns(i)) continue;
     const Coordinates at = frame_.components(points_.position(i));
@@ -152,7 +152,8 @@ void CrackTipIntegrals::check_ring(const std::string& key) const {
   }
 }
 
-/// Of points near the tip, of the body or of images too [m].
+/// Length of the front by the first `points` points, as far as they are near the tip; 2D: thickness
+/// [m].
 double CrackTipIntegrals::front_length(Index points) const {
   if (points_.dimension == 2) return setting_.cross_section;
   double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -199,7 +200,7 @@ std::vector<Index> CrackTipIntegrals::points() const {
   return within;
 }
 
-/// g = (F - I) e1 of every point, zero for handles. Planes leave e1 as it is.
+/// g = (F - I) e1 of every point, zero for handles. Planes of symmetry leave e1 as it is.
 std::vector<double> CrackTipIntegrals::translation_of(Assembler& assembler,
                                                       const StateView& at) const {
   const auto d = std::size_t(points_.dimension);
@@ -233,7 +234,8 @@ CrackTipIntegrals::Rings CrackTipIntegrals::fluxes(Assembler& assembler, const S
       behind(points);
   static_cast<void>(assembler.gradient(at, gradient));
   assembler.point_energies(at, energy);
-  // Fields that are moved by a hundredth of a spacing: energies are quadratic but for rotations.
+  // Differences of energies at fields shifted by a hundredth of a spacing: energies are quadratic
+  // but for rotations.
   const double step = 1e-2 * double(points_.spacing);
   std::vector<double> moved(at.displacement.begin(), at.displacement.end());
   const auto energies_after = [&](double shift, std::vector<double>& energies) {
@@ -261,7 +263,8 @@ CrackTipIntegrals::Rings CrackTipIntegrals::fluxes(Assembler& assembler, const S
   return fluxes;
 }
 
-/// Auxiliary displacements of all points: Williams' of a mode, or (3) of a force on the tip.
+/// Auxiliary displacements of all points: Williams' field of mode 0, 1 or 2, or (3) that of a force
+/// on the tip.
 std::vector<double> CrackTipIntegrals::field(std::size_t size, int mode) const {
   const auto d = std::size_t(points_.dimension);
   std::vector<double> displacement(size, 0.0);
@@ -275,7 +278,7 @@ std::vector<double> CrackTipIntegrals::field(std::size_t size, int mode) const {
   return displacement;
 }
 
-/// M with an auxiliary field, of the whole ring.
+/// M with an auxiliary field, over the whole ring.
 double CrackTipIntegrals::interaction(Assembler& assembler, const StateView& at,
                                       std::span<const double> translation,
                                       const std::vector<double>& with) const {
@@ -313,7 +316,7 @@ CrackTipValues CrackTipIntegrals::values(Assembler& assembler, const StateView& 
     return interaction(assembler, at, translation, field(at.displacement.size(), mode));
   };
   found.k[0] = 0.5 * elasticity.plane_modulus * with(0);
-  // A plane of symmetry lets none of what is antisymmetric to it be.
+  // A plane of symmetry excludes fields that are antisymmetric to it.
   if (!is_on_plane_) found.k[1] = 0.5 * elasticity.plane_modulus * with(1);
   const bool has_mode_3 = points_.dimension == 3 && !is_on_plane_ && !is_front_halved_;
   if (has_mode_3) found.k[2] = elasticity.shear_modulus * with(2);

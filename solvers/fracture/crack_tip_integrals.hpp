@@ -14,12 +14,12 @@
 
 namespace peristat {
 
-/// What the integrals about a crack's tip depend on beside the tip.
+/// Inputs of the integrals about a crack's tip, beside the tip.
 struct CrackTipSetting {
   double horizon = 0.0;        ///< [m]
   double cross_section = 1.0;  ///< 2D: thickness [m]
-  /// Null: the points are the whole body's. Otherwise those of a part: all ranks make the same
-  /// calls, and get the same.
+  /// Null: the points are the whole body's. Otherwise those of a part: all calls are collective,
+  /// with the same results on all ranks.
   const Sharing* sharing = nullptr;
 };
 
@@ -31,33 +31,34 @@ struct CrackTipSetting {
 ///
 ///   J = 1/B ( sum_int sum_a (q_a - mean q) p_a . g_a  -  sum_i e_i dq/dX1 ),
 ///
-/// whose first sum is sum_a q_a g_a . dE/du_a - d/ds sum_i q_i e_i(u + s g): what moves along e1
-/// takes its energy with it. It holds for every term of the energy, at finite strain, and with all
-/// bonds as damaged as they are. B is the length of the front (2D: the thickness). In the continuum
-/// limit it is int (P : g (x) grad q - W dq/dX1) dA (Li, Shih and Needleman 1985 at finite strain).
+/// whose first sum is sum_a q_a g_a . dE/du_a - d/ds sum_i q_i e_i(u + s g): points that move along
+/// e1 carry their energy with them. It holds for every term of the energy, at finite strain, and
+/// with damage held. B is the length of the front (2D: the thickness). In the continuum limit it is
+/// int (P : g (x) grad q - W dq/dX1) dA (Li, Shih and Needleman 1985 at finite strain).
 ///
 /// K and T follow from the interaction with an auxiliary field v at small strain, M = dJ(u + s
 /// v)/ds at s = 0: K_I = E' M/2, K_III = mu M, T = E' M.
 class CrackTipIntegrals {
  public:
   /// @param key of the tip, for errors
-  /// @throws InputError for a ring that is none, reaches the body's edge or a hole, or is cut by a
-  ///         plane of symmetry that the crack does not lie in or end at right angles
+  /// @throws InputError for an invalid ring, for one that reaches the body's edge or a hole, or is
+  ///         cut by a plane of symmetry, unless the crack lies in this plane or its front is at
+  ///         right angles to it
   CrackTipIntegrals(const Points& points, const CrackTipSpecification& tip,
                     const CrackTipSetting& setting, const std::string& key);
 
-  /// Of the ring's material; without it there is a J, but neither K nor T.
+  /// Sets the constants of the ring's material; without them there is a J, but neither K nor T.
   void set_elasticity(const TipElasticity& elasticity) { elasticity_ = elasticity; }
 
-  /// J per joule: 1/B, 2/B where a plane of symmetry halves the crack [1/m].
+  /// J per joule of the sums: 1/B, 2/B where a plane of symmetry halves the crack [1/m].
   [[nodiscard]] double share() const { return factor_; }
 
-  /// Within the ring, and owned; of all ranks at least one.
+  /// Owned points within the outer radius of the ring; at least one rank has some.
   [[nodiscard]] std::vector<Index> points() const;
   [[nodiscard]] CrackTipValues values(Assembler& assembler, const StateView& at) const;
 
  private:
-  static constexpr std::size_t rings = 4;  // the whole one, and its thirds
+  static constexpr std::size_t rings = 4;  // the whole ring, and its thirds
   using Rings = std::array<double, rings>;
 
   /// Weights of a point.
@@ -66,7 +67,7 @@ class CrackTipIntegrals {
     Rings q{}, slope{};  // dq/dX1
   };
 
-  /// Of all images that there are, on any rank.
+  /// Kinds of all images that any rank has. Collective.
   [[nodiscard]] std::vector<ImageKind> kinds_of_images() const;
   void check_planes(const std::string& key);
   void check_ring(const std::string& key) const;
@@ -87,10 +88,10 @@ class CrackTipIntegrals {
   CrackTipSetting setting_;
   std::optional<TipElasticity> elasticity_;
   CrackTipFrame frame_;
-  bool is_on_plane_ = false;      // of symmetry, in which the crack lies
-  bool is_front_halved_ = false;  // by a plane of symmetry across it
+  bool is_on_plane_ = false;      // the crack lies in a plane of symmetry
+  bool is_front_halved_ = false;  // a plane of symmetry crosses the front
   std::vector<Weighted> weighted_;
-  double factor_ = 1.0;  // of the sums over the points, to be J
+  double factor_ = 1.0;  // from sums over the points to J
 };
 
 }  // namespace peristat

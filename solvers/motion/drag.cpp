@@ -5,7 +5,7 @@
 namespace peristat {
 namespace {
 
-/// Below it 1 - phi1 loses digits, and six terms of the series of phi2 leave an error of 1e-16.
+/// Below this x 1 - phi1 loses digits, and six terms of the series of phi2 leave an error of 1e-16.
 constexpr double small = 1e-2;
 
 double series_of_phi2(double x) {

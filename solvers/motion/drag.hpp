@@ -7,7 +7,7 @@
 
 namespace peristat {
 
-/// What a drag at the rate eta does to a velocity in a step dt, exactly, with x = eta dt:
+/// Exact effect of a drag with the rate eta on a velocity in a step dt, with x = eta dt:
 ///
 ///   decay = exp(-x),   phi1 = (1 - exp(-x)) / x,   phi2 = (1 - phi1) / x
 ///
@@ -19,14 +19,14 @@ namespace peristat {
 /// Without a drag decay = phi1 = 1, phi2 = 1/2.
 struct DragFactors {
   double decay = 1.0, phi1 = 1.0, phi2 = 0.5;
-  double lost = 0.0;  ///< 1 - decay, with all digits
+  double lost = 0.0;  ///< 1 - decay, to full precision
 
   DragFactors() = default;
   /// @param x eta dt, not negative
   explicit DragFactors(double x);
 };
 
-/// The degrees of freedom in layers that absorb, with what they do in a step.
+/// Degrees of freedom in absorbing layers, with the factors of their drag in a step.
 class Drag {
  public:
   struct Entry {
@@ -35,14 +35,14 @@ class Drag {
     DragFactors factors{};
   };
 
-  /// @param dofs the free ones, in their order
+  /// @param dofs free degrees of freedom, in their order
   Drag(const MotionSetting& setting, const std::vector<Index>& dofs);
 
   void set_step(double dt);
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
 
-  /// @param visit(dof, factors)
-  /// @param dofs those that it was made with
+  /// Calls visit(dof, factors) for each degree of freedom; factors without drag are the defaults.
+  /// @param dofs as in the constructor
   template <class Visit>
   void for_each(const std::vector<Index>& dofs, const Visit& visit) const {
     const DragFactors none;

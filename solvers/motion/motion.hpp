@@ -11,75 +11,76 @@
 
 namespace peristat {
 
-/// What steps have done, summed over them.
+/// Sums over the steps.
 struct MotionSums {
   double work = 0.0;  ///< of supports, loads, pressures and heating [J]
-  /// What the steps have added to the scheme's energy beside kinetic and stored [J].
+  /// Sum of the changes of scheme_energy within steps [J].
   double correction = 0.0;
   double released = 0.0;  ///< see Evaluation::released [J]
   DamageGrowth growth{};
-  double absorbed = 0.0;  ///< energy that layers have taken [J]
+  double absorbed = 0.0;  ///< energy absorbed by layers [J]
   int iterations = 0;     ///< of Newton
 };
 
 /// The motion M a = F(u, t) = f_ext(t) - dE/dx(u) on the free degrees of freedom, M the lumped
-/// mass, step by step in time. Works are trapezoidal sums over the steps. Layers that absorb add a
-/// drag, M a = F - eta M v, which the schemes integrate together with F (Drag): what a constant
-/// force does is exact for any eta dt.
+/// mass, step by step in time. Works are trapezoidal sums over the steps. Absorbing layers add a
+/// drag, M a = F - eta M v, which the schemes integrate together with F (Drag): exact under a
+/// constant force for any eta dt.
 ///
-/// Masses and velocities of what is prescribed do not enter: supports do the work of dE/dx alone.
+/// Masses and velocities of prescribed degrees of freedom do not enter: supports do the work of
+/// dE/dx alone.
 ///
-/// Of a body that ranks have parts of, each moves the points that it owns, and ghosts follow their
-/// owners; energies and sums are those of the whole body, in calls that all ranks make.
+/// On a distributed body each rank moves the points that it owns, and ghosts follow their owners;
+/// energies and sums are those of the whole body. All calls are collective.
 class Motion {
  public:
-  /// Damages what is stretched too far in the state.
-  /// @param from its displacement is that of the supports, and of what follows
+  /// Commits the damage of the initial state.
+  /// @param from initial state, with supports in place
   Motion(const EquilibriumProblem& problem, const MotionSetting& setting, const State& from,
          std::vector<double> velocity);
   virtual ~Motion() = default;
 
-  /// What is prescribed goes where it is prescribed at the step's end, and bonds that are stretched
-  /// too far there are damaged for good.
-  /// @param time at its end
-  /// @return converged, or why there is no state: of the implicit scheme then nothing has changed;
+  /// Makes a step: moves prescribed degrees of freedom to their values at its end, and damages
+  /// bonds that are stretched too far there, irreversibly.
+  /// @param time at the end of the step
+  /// @return converged, or why there is no state: the implicit scheme has then changed nothing;
   ///         values that are not finite show in find_energy
   /// @throws InputError where supports or loads have no value at that time
   [[nodiscard]] virtual Outcome step(double dt, double time) = 0;
-  /// Closes the correction of the steps so far.
+  /// Adds the correction of the steps so far to the sums.
   virtual void complete_sums() {}
 
   [[nodiscard]] double time() const { return time_; }
   [[nodiscard]] const Trial& at() const { return at_; }
   [[nodiscard]] Trial take() { return std::move(at_); }
   [[nodiscard]] std::vector<double> take_velocity() { return std::move(velocity_); }
-  /// What a scheme has to know of the last step beside the state; empty: nothing [m/s2].
+  /// Data of the last step that a scheme needs beside the state; empty: none [m/s2].
   [[nodiscard]] virtual std::vector<double> take_acceleration() { return {}; }
   [[nodiscard]] const std::vector<double>& external_force() const { return external_force_; }
-  /// 0 where it is prescribed [m/s].
+  /// Velocities, 0 where prescribed [m/s].
   [[nodiscard]] const std::vector<double>& velocity() const { return velocity_; }
   [[nodiscard]] MotionSums sums() const;
 
   /// Finds the stored energy of the present state.
-  /// @return false if that is no state
+  /// @return false if the state is degenerate
   [[nodiscard]] bool find_energy();
 
-  /// Of the free degrees of freedom [J].
+  /// Kinetic energy of the free degrees of freedom [J].
   [[nodiscard]] double kinetic_energy() const;
   /// F.M^-1 F [J/s2]
   [[nodiscard]] double squared_force() const;
-  /// By how much the energy that a scheme conserves is below kinetic and stored energy [J].
+  /// Kinetic and stored energy less the energy that the scheme conserves [J].
   [[nodiscard]] virtual double scheme_energy(double /*dt*/) { return 0.0; }
-  /// Energy that the scheme gives to a body at rest for loads that set in within the last step,
-  /// before they do any work: dt^2/8 f.M^-1 f with the change f of the loads and pressures [J].
+  /// Energy that the scheme gives to a body at rest if loads set in within the last step, before
+  /// they do any work: dt^2/8 f.M^-1 f with the change f of the loads and pressures [J].
   ///
-  /// The last half of the step kicks with the new loads, v = dt/2 M^-1 f, while the body has not
-  /// moved yet: kinetic energy is v.Mv/2, and the work is zero. One step later the work is eight
-  /// times as much.
+  /// The last half of the step accelerates with the new loads, v = dt/2 M^-1 f, while the body has
+  /// not moved yet: the kinetic energy is v.Mv/2, and the work is zero. One step later the work is
+  /// eight times as much.
   [[nodiscard]] double energy_of_onset(double dt) const;
 
  protected:
-  /// Takes conditions to a time: all ranks, or none where one alone finds no value at its points.
+  /// Evaluates conditions at a time; throws on all ranks if they have no value on one of them.
   template <class Take>
   void take_on_all_ranks(const Take& take) {
     const Sharing* const sharing = problem_.assembler.sharing();
@@ -93,23 +94,24 @@ class Motion {
     if (sharing->ranks().max(refusal ? 1.0 : 0.0) == 0.0) return;
     throw refusal.value_or(InputError("", "", "a condition has no value on another rank"));
   }
-  /// Finds the forces of the present state, and damages it.
+  /// Finds the forces of the present state, and commits its damage.
   /// @return false if an interaction has collapsed
   [[nodiscard]] bool find_forces();
-  /// Before a step: of what its work is summed.
+  /// Stores the data before a step that its work is summed from.
   void note_before();
-  /// Takes loads to the present time, and what is prescribed to its place there.
+  /// Updates loads to the present time, and moves prescribed degrees of freedom.
   /// @throws InputError on all ranks alike
   void change_supports_and_loads(std::span<double> displacement);
   void change_loads();
-  /// Before a search at a time, in which one rank alone would find a condition without a value.
+  /// Throws on all ranks if a condition has no value at a time on one of them; called before a
+  /// search.
   void require_conditions_on_all_ranks(double time);
-  /// Takes what the energy depends on to a time, with half of the work of that.
+  /// Updates the environment to the present time, and adds half of the work of its change.
   void change_environment();
-  /// The other half, in the new place.
+  /// Adds the other half, at the new displacement.
   void complete_heating();
   /// Adds the work of a step.
-  /// @param travelled(dof) in it, of what is free [m]
+  /// @param travelled(dof) displacement of a free degree of freedom in the step [m]
   template <class Travelled>
   void add_work(const Travelled& travelled) {
     const std::vector<double>& force = external_force_;
@@ -127,7 +129,7 @@ class Motion {
   Trial at_;
   std::vector<double> external_force_, velocity_;
   double time_ = 0.0;
-  MotionSums sums_;  // work and what is absorbed: of this rank's points
+  MotionSums sums_;  // work and absorbed energy: of this rank's points
 
  private:
   void add_half_of_heating();

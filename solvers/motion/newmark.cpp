@@ -5,7 +5,7 @@
 namespace peristat {
 namespace {
 
-/// Of equilibria in which bonds go on breaking.
+/// Largest number of equilibria of a step in which bonds go on breaking.
 constexpr int most_passes = 1000;
 
 }  // namespace
@@ -110,7 +110,7 @@ NewtonResult Newmark::find(double time, const InertialSprings& inertia) {
   }
 }
 
-/// By the forces at both ends: differences of places would have the round-off of 1 / dt^2.
+/// Uses the forces at both ends: differences of positions would have the round-off of 1 / dt^2.
 void Newmark::accelerate(double dt, const std::vector<double>& force_before) {
   const auto [of_inertia, of_force, gamma, beta] = coefficients_;
   drag_.for_each(problem_.free.dof, [&](Index dof, const DragFactors& drag) {

@@ -5,8 +5,8 @@
 
 namespace peristat {
 
-/// As bound_stiffness and find_stiffness, of a body that is whole or that ranks have parts of: then
-/// the tangent is that of a part, and all ranks make the call.
+/// The same as bound_stiffness and find_stiffness for a body that is whole or distributed over
+/// ranks: then the tangent is that of a part, and the calls are collective.
 /// @param sharing null: the body is whole
 [[nodiscard]] Stiffness bound_stiffness(const TangentOperator& tangent, const FreeDofs& free,
                                         std::span<const double> mass, int most_points,

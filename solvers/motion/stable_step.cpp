@@ -13,13 +13,13 @@ namespace peristat {
 namespace {
 
 /// Lanczos' method ends where its largest Ritz value has risen by less than this share over the
-/// last iterations: it then lacks less than a hundredth (the ends of a band of frequencies are
-/// approached with the inverse square of the iterations).
+/// last iterations. It then lacks less than a hundredth: the error at the end of a band of
+/// frequencies falls with the inverse square of the iterations.
 constexpr double settled_share = 1e-4;
 constexpr std::size_t look_back = 5, least_iterations = 20, most_iterations = 120;
 constexpr double margin = 1.01;
 
-/// Powers come to within some hundredths.
+/// The power method comes to within some hundredths.
 constexpr int power_iterations = 200;
 constexpr double power_margin = 1.05;
 
@@ -60,11 +60,11 @@ double largest_of_block(const double* block, const double* mass, const char* is_
   return largest;
 }
 
-/// A body, whole or the part of it that this rank has.
+/// A whole body, or the part of it that this rank has.
 struct Shared {
   Shared(const Sharing* of, int dimension) : sharing(of), sums(of, dimension) {}
 
-  /// Of an owned point.
+  /// Number of an owned point in the whole body.
   [[nodiscard]] GlobalIndex number(Index point) const {
     if (!sharing) return point;
     return dynamic_cast<const PartOfBody&>(*sharing).number()[std::size_t(point)];
@@ -74,7 +74,7 @@ struct Shared {
   Sums sums;
 };
 
-/// How stiff a point is.
+/// Largest eigenvalue of a point's diagonal block over its free components, scaled by masses.
 double stiffness_of_point(const TangentOperator& tangent, const FreeDofs& free,
                           std::span<const double> mass, Index point) {
   const auto d = std::size_t(tangent.dimension), first = std::size_t(point) * d;
@@ -86,15 +86,15 @@ double stiffness_of_point(const TangentOperator& tangent, const FreeDofs& free,
 
 double stiffest(const TangentOperator& tangent, const FreeDofs& free, std::span<const double> mass,
                 const Sums& sums) {
-  double largest = 0.0;  // ghosts have no equation, and no stiffness by that
+  double largest = 0.0;  // ghosts have no equation, and so no stiffness
   for (Index i = 0; i < tangent.pattern.points(); ++i) {
     largest = std::max(largest, stiffness_of_point(tangent, free, mass, i));
   }
   return sums.largest_of_all(largest);
 }
 
-/// The first of the points that are as stiff as the stiffest, by its number in the whole body.
-/// Round-off, which ranks have in another order, must not tell which.
+/// Lowest number in the whole body of the points that are as stiff as the stiffest, up to
+/// round-off: this depends on the number of ranks and must not decide.
 GlobalIndex first_stiffest(const TangentOperator& tangent, const FreeDofs& free,
                            std::span<const double> mass, double largest, const Shared& of) {
   constexpr double as_stiff = 1e-9, beyond_all = 1e300;
@@ -150,8 +150,8 @@ class ScaledProduct {
   Vector scale_, scaled_;
 };
 
-/// Random, and as much again at the point that is stiffest: a frequency that lives there alone is
-/// then not overlooked.
+/// Random start vector, and as much again at the stiffest point, so that a frequency that lives
+/// there alone is not overlooked.
 Vector start_vector(const FreeDofs& free, GlobalIndex stiffest, int dimension, const Shared& of) {
   constexpr std::uint64_t seed = 20;
   Vector start(free.equation.size(), 0.0);
@@ -172,7 +172,7 @@ Vector start_vector(const FreeDofs& free, GlobalIndex stiffest, int dimension, c
   return start;
 }
 
-/// Largest Ritz value, from below.
+/// Largest Ritz value, which approaches the eigenvalue from below.
 double lanczos(ScaledProduct& product, Vector at, const Sums& sums) {
   Vector before(at.size(), 0.0), next(at.size());
   Vector diagonal, beside, found;
@@ -196,7 +196,7 @@ double lanczos(ScaledProduct& product, Vector at, const Sums& sums) {
   return found.back();
 }
 
-/// By the growth of a vector, from below: the method has no use of symmetry, and is slow.
+/// Largest growth of a vector, from below: the power method needs no symmetry, but is slow.
 double power(ScaledProduct& product, Vector at, const Sums& sums) {
   Vector next(at.size());
   double largest = 0.0;
@@ -211,8 +211,8 @@ double power(ScaledProduct& product, Vector at, const Sums& sums) {
   return largest;
 }
 
-/// To 20 bits: Lanczos' method makes much of round-off, which is another on ranks, and the step
-/// must not hang on it.
+/// Rounds up to 20 bits: Lanczos' method amplifies round-off, which depends on the number of ranks,
+/// and the step must not depend on it.
 double rounded_up(double value) {
   constexpr int bits = 20;
   int exponent = 0;

@@ -15,7 +15,8 @@ namespace {
 /// Relative error of sums of work over a step in which bonds break.
 constexpr double work_error = 0.05;
 
-/// Of sums over all interactions, in units of round-off times the sum of the absolute terms.
+/// Allowed error of sums over all interactions, in units of round-off times the sum of the absolute
+/// terms.
 constexpr double safety = 1e3;
 
 /// Energies near the smallest number have lost their digits [J].
@@ -23,7 +24,7 @@ constexpr double smallest_energy = 1e-250;
 
 Coordinates centre_of(const Points& points, const Sums& sums) {
   const std::size_t d = std::size_t(points.dimension), own = sums.own(points.reference.size());
-  std::vector<double> all(d + 1, 0.0);  // and how many points there are
+  std::vector<double> all(d + 1, 0.0);  // coordinates, and the number of points
   for (std::size_t k = 0; k < own; ++k) all[k % d] += points.reference[k];
   all[d] = double(own / d);
   all = sums.of_all(std::move(all));
@@ -37,7 +38,7 @@ struct Resultants {
   double reach = 0.0;  ///< largest distance of a point from the centre [m]
 };
 
-/// dE/dx of the interactions between points, folded onto nothing.
+/// dE/dx of the interactions between points alone, not folded by constraints.
 std::vector<double> internal_forces(const EquilibriumProblem& problem, const Trial& trial) {
   std::vector<double> gradient = trial.gradient;
   if (!problem.conditions.constraints().none()) {
@@ -115,7 +116,7 @@ std::string check_resultants(const EquilibriumProblem& problem, const TangentOpe
     trace += std::abs(tangent.diagonal[dof / d * d * d + dof % d * (d + 1)]);
   });
   trace = problem.sums().of_all(trace);
-  // Where all has come apart forces may vanish, and the energy, their square, before them.
+  // Where all has come apart forces may vanish, and the energy, which is quadratic in them, first.
   const double energy = std::max(std::abs(found.after.stored), std::numeric_limits<double>::min());
   double forces = std::sqrt(2.0 * energy * trace);
   if (!tangent.has_rows()) {
@@ -173,7 +174,7 @@ std::string check_energies(const EquilibriumProblem& problem, const TangentOpera
 std::string check_magnitude(const Sums& sums, const FoundState& found) {
   const double forces = sums.norm(found.trial.gradient),
                moved = sums.norm(found.trial.displacement);
-  // What has come apart may be left without forces.
+  // A body that has come apart may be left without forces.
   const bool has_worked = std::abs(found.after.external_work) >= smallest_energy;
   if (has_worked || forces == 0.0 || moved == 0.0 || forces * moved >= smallest_energy) return {};
   return "forces and displacements are so small that their products vanish in double precision; "

@@ -140,7 +140,7 @@ void fold_followers(const EquilibriumProblem& problem, std::span<const double> e
   const Sums sums = problem.sums();
   constraints.fold(trial.displacement, external_force, trial.gradient);
   const std::size_t points = problem.assembler.points().reference.size();
-  sums.add_up(std::span(trial.gradient).subspan(points));  // handles have a share of each rank
+  sums.add_up(std::span(trial.gradient).subspan(points));  // each rank has a share of handles
   trial.curvature = constraints.curvature(trial.displacement, external_force, trial.gradient);
   for (Tensor& block : trial.curvature) {
     for (auto& row : block) sums.add_up(row);
@@ -150,7 +150,7 @@ void fold_followers(const EquilibriumProblem& problem, std::span<const double> e
 double heating_work(Assembler& assembler, const StateView& from, const StateView& to) {
   const auto [before, after] = std::pair(from.environment, to.environment);
   const bool is_same = before == after || (before && after && *before == *after);
-  // Its points may see no change where those of other ranks do.
+  // Points of this rank may see no change where those of other ranks do.
   const Sums sums(assembler.sharing(), assembler.points().dimension);
   if (sums.largest_of_all(is_same ? 0.0 : 1.0) == 0.0) return 0.0;
   const auto added_at = [&](const StateView& at) {

@@ -26,41 +26,42 @@ enum class Outcome {
   linear_solver_inaccurate,
   limit_point,          ///< damage makes the body unstable: no equilibrium near at a higher load
   damage_limit,         ///< more bonds break at once than allowed, however small the step
-  fragmented,           ///< a piece has come off, and that is to end the run
+  fragmented,           ///< a fragment has come off, and the run is to end with that
   undefined_condition,  ///< supports or loads have no value, or two, at the stage
-  no_answer,            ///< the controlled displacement does not answer to the load
+  no_answer,            ///< the controlled displacement does not respond to the load
   sharp_turn,           ///< the path turns by too much for the step
-  step_limit,           ///< as many steps as allowed, and the load has not come to its end
-  damage_begins,        ///< where the integrities are to stay as they are
-  inconsistent,         ///< a state found breaks a balance that it owes (solvers/consistency.hpp)
+  step_limit,           ///< the largest number of steps is reached before the final load
+  damage_begins,        ///< bonds would be damaged although integrities are held
+  inconsistent,         ///< a found state violates a balance (solvers/problem/consistency.hpp)
   unstable_step,        ///< the explicit scheme's step is longer than the stable one
-  interrupted,          ///< by the person
+  interrupted,          ///< by the user
 };
 
 [[nodiscard]] std::string name(Outcome outcome);
 [[nodiscard]] std::string explanation(Outcome outcome);
 
-/// The equilibrium problem f_ext(stage) - dE/dx(u) = 0 on the free degrees of freedom, with
-/// what is constant in a solve. The total energy E(u) - f_ext.u is the merit function.
+/// The equilibrium problem f_ext(stage) - dE/dx(u) = 0 on the free degrees of freedom, with all
+/// that is constant in a solve. The total energy E(u) - f_ext.u is the merit function.
 struct EquilibriumProblem {
   Assembler& assembler;
   const Conditions& conditions;
   const FreeDofs& free;
   const InertialSprings* inertia = nullptr;  ///< in a step of an implicit motion
 
-  /// Over the whole body.
+  /// Sums over the whole body.
   [[nodiscard]] Sums sums() const { return {assembler.sharing(), assembler.points().dimension}; }
 
-  /// What the energy depends on at a load point.
+  /// Loading data that the energy depends on, at a load point and with `inertia`.
   [[nodiscard]] SharedEnvironment environment(const LoadPoint& at) const;
 };
 
-/// A trial state with everything that a decision about it needs.
+/// A trial state with all data that decisions about it need.
 struct Trial {
   std::vector<double> displacement;  ///< [m]
-  History history;                   ///< that it comes after
-  SharedEnvironment environment;     ///< that of the load point
-  /// dE/dx [N] less the follower force, with what acts on followers folded onto what they follow.
+  History history;                   ///< of the committed states before it
+  SharedEnvironment environment;     ///< of the load point
+  /// dE/dx [N] less the follower force; forces on dependent degrees of freedom are folded onto
+  /// masters.
   std::vector<double> gradient;
   std::vector<Tensor> curvature{};     ///< of rigid sets, see Constraints
   std::vector<double> follower_force;  ///< of pressures [N]; empty: none
@@ -77,37 +78,37 @@ struct Trial {
   }
 };
 
-/// Where its supports and loads are.
+/// Load point of a state.
 [[nodiscard]] inline LoadPoint load_point(const State& state) {
   LoadPoint at(state.stage, state.load);
   at.preload = state.preload;
   return at;
 }
 
-/// Takes a displacement to the state right after a jump of the prescribed ones, which are in it
-/// already.
+/// Adjusts a displacement that contains a jump of the prescribed ones to the state right after it,
+/// see Constraints::share_out_jump.
 /// @param from before the jump
 void share_out_jump(const EquilibriumProblem& problem, std::span<const double> from,
                     std::span<double> displacement);
-/// Moves what follows other degrees of freedom to where these have taken it, and ghosts to where
-/// their owners are.
+/// Moves dependent degrees of freedom to where their masters take them, and ghosts to where their
+/// owners are.
 void move_followers(const EquilibriumProblem& problem, Trial& trial);
-/// Folds the gradient that the assembler has found onto what is followed.
+/// Folds the assembler's gradient onto masters, and finds the curvature of rigid sets.
 void fold_followers(const EquilibriumProblem& problem, std::span<const double> external_force,
                     Trial& trial);
 
-/// Work that heating does on the way between two states [J], by the trapezoidal rule: half of what
-/// it would add to the energy in the one and in the other, with the damage that is there.
+/// Work of heating on the way between two states [J], by the trapezoidal rule: the mean of the
+/// energies that the change of the environment would add to either state, with damage held.
 [[nodiscard]] double heating_work(Assembler& assembler, const StateView& from, const StateView& to);
 
-/// Norm of what the environment adds to the forces of a state [N]: a scale for residuals, since
-/// where nothing holds a body that grows no other force is left.
+/// Norm of the environment's contribution to the forces of a state [N]: a scale for residuals,
+/// since a body that expands freely has no other forces.
 /// @param gradient there
 [[nodiscard]] double environment_norm(const EquilibriumProblem& problem, const StateView& at,
                                       std::span<const double> gradient);
 
-/// Moves what follows to the trial's displacement, and evaluates energy and gradient there after
-/// its history.
+/// Moves dependent degrees of freedom, and evaluates energy and gradient at the trial's
+/// displacement after its history.
 void evaluate(const EquilibriumProblem& problem, std::span<const double> external_force,
               Trial& trial, Damage damage = Damage::grows);
 
@@ -118,19 +119,19 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
                                     std::span<const double> external_force,
                                     std::span<const double> old_gradient, const Trial& after_jump);
 
-/// The larger of loads and reactions of a state, and of what its environment adds to its forces: a
-/// scale for residuals [N].
+/// Largest of the norms of loads, of reactions, and of the environment's contribution to the
+/// forces: a scale for residuals [N].
 [[nodiscard]] double load_norm(const EquilibriumProblem& problem,
                                std::span<const double> external_force, const Trial& state,
                                Damage damage);
 
-/// What forces by convolutions are differences of: each point's stiffness times how far it moves,
-/// their 2-norm [N]. Round-off of them spreads to all points.
+/// 2-norm of the terms whose differences are the forces by convolutions: each point's stiffness
+/// times its displacement from the mean [N]. Their round-off spreads to all points.
 [[nodiscard]] double differenced_forces(const TangentOperator& tangent,
                                         std::span<const double> displacement);
 
-/// What round-off leaves of the residual [N]. A displacement is known to a unit round-off of
-/// itself, so that a slender body, which moves far and strains little, has no state with less than
+/// Residual that round-off leaves [N]. A displacement is known to a unit round-off of itself, so
+/// that a slender body, which moves far and strains little, has no state with a residual below
 /// about
 ///
 ///   ||eps sum_j |K_ij| max |u_i| ||

@@ -20,12 +20,11 @@ struct IterationRecord {
   double energy = 0.0;        ///< stored energy minus work of the present dead loads [J]
   double step_length = 0.0;   ///< of the line search
   int linear_iterations = 0;  ///< of the linear solver; 0 for a direct solve
-  Index changed_bonds = 0;    ///< of transient relaxation: damaged since it began, each as often as
-                              ///< it was
-  double projection = 0.0;    ///< share by which the tangent's interactions were projected to their
-                              ///< positive semidefinite part: 0 is the exact tangent
-  /// Of the exact tangent; 0 also where it was solved without a factorisation of its own, -1 where
-  /// there are some but counting them was too expensive.
+  Index changed_bonds = 0;  ///< in transient relaxation: damaged since it began, counted each time
+  double projection = 0.0;  ///< share by which the tangent's interactions were projected to their
+                            ///< positive semidefinite part: 0 is the exact tangent
+  /// Negative pivots of the exact tangent; 0 also where it was solved without a factorisation of
+  /// its own, -1 where there are some but counting them was too expensive.
   std::int64_t negative_pivots = 0;
   int rejected_trials = 0;        ///< of the line search: the energy was too high
   int degenerate_trials = 0;      ///< of the line search: a measure had no gradient
@@ -33,23 +32,23 @@ struct IterationRecord {
                                   ///< for a direct solve
 };
 
-/// Of an accepted state under its loads as they are: its values stand in history.csv.
+/// Stability of an accepted state under fixed loads; the values are those of history.csv.
 enum class Stability : std::int8_t {
   bifurcated = -2,  ///< the tangent has negative pivots
-  unstable = -1,    ///< what breaks next goes on at the same load
+  unstable = -1,    ///< failure goes on at the same load
   not_judged = 0,
   stable = 1,
 };
 
-/// Of a state of a body in motion.
+/// Data of a body in motion.
 struct MotionRecord {
   double time = 0.0;            ///< [s]
-  double time_step = 0.0;       ///< in force [s]
-  double kinetic_energy = 0.0;  ///< of what is not prescribed [J]
-  /// What the explicit scheme conserves where forces are linear: kinetic and stored energy less
-  /// (dt^2/8) F.M^-1 F [J].
+  double time_step = 0.0;       ///< present [s]
+  double kinetic_energy = 0.0;  ///< of free degrees of freedom [J]
+  /// Energy that the explicit scheme conserves where forces are linear: kinetic and stored energy
+  /// less (dt^2/8) F.M^-1 F [J].
   double modified_energy = 0.0;
-  Coordinates momentum{};  ///< likewise of what is not prescribed [kg m/s]
+  Coordinates momentum{};  ///< likewise of free degrees of freedom [kg m/s]
 };
 
 /// One accepted step (a row of history.csv).
@@ -64,32 +63,32 @@ struct StepRecord {
   double dissipated_energy = 0.0;  ///< [J]
   double drained_energy = 0.0;     ///< [J]
   double external_work = 0.0;      ///< of supports and loads over the accepted steps, int P du [J]
-  double numerical_work = 0.0;     ///< what relaxation has spent beyond it [J]
+  double numerical_work = 0.0;     ///< spent by relaxation beyond it [J]
   double balance_error = 0.0;  ///< external + numerical work - stored - dissipated - drained [J]
   Index broken_bonds = 0;
   double max_damage = 0.0;
   double max_stretch = 0.0;
-  double pin_force = 0.0;  ///< on what has come off and is pinned: 2-norm, 0 if nothing pulls [N]
+  double pin_force = 0.0;  ///< on pinned fragments: 2-norm, 0 if nothing pulls [N]
   /// Norm of the sum of all internal forces [N]; 0 where these have a potential, and in motions.
   double unbalanced_force = 0.0;
   double control = 0.0;  ///< controlled displacement; 0 without a control [m]
-  /// Of the tangent by which a control or an arc length has found the state, or at it: 0 where it
-  /// is stable under its loads as they are. -1: not counted.
+  /// Negative pivots of the tangent by which a control or an arc length has found the state, or at
+  /// it: 0 where the state is stable under fixed loads. -1: not counted.
   std::int64_t negative_pivots = -1;
-  /// Mode path: whether the state is reached under the loads as they are given, the rest of the
-  /// path left out, and what has been released there since the start [J].
+  /// Mode path: true if the state is reached under the loads as they are given, without the rest of
+  /// the path; and the energy released there since the start [J].
   bool is_on_response = true;
   double released_energy = 0.0;
   Stability stability = Stability::not_judged;  ///< mode path judges it
-  /// Mode path: load factor at which the last bonds broke; otherwise they broke in this step.
+  /// Mode path: load factor at which the last bonds broke; nothing: they broke in this step.
   std::optional<double> broke_at;
-  bool settled = false;                  ///< no equilibrium was asked for: see RelaxationResult
+  bool settled = false;                  ///< accepted without equilibrium: see RelaxationResult
   std::optional<MotionRecord> motion{};  ///< mode dynamics
   std::map<std::string, Coordinates> reactions;       ///< by support set [N]
   std::map<std::string, std::vector<double>> probes;  ///< by probe name: components, or one scalar
 };
 
-/// What load stepping did next.
+/// Decision of the load stepping about what comes next.
 enum class Decision {
   accept,
   accept_and_grow,
@@ -103,11 +102,11 @@ enum class Decision {
   change_linear_solver,
   locate,  ///< a critical point between two states
   change_time_step,
-  preload,     ///< step 0: what acts at load 0 was put on
-  branch_off,  ///< to the path that leaves at a bifurcation
+  preload,     ///< step 0: loads at load factor 0 were applied
+  branch_off,  ///< to the secondary path at a bifurcation
 };
 
-/// As decisions.csv spells it.
+/// Name in decisions.csv.
 [[nodiscard]] std::string name(Decision decision);
 /// @throws std::out_of_range if there is none of this name
 [[nodiscard]] Decision decision_named(const std::string& name);
@@ -125,7 +124,7 @@ struct DecisionRecord {
 };
 
 /// Histories of bonds: the largest stretch that has damaged a bond, -1 for a bond that never fails.
-/// A bond that is not named has the history that was told last, 0 if none was.
+/// A bond that is not listed has the history that was written last, 0 if none was.
 struct BondHistories {
   std::vector<Index> first_point, second_point;
   std::vector<double> largest_stretch;
@@ -140,9 +139,9 @@ struct StepFields {
   const std::vector<double>* energy_density = nullptr;  ///< per point [J/m3]
   const std::vector<double>* stretch = nullptr;   ///< per point, largest of its unbroken bonds
   const std::vector<double>* fragment = nullptr;  ///< per point, number of its floating piece or 0
-  /// Those that have changed since the last step that was written; null without damage.
+  /// Histories that have changed since the last step that was written; null without damage.
   const BondHistories* histories = nullptr;
-  /// Strain and stress, where they are asked for; tensors are count x dimension x dimension.
+  /// Strain and stress, if requested; tensors are count x dimension x dimension.
   const std::vector<double>* deformation_gradient = nullptr;
   const std::vector<double>* green_lagrange_strain = nullptr;
   const std::vector<double>* first_piola_stress = nullptr;   ///< [Pa]
@@ -153,7 +152,7 @@ struct StepFields {
   const std::vector<double>* principal_stress = nullptr;     ///< count x dimension [Pa]
   const std::vector<double>* principal_direction = nullptr;  ///< rows in its order
   const std::vector<double>* missing_neighbourhood = nullptr;
-  /// Of a body in motion.
+  /// Only for a body in motion.
   const std::vector<double>* velocity = nullptr;                ///< [m/s]
   const std::vector<double>* kinetic_energy_density = nullptr;  ///< per point [J/m3]
 };
@@ -163,7 +162,7 @@ struct BrokenBondRecord {
   int step = 0;
   double load_factor = 0.0;
   Index first_point = 0, second_point = 0;
-  /// Which of the body's kinds of images of the second point it ends at, from 1; 0: at itself.
+  /// Kind of image of the second point that the bond ends at, numbered from 1; 0: the point itself.
   Index second_image = 0;
 };
 

@@ -7,13 +7,14 @@
 
 namespace peristat {
 
-/// Forces that do work on the body: loads, and on prescribed degrees of freedom what holds them,
-/// which is dE/dx there. Pins of fragments do none: they don't move, and when they are taken away
-/// nothing follows them. Constraints do none either: what follows others bears its loads alone.
+/// Forces that do work on the body: loads, and on prescribed degrees of freedom the reactions,
+/// which are dE/dx there. Pins of fragments do no work: they don't move, and nothing follows when
+/// they are removed. Constraints do none either: on dependent degrees of freedom only loads do
+/// work.
 [[nodiscard]] std::vector<double> working_force(const Conditions& conditions, const Trial& state,
                                                 std::span<const double> external_force);
 
-/// Work of forces on the straight way between two states [J], of all ranks.
+/// Work of forces on the straight path between two states [J], summed over the ranks.
 [[nodiscard]] double trapezoidal_work(const Sums& sums, std::span<const double> force0,
                                       std::span<const double> force1, std::span<const double> u0,
                                       std::span<const double> u1);

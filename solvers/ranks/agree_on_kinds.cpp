@@ -13,7 +13,7 @@ namespace {
 
 bool has_table(const BondKinds& kinds) { return kinds.bytes_per_bond() < sizeof(BondKind); }
 
-/// Of no bond yet, and without a table: there is none once there are more kinds than it holds.
+/// No kinds, and no table: the table is dropped once there are more kinds than it holds.
 BondKinds without_table() {
   BondKinds kinds;
   for (double length = 1.0; has_table(kinds); ++length) kinds.push_back({1.0 / length, 0.0});
@@ -33,7 +33,7 @@ BondKind kind_of(const std::string& bytes, std::size_t number) {
   return kind;
 }
 
-/// What its bonds are of, each once.
+/// The distinct kinds of the bonds, as bytes.
 std::string table_of(const BondKinds& kinds) {
   std::unordered_set<std::string> known;
   std::string table;
@@ -44,8 +44,8 @@ std::string table_of(const BondKinds& kinds) {
   return table;
 }
 
-/// A bond of each kind that the ranks have, in their order; without a table and bonds if one of
-/// them has none, or all together have too many.
+/// One bond of each kind that any rank has, in the order of the ranks; without bonds and table if a
+/// rank has no table, or all together have too many kinds. Collective.
 BondKinds kinds_of_all(const BondKinds& mine, const Communicator& ranks) {
   const std::string none = "none";
   BondKinds all;

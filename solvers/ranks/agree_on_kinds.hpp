@@ -6,11 +6,11 @@
 
 namespace peristat {
 
-/// Gives a bond that several ranks have the same length and weight on all of them, to the last bit,
-/// so that they judge it alike: whatever kind its bond got of those that each rank has found first,
-/// and in whatever order a surface correction has summed. All ranks then have one table of kinds,
-/// or none of them has one. A call that all make.
-/// @param bonds of the part that these points are of
+/// Gives bonds that several ranks have the same length and weight on all of them, to the last bit,
+/// so that the ranks judge them alike: local kinds depend on the bonds that a rank found first, and
+/// sums of a surface correction on their order. Afterwards all ranks have one table of kinds, or
+/// none has one. Collective.
+/// @param bonds of the part with these points
 void agree_on_kinds(Bonds& bonds, const Points& points, const NumberedPoints& numbered,
                     const Communicator& ranks);
 

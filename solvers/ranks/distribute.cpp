@@ -19,7 +19,7 @@
 namespace peristat {
 namespace {
 
-/// Least and largest coordinates of points; of none, infinite ones the wrong way round.
+/// Bounding box of points; without points its bounds are infinite and reversed.
 class PointBox {
  public:
   explicit PointBox(int dimension)
@@ -40,7 +40,7 @@ class PointBox {
     both.insert(both.end(), high_.begin(), high_.end());
     return both;
   }
-  /// Whether each axis has a shorter way than this to the other.
+  /// True if the gap to the other box is at most `reach` along each axis.
   [[nodiscard]] bool is_near(const PointBox& other, double reach) const {
     for (std::size_t c = 0; c < low_.size(); ++c) {
       if (low_[c] - reach > other.high_[c] || high_[c] + reach < other.low_[c]) return false;
@@ -62,7 +62,7 @@ const double* place_of(const Points& points, Index point) {
   return &points.reference[std::size_t(point) * std::size_t(points.dimension)];
 }
 
-/// Points by cells as long as the reach, to ask which places are within reach of one.
+/// Points sorted into cells as long as the reach, to test whether a place is within reach of one.
 class NearPoints {
  public:
   NearPoints(const Points& points, Index count, double reach)
@@ -111,7 +111,7 @@ class NearPoints {
   std::vector<std::pair<Cell, Index>> cells_;  // ascending
 };
 
-/// Whether is_near(place) holds for a point or for one of its images.
+/// True if is_near(place) holds for a point or for one of its images.
 template <class IsNear>
 bool is_any_near(const Coordinates& at, const std::vector<ImageKind>& images,
                  const IsNear& is_near) {
@@ -120,7 +120,7 @@ bool is_any_near(const Coordinates& at, const std::vector<ImageKind>& images,
          });
 }
 
-/// Points that may be ghosts of others go to them.
+/// Offers points to the ranks that may need them as ghosts; returns those offered here. Collective.
 Records offered_points(const Part& part, const PointRecords& format, double reach,
                        const Communicator& ranks) {
   const Points& points = part.points;
@@ -145,7 +145,7 @@ Records offered_points(const Part& part, const PointRecords& format, double reac
   return exchange(ranks, to, offered.records());
 }
 
-/// Records of points that are within reach of this rank's own.
+/// Records of offered points that are within reach of this rank's own.
 Records wanted_of(const Part& part, const Records& offered, double reach) {
   const NearPoints near(part.points, part.owned, reach);
   const auto doubles = std::size_t(offered.doubles), integers = std::size_t(offered.integers);
@@ -185,7 +185,7 @@ Part distribute(Part slab, double horizon, double reach, const Communicator& ran
   const Part seeing = with_ghosts(std::move(slab), horizon, ranks);
   const std::vector<std::int32_t> neighbours =
       count_neighbours(seeing.points, seeing.owned, horizon, threads);
-  // A point without neighbours is work, too; and Zoltan2 wants positive weights.
+  // Points without neighbours are work, too, and Zoltan2 needs positive weights.
   std::vector<double> weights(neighbours.size());
   std::transform(neighbours.begin(), neighbours.end(), weights.begin(),
                  [](std::int32_t count) { return 1.0 + count; });

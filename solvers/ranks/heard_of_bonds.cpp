@@ -10,13 +10,14 @@
 namespace peristat {
 namespace {
 
-/// A bond as all ranks know it: by the numbers of its ends, and which image of the second one it
-/// ends at (image_number).
+/// A bond as all ranks identify it: by the numbers of its ends, and by the image of the second one
+/// that it ends at (image_number).
 struct EndsOfBond {
   GlobalIndex first = 0, second = 0, image = 0;
 };
 
-/// Of a source and the image of another one by what leads from the first image to the second.
+/// Ends of a bond between two images, moved to the source of the first one: the other end is then
+/// the image of the second's source by the relative kind; nothing if no such kind exists.
 std::optional<EndsOfBond> ends_of_source(const Points& points, const NumberedPoints& numbered,
                                          Index image, Index other) {
   const std::vector<ImageKind>& kinds = points.images.kinds;
@@ -35,7 +36,7 @@ std::optional<EndsOfBond> ends_of_source(const Points& points, const NumberedPoi
   return ends;
 }
 
-/// What others know a bond by.
+/// Ends by which other ranks identify a bond.
 EndsOfBond ends_of(const Points& points, const NumberedPoints& numbered, Index i, Index j) {
   if (!points.is_image(i)) {
     return {numbered.number_of(i), numbered.number_of(points.source(j)), image_number(points, j)};
@@ -46,7 +47,7 @@ EndsOfBond ends_of(const Points& points, const NumberedPoints& numbered, Index i
   return *ends;
 }
 
-/// The bond here that has these ends.
+/// The local bond with these ends.
 Offset bond_of(const Bonds& bonds, const Points& points, const NumberedPoints& numbered,
                const EndsOfBond& ends) {
   const std::optional<Index> one = numbered.find(ends.first), other = numbered.find(ends.second);
@@ -68,8 +69,8 @@ Offset bond_of(const Bonds& bonds, const Points& points, const NumberedPoints& n
   return found - bonds.partner.begin();
 }
 
-/// Asks for the bonds that are told by others: who asks, the ends, the bond there. A rank asks
-/// itself for what images show.
+/// Requests bonds from the ranks that send their values: the requesting rank, the ends, and the
+/// bond's number there. A rank sends requests to itself for bonds between images.
 Records questions(const Bonds& bonds, const Points& points, const NumberedPoints& numbered,
                   const Communicator& ranks, BetweenImages between_images) {
   Records asked{1, 4, {}, {}};

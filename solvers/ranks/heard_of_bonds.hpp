@@ -10,24 +10,24 @@
 
 namespace peristat {
 
-/// What other ranks tell of bonds that a part has.
+/// Values of bonds of a part that other ranks have sent.
 struct HeardOfBonds {
   std::vector<Offset> bond{};
-  std::vector<double> values{};  ///< as many of each bond
+  std::vector<double> values{};  ///< equally many per bond
 };
 
-/// What of bonds between two images, which weigh nothing, but which triangles stand on.
+/// Treatment of bonds between two images, which have no weight but may be edges of triangles.
 enum class BetweenImages {
-  nothing,        ///< nobody tells of them
-  what_they_show  ///< of the bond at a point that such a one is the image of
+  nothing,        ///< they get no values
+  what_they_show  ///< they get those of the bond at a source point that they are the image of
 };
 
-/// Of every bond the rank tells that owns its end with the lower number in the whole body, and of
-/// one to an image that owns the other end: those that have it, too, ask for it, also for one
-/// between two of their ghosts. A call that all ranks make.
-/// @param numbered the points that stand for themselves
-/// @param width how many values tell(bond, to) writes of a bond
-/// @throws std::logic_error if a rank asks for a bond that the other one does not have
+/// Gets values of bonds that several ranks have from the rank that owns a bond's end with the lower
+/// number in the whole body; of a bond to an image, from the rank that owns the other end. All
+/// ranks that have the bond request them, also for bonds between two of their ghosts. Collective.
+/// @param numbered the points that are no images
+/// @param width number of values that tell(bond, to) writes per bond
+/// @throws std::logic_error if a rank requests a bond that the other one does not have
 [[nodiscard]] HeardOfBonds heard_of_bonds(const Bonds& bonds, const Points& points,
                                           const NumberedPoints& numbered, const Communicator& ranks,
                                           BetweenImages between_images, int width,

@@ -8,7 +8,7 @@
 namespace peristat {
 namespace {
 
-/// Address space of Trilinos and MPI.
+/// Address space that Trilinos and MPI need.
 constexpr std::size_t room_for_ranks = std::size_t(384) << 20;
 
 const ranks::Module& ranks_module() {
@@ -20,7 +20,7 @@ const ranks::Module& ranks_module() {
   return *loaded;
 }
 
-/// Of a rank that has all points itself.
+/// Exchange of a sole rank, which has all points itself.
 class NoGhosts : public GhostExchange {
  public:
   void update(double*) override { ++exchanges_; }

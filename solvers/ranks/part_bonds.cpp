@@ -16,7 +16,7 @@ double reach_here(const Points& points, SurfaceCorrection surface, const BondSet
   return (1 + more) * search_radius(points, setting);
 }
 
-/// Per point or image, whether it is this rank's or has a bond with one that is.
+/// True for each point or image that this rank owns, or that has a bond with such a one.
 std::vector<char> owned_and_neighbours(const Part& part, const Bonds& bonds) {
   const Points& points = part.points;
   std::vector<char> is_near(points.volume.size(), 0);
@@ -73,7 +73,7 @@ GlobalIndex count_interactions(const Points& points, const InteractionCount& her
   for (Index i = 0; i < points.count(); ++i) {
     if (points.owns(i)) corners += here.per_point[std::size_t(i)];
   }
-  const int of_each = here.orders == 1 ? 2 : here.orders == 2 ? 3 : 4;  // factorial of one less
+  const int of_each = here.orders == 1 ? 2 : here.orders == 2 ? 3 : 4;  // orders = (of_each - 1)!
   return ranks.count_all(corners).all / of_each;
 }
 

@@ -7,35 +7,35 @@
 
 namespace peristat {
 
-/// Which bonds of a body a part has. A bond of points of two ranks is on both.
+/// Which of a body's bonds a part has. A bond between points of two ranks is on both.
 enum class PartBonds {
-  of_owned,          ///< every one with a point that its rank owns
-  among_neighbours,  ///< and those between ghosts, which triangles and tetrahedra stand on
-  of_neighbours      ///< all of its points and of their neighbours, which have states of their own
+  of_owned,          ///< all with a point that its rank owns
+  among_neighbours,  ///< and those between neighbours of owned points, edges of triangles
+  of_neighbours  ///< all of owned points and of their neighbours, which then have complete states
 };
 
-/// How far ghosts must reach for the bonds of a part [m]: as far as these, once more where these
-/// are of neighbours, and where a surface correction asks for what the neighbours of a point see. A
-/// call that all ranks make.
-/// @param points those of the rank, without ghosts or with them
+/// Distance that ghosts must reach for the bonds of a part [m]: the search radius of bonds, once
+/// more for bonds of neighbours, and once more for a surface correction, which needs the neighbours
+/// of neighbours. Collective.
+/// @param points of the rank, with or without ghosts
 [[nodiscard]] double reach_of_bonds(const Points& points, SurfaceCorrection surface,
                                     const BondSetting& setting, const Communicator& ranks,
                                     PartBonds which = PartBonds::of_owned);
 
-/// The bonds of a body that a part has, with the weights of make_bonds; those that several ranks
-/// have are the same there to the last bit (agree_on_kinds). A call that all make.
+/// The bonds of a body that a part has, with the weights of make_bonds; bonds on several ranks are
+/// the same there to the last bit (agree_on_kinds). Collective.
 /// @throws std::logic_error if the part's ghosts don't reach as far as reach_of_bonds
 [[nodiscard]] Bonds make_bonds(const Part& part, SurfaceCorrection surface,
                                const BondSetting& setting, const Communicator& ranks, int threads,
                                PartBonds which = PartBonds::of_owned);
 
-/// Bonds of the whole body that have a weight, each counted once.
+/// Number of bonds of the whole body that have a weight, each counted once. Collective.
 /// @param points of the rank
 [[nodiscard]] GlobalIndex count_bonds(const Points& points, const Bonds& bonds,
                                       const Communicator& ranks);
 
-/// Interactions of the whole body of a kind, each counted once.
-/// @param here all that owned points and their images take part in
+/// Number of interactions of one kind in the whole body, each counted once. Collective.
+/// @param here counts all interactions of owned points and their images
 [[nodiscard]] GlobalIndex count_interactions(const Points& points, const InteractionCount& here,
                                              const Communicator& ranks);
 

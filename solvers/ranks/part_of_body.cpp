@@ -6,7 +6,7 @@
 namespace peristat {
 namespace {
 
-/// They come first.
+/// Number of images of owned points; they are the first images.
 Index count_images_of_owned(const Points& points) {
   Index count = 0;
   for (Index image = points.own(); image < points.count(); ++image) count += points.owns(image);

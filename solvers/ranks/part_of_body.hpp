@@ -11,12 +11,11 @@
 
 namespace peristat {
 
-/// A part of a body among those of the other ranks. Every interaction that an owned point takes
-/// part in is computed by its rank, so that the rows of owned points are whole and nothing but what
-/// ghosts have ever comes from others.
+/// A part of a distributed body. A rank computes every interaction of its owned points, so that
+/// their rows are complete and only the values of ghosts come from other ranks.
 class PartOfBody : public Sharing {
  public:
-  /// The ranks outlive it. A call that all make.
+  /// The ranks must outlive it. Collective.
   PartOfBody(const Part& part, const Communicator& ranks);
 
   [[nodiscard]] const Communicator& ranks() const override { return ranks_; }
@@ -27,9 +26,9 @@ class PartOfBody : public Sharing {
   void update_ghosts(std::span<double> values) const override;
 
   [[nodiscard]] const std::vector<GlobalIndex>& number() const override { return number_; }
-  /// Of a point that is here, perhaps a ghost.
+  /// Number in the whole body of a local point, perhaps a ghost.
   [[nodiscard]] GlobalIndex number_of(Index point) const { return numbered().number_of(point); }
-  /// The point that has a number in the whole body, if it is here.
+  /// Local point with this number in the whole body, if it is here.
   [[nodiscard]] std::optional<Index> find(GlobalIndex number) const {
     return numbered().find(number);
   }

@@ -9,20 +9,20 @@
 
 namespace peristat {
 
-/// The tangent of a part of a body: a Tangent, MatrixFreeTangent or other operator of its points,
-/// which brings ghosts what their owners multiply by. Rows of owned points are the whole body's.
-/// Rows and diagonal blocks of ghosts are parts of theirs, and mean nothing. All ranks make the
-/// same calls.
+/// The tangent of a part of a body: a Tangent, MatrixFreeTangent or other operator of its points
+/// that updates the ghosts of vectors before it multiplies them. Rows of owned points are the whole
+/// body's. Rows and diagonal blocks of ghosts are incomplete and meaningless. All calls are
+/// collective.
 template <class Operator>
 struct PartTangent final : Operator {
-  /// @throws std::logic_error for the energy of a whole body
+  /// @throws std::logic_error if the energy is that of a whole body
   explicit PartTangent(Assembler& energy) : Operator(energy), sharing_(energy.sharing()) {
     if (!sharing_) throw std::logic_error("PartTangent: of a whole body");
     this->reference = energy.points().reference;
     factor_.resize(this->reference.size());
   }
 
-  /// What v has for ghosts does not count; what the result has for them means nothing.
+  /// Ignores entries of v for ghosts; those of the result are meaningless.
   void multiply(std::span<const double> v, std::span<double> result) const override {
     std::copy(v.begin(), v.end(), factor_.begin());
     sharing_->update_ghosts(factor_);
@@ -35,8 +35,8 @@ struct PartTangent final : Operator {
   mutable std::vector<double> factor_;  // with the ghosts' values
 };
 
-/// Flags of degrees of freedom without an equation on this rank: all of ghosts, those of handles
-/// but for rank 0, and those that are prescribed.
+/// Flags of degrees of freedom without an equation on this rank: those of ghosts and images, those
+/// of handles except on rank 0, and those that are prescribed.
 /// @param prescribed one flag per degree of freedom of all points here
 [[nodiscard]] std::vector<char> without_ghosts(const Sharing& sharing, std::vector<char> prescribed,
                                                int dimension);

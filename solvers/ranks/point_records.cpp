@@ -10,7 +10,7 @@
 namespace peristat {
 namespace {
 
-/// Of the cell of each point: parts have those of lattices.
+/// Number of corners of each point's cell; 0 without cells. Only cells of lattices can be sent.
 int corners_of(const Points& points) {
   if (points.polygons.empty()) return 0;
   const int corners = points.dimension == 1 ? 2 : 4;

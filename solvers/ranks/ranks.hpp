@@ -9,22 +9,22 @@
 
 namespace peristat {
 
-/// Starts MPI, once in a process, and ends it with the result, which outlives all that uses it. A
-/// process that mpirun has not started is a sole rank of MPI.
+/// Starts MPI, once per process; the result ends it and must outlive all of its users. A process
+/// that mpirun has not started is a sole rank of MPI.
 /// @throws std::runtime_error where MPI can't be started
 [[nodiscard]] std::unique_ptr<Communicator> start_ranks();
 
-/// Sends each record to a rank, perhaps its own, by Tpetra::Distributor; a call that all make.
+/// Sends each record to a rank, perhaps its own, by Tpetra::Distributor. Collective.
 /// @param to rank of each record
-/// @return those that come here, in an order that is the same again
+/// @return the records received here, in a reproducible order
 [[nodiscard]] Records exchange(const Communicator& ranks, const std::vector<int>& to,
                                const Records& records);
 
-/// Parts of a cloud of points of about equal weight by planes across the axes, the multi-jagged
-/// method of Zoltan2.
-/// @param positions of this rank's points, times the dimension, row major [m]
-/// @param numbers   of them in the whole cloud
-/// @return rank of each
+/// Partitions a cloud of points into parts of about equal weight by planes across the axes, with
+/// the multi-jagged method of Zoltan2. Collective.
+/// @param positions of this rank's points, points x dimension, row major [m]
+/// @param numbers   of these points in the whole cloud
+/// @return rank of each point
 [[nodiscard]] std::vector<int> partition(const Communicator& ranks, int dimension,
                                          const std::vector<double>& positions,
                                          const std::vector<std::int64_t>& numbers,

@@ -2,13 +2,13 @@
 
 #include <vector>
 
-// Read as C++17, too.
+// Also compiled as C++17.
 
 namespace peristat {
 
-/// Records of some doubles and some whole numbers, which go from rank to rank.
+/// Records of some doubles and some integers, which are sent between ranks.
 struct Records {
-  int doubles = 0, integers = 0;  ///< of each record
+  int doubles = 0, integers = 0;  ///< per record
   std::vector<double> values{};
   std::vector<long long> numbers{};
 };

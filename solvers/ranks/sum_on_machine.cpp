@@ -9,7 +9,7 @@
 namespace peristat {
 namespace {
 
-/// A number that all processes of a machine have, containers of it as well, and others hardly.
+/// A number that all processes of a machine share, also in containers, and other machines hardly.
 double number_of_machine() {
   std::string text;
   std::ifstream("/proc/sys/kernel/random/boot_id") >> text;

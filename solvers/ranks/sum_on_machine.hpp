@@ -4,7 +4,7 @@
 
 namespace peristat {
 
-/// Sum over the ranks that share this one's machine, and so its memory. A call that all ranks make.
+/// Sum over the ranks on this machine, which share its memory. Collective.
 [[nodiscard]] double sum_on_machine(const Communicator& ranks, double mine);
 
 }  // namespace peristat

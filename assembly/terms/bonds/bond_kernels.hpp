@@ -170,13 +170,13 @@ inline void store_upper_halves(double* blocks, int count,
   }
 }
 
-/// Bonds that are free of stress at a stretch of their own, the mean of their points'.
+/// Stress-free stretch of each bond: the mean of its points' eigenstretches.
 struct Eigenstretch {
   const double* of_point;
 };
 struct NoEigenstretch {};
 
-/// Takes off what the bonds of row i would be stretched by if nothing held them.
+/// Subtracts the stress-free stretches of a batch of bonds of row i.
 template <int D, class E, class MeasureAt>
 [[gnu::always_inline]] inline void relieve(MeasureAt& measure, const E& eigenstretch, Index i,
                                            const Batch<D>& batch) {
@@ -187,7 +187,7 @@ template <int D, class E, class MeasureAt>
   }
 }
 
-/// A potential at bonds with their histories.
+/// A potential evaluated at the histories of a batch of bonds.
 template <class P>
 struct AtHistory {
   const P& potential;
@@ -209,8 +209,8 @@ template <class P>
   }
 }
 
-/// The potential's first derivative alone, at the bonds' histories if it has one. What at_history
-/// gives goes through memory on its way, which takes as long as all else of a pass.
+/// The potential's first derivative alone, at the bonds' histories if it has one. The result of
+/// at_history passes through memory, which takes as long as the rest of a pass.
 template <class P>
 [[gnu::always_inline]] inline Lanes tension(const double* largest_stretch, const P& potential,
                                             Offset first_bond, const Lanes& e) {
@@ -254,7 +254,7 @@ inline void commit(const Points& points, const P& potential, Index i, const Batc
   }
 }
 
-/// What committing a batch of row i would damage.
+/// Damage that committing a batch of row i would cause.
 template <int D, class P>
 inline void look_at(const Points& points, const P& potential, Index i, const Batch<D>& batch,
                     const Lanes& stretch, const double* largest_stretch, DamageGrowth& growth) {
@@ -270,7 +270,7 @@ inline void look_at(const Points& points, const P& potential, Index i, const Bat
   }
 }
 
-/// Of the bonds of a point to these, what the rank has: of a ghost's another rank has half.
+/// Share of each bond between row i and these partners that this rank counts: half per owned end.
 inline Lanes share_of_owned(const Points& points, Index i,
                             const std::array<Index, lane_count>& partner) {
   const double own = points.owns(i) ? 0.5 : 0.0;
@@ -292,14 +292,13 @@ inline void put(Write how, const double* total, double* to) {
 }
 
 /// The passes over the bonds, for one dimension; the potential is chosen once, outside the loops.
-/// `largest_stretch` is the bonds' history and a batch more; null for a
-/// potential without one.
+/// `largest_stretch` is the bonds' history, padded by a batch; null for a potential without one.
 template <int D>
 struct BondKernels {
   using Span = std::span<const double>;
 
-  /// @tparam commits whether histories follow: the energy is then what is stored after that
-  /// @tparam with_energy otherwise it is left out: it takes a division per bond
+  /// @tparam commits updates the histories first: the energy is then what is stored after that
+  /// @tparam with_energy false leaves the energy out, which takes a division per bond
   template <bool commits, bool with_energy = true, class P, class E>
   static Evaluation gradient(BondWorkspace& a, const P& potential, const E& eigenstretch,
                              Span displacement,
@@ -380,7 +379,7 @@ struct BondKernels {
   }
 
   /// @param blocks_of(thread, i) where the off-diagonal blocks of row i go
-  /// @param done(thread, i) called once they are there
+  /// @param done(thread, i) called after these are written
   /// @param diagonal blocks; empty: not wanted
   template <Tangent::Blocks stored_as, class P, class E, class BlocksOf, class Done>
   static void tangent(BondWorkspace& a, const P& potential, const E& eigenstretch,
@@ -496,8 +495,8 @@ struct BondKernels {
                           [&](Index i, const double* total) { put<1>(how, total, &energies[i]); });
   }
 
-  /// Half of every bond's force (x) reference arm to each of its ends. A pass per component of the
-  /// force, whose rows fit into the sums that forces are added up in.
+  /// Adds half of every bond's force (x) reference arm to each of its ends, in one pass per
+  /// component of the force: its rows then fit into the sums of forces.
   template <class P, class E>
   static void add_virials(BondWorkspace& a, const P& potential, const E& eigenstretch,
                           Span displacement, const double* largest_stretch,

@@ -38,8 +38,8 @@ class BondPassesIn : public TermPasses {
  private:
   using Kernels = BondKernels<dimension>;
 
-  /// Calls body(law, history of the bonds, eigenstretch) with the potential as its own type, and
-  /// one for no eigenstretch.
+  /// Calls body(law, history of the bonds, eigenstretch) with the concrete type of the potential,
+  /// and with NoEigenstretch where there is none.
   template <class Body>
   auto dispatch(const StateView& at, const Body& body) const;
 
@@ -47,13 +47,13 @@ class BondPassesIn : public TermPasses {
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
                     History& history, std::span<double> gradient, Write how);
 
-  /// Straight into the tangent, whose off-diagonal blocks are those of the bonds.
+  /// Writes straight into the tangent, whose off-diagonal blocks are those of the bonds.
   void write_tangent(const StateView& at, double projection, Tangent& tangent);
 
   const BondTerm& term_;
   std::size_t slot_;
   const BlockPattern& pattern_;
-  std::vector<Offset> places_;  // of the bonds' blocks in the pattern; empty: in its order
+  std::vector<Offset> places_;  // positions of bonds' blocks in the pattern; empty: its order
   BondWorkspace workspace_;
 };
 

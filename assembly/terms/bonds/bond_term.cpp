@@ -10,7 +10,7 @@
 namespace peristat {
 namespace {
 
-/// Numbers in the history of bonds: kernels read a batch of lanes.
+/// Length of the bonds' history, padded since kernels read whole batches of lanes.
 std::size_t padded(const Bonds& bonds) { return std::size_t(bonds.count()) + lane_count; }
 
 }  // namespace

@@ -13,9 +13,9 @@ namespace peristat {
 
 /// The energy of bonds, the sum of w psi(l; L) ([CPD] eq. 14, one neighbour).
 ///
-/// If their potential is one of damage, it remembers the largest stretch of each bond over the
-/// committed states as far as it has damaged it: 0 before, Degraded::never_fails where the term
-/// says so.
+/// With a potential of damage the history is the largest stretch of each bond over the committed
+/// states, as far as it has damaged the bond: 0 before, Degraded::never_fails where the term says
+/// so.
 class BondTerm : public Term {
  public:
   /// @param never_fails per bond, 1: no damage whatever the stretch; empty: none
@@ -27,7 +27,7 @@ class BondTerm : public Term {
 
   [[nodiscard]] const Bonds& bonds() const { return *bonds_; }
   [[nodiscard]] const std::shared_ptr<const Bonds>& shared_bonds() const { return bonds_; }
-  /// Bonds that there are.
+  /// Number of bonds, whether stored or not.
   [[nodiscard]] virtual Offset count() const { return bonds_->count(); }
   [[nodiscard]] const BondPotential& potential() const { return potential_; }
   [[nodiscard]] bool can_fail() const {
@@ -44,7 +44,7 @@ class BondTerm : public Term {
         potential_);
   }
 
-  /// What it remembers if its bonds have had these largest stretches.
+  /// History of bonds that have had these largest stretches.
   /// @throws std::logic_error unless there is one for every bond
   [[nodiscard]] std::vector<double> history_of(std::span<const double> largest_stretches) const;
 

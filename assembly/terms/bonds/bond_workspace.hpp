@@ -9,11 +9,11 @@
 
 namespace peristat {
 
-/// Doubles of a gathered row: two vectors of the dimension, each padded to a transposition's width
-/// where they don't fit one together.
+/// Doubles per gathered row: two vectors, each padded to the width of a transposition where one
+/// does not hold both.
 constexpr int row_width(int dimension) { return dimension == 3 ? 8 : 4; }
 
-/// What the passes over bonds work with.
+/// Buffers of the passes over bonds.
 struct BondWorkspace {
   BondWorkspace(const Points& of, const Bonds& with, Workspace& shared)
       : points(of),
@@ -24,9 +24,9 @@ struct BondWorkspace {
   const Points& points;
   const Bonds& bonds;
   Workspace& threads;
-  AlignedVector<double> rows;  ///< per point, what kernels gather; see pack
+  AlignedVector<double> rows;  ///< per point, the row that kernels gather; see pack
 
-  /// Gathered rows: two vectors per point, e.g. reference position and displacement.
+  /// Packs two vectors per point into rows, e.g. reference position and displacement.
   template <int D>
   void pack(std::span<const double> first, std::span<const double> second) {
     constexpr int width = row_width(D);

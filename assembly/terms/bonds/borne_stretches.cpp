@@ -15,13 +15,13 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Calls visit(law of a bond) for the law of damage of one of them.
+/// Calls visit(law) if the bonds can be damaged; law.of_bond(bond) is that of one of them.
 template <class Visit>
 void with_law(const Model& model, const Visit& visit) {
   if (const BondTerm* const bonds = model.failing_bonds()) bonds->with_damage_law(visit);
 }
 
-/// What a law bears once a strength is exceeded.
+/// Stretch that a law bears after a strength is exceeded.
 template <class Law>
 double borne_after(const Law& law, double strength) {
   if constexpr (StepwiseLaw<Law>) {
@@ -85,7 +85,7 @@ class BondLook {
   std::span<const double> displacement_, free_;
 };
 
-/// Of the bond between two points, now.
+/// Current unit vector along the bond between two points.
 Coordinates direction(const Points& points, const StateView& at, Index i, Index j) {
   const std::size_t d = std::size_t(points.dimension);
   Coordinates arm{};
@@ -99,8 +99,8 @@ Coordinates direction(const Points& points, const StateView& at, Index i, Index 
   return arm;
 }
 
-/// Calls visit(thread, point, bond, look) for every bond that bears a limited stretch, on several
-/// threads; a thread's bonds follow one another.
+/// Calls visit(thread, point, bond, look) for every bond with a finite borne stretch, on several
+/// threads; each thread visits consecutive bonds.
 template <class Visit>
 void for_each_bearing(const Points& points, const Model& model, const StateView& at,
                       std::span<const double> borne, int threads, const Visit& visit) {

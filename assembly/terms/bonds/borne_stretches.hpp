@@ -10,62 +10,62 @@
 
 namespace peristat {
 
-/// Stretch that each bond bears before it is damaged (further) after a history; infinite for bonds
-/// that are broken, never fail or have no weight. Empty for a model without damage.
+/// Stretch beyond which each bond is damaged (further) after a history: its current strength.
+/// Infinite for bonds that are broken, never fail or have no weight. Empty for a model without
+/// damage.
 [[nodiscard]] std::vector<double> borne_stretches(const Model& model, const History& history);
 
-/// Whether all bonds that fail do so by drops of their stiffness, elastic in between.
+/// True if all bonds that fail do so by drops of their stiffness and are elastic in between.
 [[nodiscard]] bool fails_by_steps(const Model& model);
 
-/// A bond and its stretch over what it bears.
+/// A bond with its stretch and its utilisation, the stretch over the borne one.
 struct UtilisedBond {
   Offset bond = 0;
   Index first_point = 0;
   double utilisation = 0.0, stretch = 0.0;
 };
 
-/// Stiffness along its direction that a bond has lost.
+/// Stiffness that a bond has lost along its direction.
 struct LostStiffness {
   Offset bond = 0;
   Index first = 0, second = 0;  ///< its points
-  Coordinates direction{};      ///< from the one to the other, now
+  Coordinates direction{};      ///< from first to second, current unit vector
   double stiffness = 0.0;       ///< [N/m]
 };
 
-/// Drops of stiffness of some bonds at a state: each leaves what it bears, for good.
+/// Irreversible drops of stiffness of some bonds at a state.
 struct BondDrops {
   std::vector<double> histories{};  ///< of all bonds, after the drops
   std::vector<double> borne{};      ///< likewise, see borne_stretches
-  Index breaking = 0;               ///< of the bonds, those that lose all
-  double energy_lost = 0.0;         ///< that the bonds stored at the state and no longer do [J]
+  Index breaking = 0;               ///< bonds among them that break completely
+  double energy_lost = 0.0;         ///< stored energy that the bonds lose at the state [J]
   double dissipated = 0.0;          ///< by the laws [J]
   std::vector<LostStiffness> stiffness{};
 };
 
-/// @param borne after the history
+/// @param borne borne stretches after the history
 /// @param bonds that drop
 [[nodiscard]] BondDrops drop(const Points& points, const Model& model, const StateView& at,
                              std::span<const double> borne, std::span<const UtilisedBond> bonds);
 
-/// Bonds that are utilised by at least so much, most utilised first, then by their numbers.
+/// Bonds with at least this utilisation, most utilised first, then by their numbers.
 /// @param borne see borne_stretches
 [[nodiscard]] std::vector<UtilisedBond> utilised_bonds(const Points& points, const Model& model,
                                                        const StateView& at,
                                                        std::span<const double> borne, double least,
                                                        int threads);
 
-/// How far a state may move along a direction until bonds reach a share of what they bear, by the
-/// rates of their stretches: every bond is within it from `low` to `high`. Where low > high there
-/// is no such place.
+/// Range of steps along a direction, [low, high], in which no bond exceeds a share of its borne
+/// stretch by the rate of its stretch. Empty where low > high.
 struct AdmissibleRange {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   double utilisation = 0.0;  ///< the largest at the state itself
 };
 
-/// @param rate of the displacement, per unit of the way
+/// @param rate of the displacement, per unit of the step
 /// @param eigenstretch_rate per point, or empty
-/// @param share of what they bear
+/// @param share of the borne stretches
 [[nodiscard]] AdmissibleRange admissible_range(const Points& points, const Model& model,
                                                const StateView& at, std::span<const double> borne,
                                                std::span<const double> rate,

@@ -9,8 +9,8 @@
 namespace peristat {
 namespace {
 
-/// Least share of the largest second moment of a neighbourhood that the smallest must have: below
-/// it the bonds lie in a line or plane but for round-off.
+/// Smallest over largest second moment of a neighbourhood below which its bonds lie in a line or
+/// plane but for round-off.
 constexpr double flat = 1e-10;
 
 struct Moments {

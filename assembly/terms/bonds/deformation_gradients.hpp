@@ -9,7 +9,7 @@
 
 namespace peristat {
 
-/// How the neighbourhoods of points have moved.
+/// Deformation gradients of the points' neighbourhoods.
 struct DeformationGradients {
   std::vector<double> displacement;  ///< F - I, points x dimension x dimension, row major
   std::vector<char> is_determined;   ///< per point; where it is not, F - I is zero
@@ -21,9 +21,9 @@ struct DeformationGradients {
 ///
 /// least squares with the weight w of each bond in the energy (volumes, partial volumes, influence,
 /// corrections, relative stiffness); xi is the reference vector and eta the relative displacement.
-/// Exact for homogeneous deformations whatever the weights. Softened bonds count whole. A point
-/// whose unbroken bonds do not span the space determines none. Images have their sources' F,
-/// mirrored, but this is told of the points alone that stand for themselves.
+/// Exact for homogeneous deformations whatever the weights. Softened bonds count in full. A point
+/// whose unbroken bonds do not span the space determines none. Images are left out: their F is that
+/// of their source, mirrored.
 [[nodiscard]] DeformationGradients deformation_gradients(const Points& points, const Model& model,
                                                          const StateView& at);
 

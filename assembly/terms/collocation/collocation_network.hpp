@@ -8,15 +8,15 @@
 
 namespace peristat {
 
-/// What is taken of the continuation of the displacements into the missing part of a ball: all of
-/// it, or what is even in the tangential direction ([LPS] eq. 4.6).
+/// Part of the displacements' continuation into the missing part of a ball that is used: all of it,
+/// or what is even in the tangential direction ([LPS] eq. 4.6).
 enum class TractionForm { full, paper };
 
 /// Entries of a symmetric tensor of third order, in ascending order of their axes.
 constexpr int third_moment_entries(int dimension) { return dimension == 2 ? 4 : 10; }
 
-/// Neighbours of points in both directions with the weights of a quadrature, frozen in the
-/// reference configuration, and what is constant of the material there.
+/// Neighbours of points in both directions with the weights of a quadrature, and further constants,
+/// frozen in the reference configuration.
 ///
 /// With the kernel K = 1/r, m = int K r^2 dV over the ball and the quadrature's weights omega_ij of
 /// the ball about i, a neighbour has k_ij = K(r) omega_ij / m [1/m2].
@@ -31,15 +31,15 @@ struct CollocationNetwork {
   std::vector<double> missing_first, missing_third;
   std::vector<char> is_whole;  ///< whether nothing of a point's ball is missing from the start
   /// Outward normals of points that have all of their bonds, points x dimension; zero, or empty:
-  /// those of the neighbourhood.
+  /// the normals follow from the neighbourhood.
   std::vector<double> normals{};
-  /// Where points stand in the place of the body's own reference; empty: there [m].
+  /// Positions of the points if these are not the body's own reference; empty: they are [m].
   std::vector<double> places{};
 
   [[nodiscard]] Index points() const { return static_cast<Index>(offset.size()) - 1; }
 };
 
-/// Lame's constants of points [Pa]; what two points share has their harmonic means.
+/// Lame's constants of points [Pa]; pairs of points have their harmonic means.
 struct LameConstants {
   std::vector<double> lambda, mu;
 };

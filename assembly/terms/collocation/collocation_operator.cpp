@@ -17,11 +17,11 @@ namespace {
 /// A sum of vectors that is less than this share of the sum of their lengths has no direction.
 constexpr double no_direction = 1e-9;
 
-/// Singular values of a shape tensor below this share of the largest are none: bonds along one line
-/// tell nothing of what is across it.
+/// Eigenvalues of a shape tensor below this share of the largest count as zero: bonds along one
+/// line determine nothing across it.
 constexpr double flat_shape = 1e-10;
 
-/// Where a symmetric tensor of third order keeps an entry.
+/// Position of each entry in storage of a symmetric tensor of third order.
 template <int D>
 struct ThirdOrder {
   std::array<std::array<std::array<int, D>, D>, D> place{};
@@ -69,7 +69,7 @@ void write_inverse(const Matrix<D, double>& shape, double* inverse) {
   }
 }
 
-/// Share of sum k r^2 below which a point is torn: a straight crack leaves it half of its ball.
+/// Share of sum k r^2 below which a point is torn: a straight crack leaves half of the ball.
 constexpr double torn_share = 0.4;
 
 double harmonic_mean(double a, double b) {
@@ -97,7 +97,7 @@ struct CollocationOperator::Kernels {
   void for_points(const Body& body) const {
     for_first(net.points(), body);
   }
-  /// Of a part of a body those that its rank owns: what others have is not all here.
+  /// On a part of a body only the points that its rank owns: data of others are incomplete here.
   template <class Body>
   void for_owned(const Body& body) const {
     for_first(op.owned(), body);
@@ -251,14 +251,14 @@ struct CollocationOperator::Kernels {
     return force;
   }
 
-  /// Whether the force on a point has a part of missing_shear.
+  /// True if the force on a point has a part of missing_shear.
   [[nodiscard]] bool has_missing_shear(Index i) const {
     if (D == 2 || op.setting_.form == TractionForm::paper || op.torn_[i]) return false;
     const V n = of(op.normal_, i);
     return dot<D>(n, n) != 0.0;
   }
 
-  /// Part of B that is the deviator in the tangential plane of a nonlocal displacement gradient.
+  /// Part of B that stems from the tangential deviator of a nonlocal strain.
   [[nodiscard]] V missing_shear(Index i, const M& gradient) const {
     const V n = of(op.normal_, i);
     V along{};  // E n
@@ -369,8 +369,9 @@ struct CollocationOperator::Kernels {
     return 0.5 * (lambda - mu) * theta * theta + 0.25 * bond_factor * mu * bonds;
   }
 
-  /// w; the part of bonds in the missing part of the ball is that of the whole ball under the
-  /// nonlocal strain, which the quadrature has exactly, less that of what is there.
+  /// w; the bonds' part in the missing part of the ball is that of the whole ball under the
+  /// nonlocal strain, which the quadrature integrates exactly, less that of the existing
+  /// neighbours.
   [[nodiscard]] double energy_density(std::span<const double> u, Index i) const {
     if (op.whole_[i] != 0) return whole_energy_density(u, i);
     const M gradient = gradient_at(u, i);
@@ -398,8 +399,8 @@ struct CollocationOperator::Kernels {
 
   // --- rows -------------------------------------------------------------------------------------
 
-  /// What theta of a point and of its neighbours do to the force on it: g of the point itself, and
-  /// of each entry by visit(entry, j, g, bond block factor, xi).
+  /// Coefficients of theta in the force on a point: returns g of the point itself, and calls
+  /// visit(entry, j, g, bond block factor, xi) for its neighbours.
   template <class Visit>
   V for_couplings(Index i, const Visit& visit) const {
     V own = missing_force(i, 1.0, V{});
@@ -412,7 +413,7 @@ struct CollocationOperator::Kernels {
     return own;
   }
 
-  /// k_ij of unbroken neighbours, which are neighbours in both directions.
+  /// k_ij of an unbroken neighbour; two points are neighbours of each other.
   [[nodiscard]] double share_of(Index i, Index j) const {
     const auto first = net.neighbour.begin() + net.offset[i];
     const auto last = net.neighbour.begin() + net.offset[i + 1];
@@ -420,7 +421,7 @@ struct CollocationOperator::Kernels {
     return (op.share_.empty() ? net.kernel_share : op.share_)[std::size_t(entry)];
   }
 
-  /// theta of a point is sum_l t_l . (u_l - u_i).
+  /// Calls visit(l, t_l): theta of a point is sum_l t_l . (u_l - u_i).
   template <class Visit>
   void for_dilatation(Index i, const Visit& visit) const {
     for_neighbours(i, [&](Offset, Index j, double k, const V& xi) {
@@ -459,7 +460,7 @@ struct CollocationOperator::Kernels {
 
   void fill_row(Index i, RowBuffer& row) const {
     row.clear();
-    // Whatever is broken, so that the rows keep their pattern.
+    // All couplings, whatever is broken, so that the rows keep their pattern.
     row.at(i);
     for (Offset e = net.offset[i]; e < net.offset[i + 1]; ++e) {
       const Index j = net.neighbour[e];

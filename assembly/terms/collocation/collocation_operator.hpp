@@ -11,7 +11,7 @@
 
 namespace peristat {
 
-/// What a collocation operator is made of; constant in a solve.
+/// Inputs of a collocation operator; constant during a solve.
 struct CollocationSetting {
   std::shared_ptr<const CollocationNetwork> network;
   std::shared_ptr<const LameConstants> constants;
@@ -32,29 +32,29 @@ struct CollocationSetting {
 ///   B_i = -2 d (lambda - mu) theta_i a_i - 2 d (d + 2) S_i : mu E_i
 ///
 /// with a_i = sum k xi and S_i = sum k xi xi xi / r^2 over what is missing, and mu E_i from
-/// sigma_i n_i = T_i and tr E_i = theta_i ([LPS] eq. 4.6-4.8 is the form `paper`). In 3D these tell
-/// the mean of the tangential strains alone: what they differ by is that of the nonlocal strain
-/// with the form `full`, and nothing with `paper`. Patch tests are exact with the form `full`.
+/// sigma_i n_i = T_i and tr E_i = theta_i ([LPS] eq. 4.6-4.8 is the form `paper`). In 3D these fix
+/// only the mean of the tangential strains: their deviator is that of the nonlocal strain with the
+/// form `full`, and zero with `paper`. Patch tests are exact with the form `full`.
 ///
-/// Points that have lost more than three fifths of what they had of their balls are torn: debris,
-/// of which nothing is continued. There M_i = 1 and B_i = B_i(0, T_i), with which the operator
-/// stays positive however few bonds are left; the inverse of a tensor of few bonds would not.
+/// Points that have lost more than three fifths of their initial balls are torn: debris, of which
+/// nothing is continued. There M_i = 1 and B_i = B_i(0, T_i), with which the operator stays
+/// positive however few bonds are left; with the inverse of a tensor of few bonds it would not.
 ///
-/// Of a part of a body it finds what belongs to the points that its rank owns; of others that is 0.
+/// On a part of a body results are those of the points that its rank owns, and 0 at others.
 ///
-/// The rows have no common energy, and the operator is not symmetric: where neighbourhoods are
-/// alike and whole it is.
+/// The rows have no common energy, and the operator is not symmetric except where neighbourhoods
+/// are alike and whole.
 class CollocationOperator {
  public:
   /// All references outlive it; `broken` may change with `update`.
   CollocationOperator(const Points& points, CollocationSetting setting, int threads);
   ~CollocationOperator();
 
-  /// Takes up which bonds are broken, by their numbers in the model's network; empty: none.
-  /// Nothing is done if that is known.
+  /// Sets which bonds are broken, by their numbers in the model's network; empty: none. Does
+  /// nothing if that has not changed.
   void update(std::span<const char> broken);
 
-  /// V (L u) [N], with the part of the tractions.
+  /// V (L u) [N], including the tractions' part.
   /// @param traction at points, points x dimension [Pa]; empty: free surfaces
   void forces(std::span<const double> displacement, std::span<const double> traction,
               std::span<double> force);
@@ -72,16 +72,16 @@ class CollocationOperator {
   /// part of the ball.
   void energies(std::span<const double> displacement, std::span<double> energy);
 
-  /// Outward normals, points x dimension; zero where nothing is missing, or all around.
+  /// Outward normals, points x dimension; zero where nothing is missing, or as much on all sides.
   [[nodiscard]] std::span<const double> normals() const { return normal_; }
 
   /// All rows of dV(L u)/du [N/m].
   [[nodiscard]] SparseRows rows();
   /// Blocks (i, i) of it, points x d x d.
   [[nodiscard]] const std::vector<double>& diagonal() { return outline().diagonal; }
-  /// Not less than the sums of the absolute entries of rows [N/m].
+  /// Upper bounds of the sums of the absolute entries of rows [N/m].
   [[nodiscard]] const std::vector<double>& bounds_of_row_sums() { return outline().row_sums; }
-  /// What rows() takes, about [bytes].
+  /// Approximate memory of rows() [bytes].
   [[nodiscard]] double bytes_of_rows() const;
 
  private:
@@ -91,10 +91,10 @@ class CollocationOperator {
     std::vector<double> diagonal, row_sums;
   };
   const Outline& outline();
-  /// Points that what is found belongs to: the first ones.
+  /// Number of points, the first ones, that results are found for.
   [[nodiscard]] Index owned() const { return points_.owned.value_or(setting_.network->points()); }
-  /// Takes up which bonds are broken.
-  /// @return per point, whether one of its own has changed
+  /// Sets which bonds are broken.
+  /// @return per point, whether one of its bonds has changed
   std::vector<char> take_up(std::span<const char> broken);
   /// Calls visit(Kernels<D>{*this}).
   template <class Visit>
@@ -104,7 +104,7 @@ class CollocationOperator {
   CollocationSetting setting_;
   std::span<const double> reference_;  // positions
   int threads_;
-  std::vector<char> broken_;  // as known
+  std::vector<char> broken_;  // as last set
   bool is_up_to_date_ = false;
   bool is_uniform_ = false;         // one pair of constants
   std::optional<Outline> outline_;  // of the present bonds

@@ -160,7 +160,7 @@ class CollocationPasses : public TermPasses {
 
   const CollocationTerm& term_;
   TermSetting setting_;
-  std::unique_ptr<TermPasses> stretches_;  // of its bonds, whose own forces count for nothing
+  std::unique_ptr<TermPasses> stretches_;  // damage of its bonds; their forces are unused
   CollocationOperator whole_;
   std::vector<char> broken_;
   std::vector<double> buffer_;
@@ -179,9 +179,8 @@ double CollocationTerm::stored_bytes() const {
   const CollocationNetwork &whole = *whole_.network, &local = *local_.network;
   const double entries = double(whole.neighbour.size() + local.neighbour.size());
   const double d = whole.dimension, third = third_moment_entries(whole.dimension);
-  // Of an entry neighbour, bond, share and, once bonds break, share again, and what it is to the
-  // dilatation; of a point what is
-  // missing from the start and now, shape, normal, dilatation, constants.
+  // Per entry: neighbour, bond, share (twice once bonds break), dilatation coefficient. Per point:
+  // missing moments at the start and now, shape, normal, dilatation, constants.
   return BondTerm::stored_bytes() +
          entries * (double(sizeof(Index) + sizeof(Offset)) + (2.0 + d) * sizeof(double)) +
          8.0 * double(whole.points()) * (4.0 * d + 3.0 * third + d * d + 4.0);

@@ -9,15 +9,15 @@
 namespace peristat {
 
 /// The linear peridynamic solid by collocation, see CollocationOperator. Its forces have no
-/// potential; the energy that it tells is that of [LPS] sec. 2. Tractions are the environment's.
+/// potential; the reported energy is that of [LPS] sec. 2. Tractions come from the environment.
 ///
 /// Bonds break as those of brittle bond models do, by their stretch in the deformed configuration:
-/// as a term of bonds it remembers that, and tells what it dissipates. The stretches have to be
+/// the term's history and dissipation are those of a term of bonds. The stretches have to be
 /// committed before forces change.
 class CollocationTerm : public BondTerm {
  public:
-  /// @param bonds network of the uncut bonds, which the entries of both networks name
-  /// @param whole, local the operator, and its stand-in between points that are next to one another
+  /// @param bonds network of the uncut bonds, which the entries of both networks refer to
+  /// @param whole, local the operator, and its surrogate between adjacent points
   CollocationTerm(std::shared_ptr<const Bonds> bonds, BondPotential potential,
                   std::vector<char> never_fails, CollocationSetting whole,
                   CollocationSetting local);

@@ -13,7 +13,7 @@
 namespace peristat {
 namespace {
 
-/// Of all places, points first and then ghosts, the neighbours of each point.
+/// Neighbours of each point among all sites, points first and then ghosts.
 struct Neighbourhoods {
   std::vector<Offset> offset;
   std::vector<Index> neighbour;
@@ -51,8 +51,8 @@ Neighbourhoods find_neighbourhoods(const Points& points, double horizon, int thr
   return found;
 }
 
-/// Per point, whether its states are to be right: of a whole body all, of a part those that its
-/// rank owns and their neighbours.
+/// Per point, whether its states must be right: on a whole body everywhere, on a part at the points
+/// that its rank owns and at their neighbours.
 std::vector<char> points_with_states(const Points& points, const Bonds& bonds) {
   std::vector<char> have(points.volume.size(), char(points.owned ? 0 : 1));
   if (!points.owned) return have;

@@ -10,7 +10,7 @@ namespace peristat {
 
 template <int D>
 struct LinearBondSums::Kernels {
-  /// A bond in the reference: its direction, and the stiffness that its points leave it.
+  /// A bond in the reference: its direction, and its stiffness times its points' integrities.
   struct Spring {
     Vector<D, Lanes> direction;
     Lanes stiffness;
@@ -26,8 +26,8 @@ struct LinearBondSums::Kernels {
             integrity * batch.weight * batch.inverse_length};
   }
 
-  /// Calls visit(i, batch, spring, sums, own) for the bonds of all rows, and write(i, total) with
-  /// the sums that it has added up over them.
+  /// Calls visit(i, batch, spring, sums) for the bonds of all rows, and write(i, total) with the
+  /// sums that it has added up over them.
   template <int width, class Visit, class WriteRow>
   void sum(std::span<const double> moved, const Visit& visit, const WriteRow& write) {
     BondWorkspace& a = of.workspace_;

@@ -10,9 +10,9 @@
 
 namespace peristat {
 
-/// Bonds linearised at rest, one by one: what LinearBonds is by convolutions, on any points. With
-/// the stiffness k = c w / L of a bond, n its direction in the reference and q the integrities of
-/// points,
+/// Bonds linearised at rest, summed one by one on any points; LinearBonds sums them by
+/// convolutions. With the stiffness k = c w / L of a bond, n its direction in the reference and q
+/// the integrities of points,
 ///
 ///   f_i = q_i sum_j q_j k_ij n (n . (u_j - u_i))                                   [N]
 ///   w_i = q_i sum_j q_j k_ij (n . (u_j - u_i))^2 / 4                               [J]

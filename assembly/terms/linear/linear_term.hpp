@@ -9,9 +9,9 @@
 
 namespace peristat {
 
-/// The linear peridynamic solid in the place of bonds.
+/// The linear peridynamic solid, which replaces the bonds.
 struct ConvolvedSolid {
-  std::vector<LatticeArm> arms;  ///< of a point, of two opposite ones one
+  std::vector<LatticeArm> arms;  ///< of a point, one per opposite pair
   LinearSolid::Setting setting;
 };
 
@@ -19,22 +19,23 @@ struct ConvolvedSolid {
 ///
 ///   Pi = sum_b q_i q_j k (n . (u_j - u_i))^2 / 2,   k = c w / L,
 ///
-/// n the direction of the bond in the reference, bond by bond (LinearBondSums) or by convolutions
-/// ([FCBM] app. A, LinearBonds): both are the same numbers to round-off; or of the linear solid by
-/// convolutions (LinearSolid). Forces add up to zero, and their moments in the reference, not in
-/// the present places. Those of the solid's form `printed` do neither and have no potential: its
-/// energy is what it tells, and no work that forces do is stored.
+/// n the direction of the bond in the reference. Sums are bond by bond (LinearBondSums) or by
+/// convolutions ([FCBM] app. A, LinearBonds): both are the same numbers to round-off. With `solid`
+/// it is the energy of the linear solid by convolutions (LinearSolid). Forces add up to zero, and
+/// so do their moments about reference positions, but not about present ones. Forces of the solid's
+/// form `printed` do neither and have no potential: the energy is that of the solid, and does not
+/// account for the work of these forces.
 class LinearTerm : public PointTerm {
  public:
   /// See PointTerm.
-  /// @param solid by convolutions, whose springs are those of the lattice
+  /// @param solid summed by convolutions; its springs are those of the lattice
   LinearTerm(std::shared_ptr<const Bonds> bonds, double micromodulus, BearableEnergies bearable,
              std::optional<ConvolvedLattice> lattice, int threads,
              std::optional<ConvolvedSolid> solid = {});
 
   [[nodiscard]] std::unique_ptr<LatticeForces> forces(const Points& points,
                                                       Workspace& shared) const override;
-  /// 2 of pairs of points; of the solid see StateRatios, of its form `printed` none.
+  /// 2 for pairs of points; for the solid see StateRatios; 0, no bound, for its form `printed`.
   [[nodiscard]] double bound_over_blocks(int dimension) const override;
   [[nodiscard]] Balances balances() const override;
 

@@ -14,18 +14,18 @@ struct ConvolvedGreenBonds {};
 
 /// A correspondence material (Correspondence).
 struct ConvolvedCorrespondence {
-  std::vector<LatticeArm> arms;  ///< of a point, of two opposite ones one
+  std::vector<LatticeArm> arms;  ///< of a point, one per opposite pair
   Correspondence::Setting setting;
 };
 
 using ConvolvedLaw = std::variant<ConvolvedGreenBonds, ConvolvedCorrespondence>;
 
-/// An energy for any deformation whose forces are polynomials of displacements, so that
-/// convolutions sum them. Forces and their moments in the present places add up to zero, but for
-/// points of a correspondence material that have lost their gradient: these resist turns.
+/// An energy for any deformation whose forces are polynomials of displacements, and so sums of
+/// convolutions. Forces and their moments about present positions add up to zero, except at points
+/// of a correspondence material that have lost their gradient: these resist rotations.
 ///
-/// A projected tangent has a share of the one at rest instead of its own: parts of it that are not
-/// convex are no convolutions.
+/// Projection replaces a share of the tangent by the tangent at rest: the semidefinite part of the
+/// tangent itself is no convolution.
 class ConvolvedTerm : public PointTerm {
  public:
   /// See PointTerm.
@@ -34,7 +34,7 @@ class ConvolvedTerm : public PointTerm {
 
   [[nodiscard]] std::unique_ptr<LatticeForces> forces(const Points& points,
                                                       Workspace& shared) const override;
-  /// Diagonal blocks tell nothing where bonds are compressed.
+  /// Diagonal blocks give no bound where bonds are compressed.
   [[nodiscard]] double bound_over_blocks(int /*dimension*/) const override { return 0.0; }
   [[nodiscard]] Balances balances() const override;
 

@@ -38,14 +38,14 @@ class PointPasses : public TermPasses {
     return gradient_at(at, gradient, how);
   }
 
-  /// All that exceed what they bear fail together; an equilibrium is found before others do.
+  /// All points that exceed what they bear fail together; an equilibrium is found before others do.
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
                     History& history, std::span<double> gradient, Write how) override {
     return commit(displacement, environment, history, gradient, how, Failing::once);
   }
 
-  /// In motion nothing is found anew: where points beside failed ones are stiffer than before, as
-  /// those of a solid are, these fail at once, too.
+  /// In motion no equilibrium is found in between. Where failed points make their neighbours
+  /// stiffer, as in the linear solid, neighbours that exceed what they bear fail at once, too.
   Evaluation commit_forces(std::span<const double> displacement,
                            const SharedEnvironment& environment, History& history,
                            std::span<double> gradient, Write how) override {
@@ -68,7 +68,7 @@ class PointPasses : public TermPasses {
     return judge();
   }
 
-  /// @param projection changes nothing: what has rows is convex
+  /// @param projection ignored: a term with rows is convex
   void tangent(const StateView& at, double /*projection*/, Tangent& tangent, Write how) override {
     if (how == Write::over) tangent.clear();
     const std::size_t entries = dimension_ * dimension_;
@@ -109,7 +109,7 @@ class PointPasses : public TermPasses {
                            workspace_.threads());
   }
 
-  /// @param projection how much of the tangent is that at rest, which has no negative eigenvalue
+  /// @param projection share of the tangent at rest, which has no negative eigenvalue
   void product(const StateView& at, std::span<const double> v, double projection,
                std::span<double> product, Write how) override {
     take_integrity(at.history);
@@ -171,7 +171,7 @@ class PointPasses : public TermPasses {
     return evaluation(at.displacement, gradient, how);
   }
 
-  /// Ghosts go with their owners, images with their sources.
+  /// Sets the integrity of failing points to 0, also of their ghosts and images.
   void fail(History& history) {
     const std::span<double> remembered = history.change(slot_).first(volume_.size());
     const std::span<const double> energy = whole_energies();
@@ -185,12 +185,12 @@ class PointPasses : public TermPasses {
     take_integrity(history);
   }
 
-  /// Points whose energies are whole: the first ones.
+  /// Number of points, the first ones, whose energies are complete on this rank.
   [[nodiscard]] std::size_t judged() const {
     return std::size_t(points_.owned.value_or(points_.own()));
   }
 
-  /// With those that images have of their sources' bonds.
+  /// Energies, with those that images have of their sources' bonds.
   [[nodiscard]] std::span<const double> whole_energies() {
     if (points_.own() == points_.count()) return energy_;
     whole_energy_ = energy_;
@@ -221,7 +221,7 @@ class PointPasses : public TermPasses {
     }
   }
 
-  /// Without what rollers and rigid sets carry beside the points.
+  /// Displacements of the points, without the handles of rollers and rigid sets after them.
   [[nodiscard]] std::span<const double> own(std::span<const double> displacement) const {
     return displacement.first(force_.size());
   }
@@ -232,7 +232,7 @@ class PointPasses : public TermPasses {
     for (std::size_t k = 0; k < values.size(); ++k) to[k] += factor * values[k];
   }
 
-  /// And what `stored` needs beside them.
+  /// Finds forces, and whatever else `stored` needs.
   void find_forces(std::span<const double> displacement) {
     if (!has_half_work_) return find_energies(displacement);
     forces_->find_forces(own(displacement), force_);
@@ -250,7 +250,8 @@ class PointPasses : public TermPasses {
     return mean;
   }
 
-  /// Sums over neighbours are of squared displacements with the stiffness of all springs.
+  /// The energy is a difference of sums of squared displacements times the stiffness of all
+  /// springs.
   [[nodiscard]] double round_off_at(std::span<const double> displacement) const {
     const Coordinates mean = mean_of(displacement);
     double squares = 0.0, stiffness = 0.0;
@@ -263,8 +264,8 @@ class PointPasses : public TermPasses {
     return std::numeric_limits<double>::epsilon() * stiffness * squares;
   }
 
-  /// Of linear forces with a potential -u.f/2, u without its mean: forces add up to zero, but for
-  /// round-off.
+  /// Stored energy. Linear forces with a potential have -u.f/2, with u without its mean, since
+  /// forces add up to zero only to round-off.
   [[nodiscard]] double stored(std::span<const double> displacement) const {
     if (sharing_) return energy_of_part();
     if (!has_half_work_) return std::accumulate(energy_.begin(), energy_.end(), 0.0);
@@ -284,7 +285,7 @@ class PointPasses : public TermPasses {
     return sum;
   }
 
-  /// From the forces that were found.
+  /// Evaluation from the forces that were found.
   [[nodiscard]] Evaluation evaluation(std::span<const double> displacement,
                                       std::span<double> gradient, Write how) const {
     if (!gradient.empty()) write(force_, -1.0, gradient, how);
@@ -299,7 +300,8 @@ class PointPasses : public TermPasses {
     return energy[point] > (*term_.bearable())[point] && integrity_[point] > 0.0;
   }
 
-  /// Energies go with the square of a load, as long as strains are small.
+  /// Utilisation is the root of an energy ratio: energies go with the square of a load, as long as
+  /// strains are small.
   [[nodiscard]] DamageGrowth judge() {
     DamageGrowth found;
     const std::span<const double> energy = whole_energies();
@@ -322,7 +324,7 @@ class PointPasses : public TermPasses {
   const Sharing* sharing_;
   std::size_t dimension_;
   std::unique_ptr<LatticeForces> forces_;
-  LinearBondSums* bonds_ = nullptr;  // the same, if it has rows
+  LinearBondSums* bonds_ = nullptr;  // forces_, if it has rows
   std::vector<double> integrity_, force_, energy_, whole_energy_;
   bool has_half_work_;
 };

@@ -15,40 +15,41 @@
 
 namespace peristat {
 
-/// A lattice whose bonds are convolutions, which need no bond.
+/// A lattice whose interactions are summed by convolutions, without stored bonds.
 struct ConvolvedLattice {
   CutLattice box;
-  std::size_t own = 0;  ///< points that are no images of others, the first ones
-  /// Of a point, of two opposite ones one; of a solid as stiff as it is, to precondition it with.
+  std::size_t own = 0;  ///< number of points that are no images; they come first
+  /// Springs to half the neighbours, one per opposite pair; for a solid, bonds of equivalent
+  /// stiffness for its preconditioner.
   std::vector<LatticeSpring> springs;
-  std::function<Bonds()> all_bonds{};  ///< finds those that are left
+  std::function<Bonds()> all_bonds{};  ///< finds the uncut bonds
 
   [[nodiscard]] bool has_images() const { return own < box.place.size(); }
 };
 
-/// Forces of pairs of a lattice's points, which `make` makes of all of them.
+/// Forces between pairs of points of a lattice with images; `make` makes those of all points.
 [[nodiscard]] std::unique_ptr<LatticeForces> with_images(
     const ConvolvedLattice& lattice, const std::function<std::unique_ptr<LatticeForces>()>& make);
 
-/// Energy of each point that it bears, infinite if it never fails [J]; nothing: no point fails. A
-/// part of a body may have no point, of one that fails.
+/// Energy that each point bears, infinite if it never fails [J]; nothing: no point fails. The array
+/// is empty on a part without points of a body that can fail.
 using BearableEnergies = std::optional<std::vector<double>>;
 
-/// An energy whose forces are found for all points at once (LatticeForces), each of which has an
+/// An energy whose forces are found for all points at once (LatticeForces). Each point has an
 /// integrity q.
 ///
-/// Points lose it, from 1 to 0 and for good, where the energy density of a state that is committed
-/// exceeds what they bear ([FCBM] eq. 21). What a commit takes away at fixed displacements counts
-/// as dissipated. It remembers q of each point and, behind them, what it has dissipated so far [J].
+/// Points lose their integrity, from 1 to 0 and irreversibly, where the energy density of a
+/// committed state exceeds what they bear ([FCBM] eq. 21). The energy that a commit removes at
+/// fixed displacements counts as dissipated. The history is q of each point, followed by the energy
+/// dissipated so far [J].
 class PointTerm : public BondTerm {
  public:
-  /// @param bonds of the body; of a lattice that is convolved some short ones, which tell what
-  ///              hangs together
+  /// @param bonds of the body; for a convolved lattice a few short ones, which define connectivity
   /// @param micromodulus c [N/m6]
   PointTerm(std::shared_ptr<const Bonds> bonds, double micromodulus, BearableEnergies bearable,
             std::optional<ConvolvedLattice> lattice, int threads);
 
-  /// @param shared outlives them, as the points do
+  /// @param shared must outlive the result, as the points must
   [[nodiscard]] virtual std::unique_ptr<LatticeForces> forces(const Points& points,
                                                               Workspace& shared) const = 0;
 
@@ -62,8 +63,8 @@ class PointTerm : public BondTerm {
   [[nodiscard]] const std::vector<double>& whole_weight() const { return whole_weight_; }
   [[nodiscard]] NeighbourSums neighbours(std::span<const double> integrity) const;
 
-  /// A number c so that no eigenvalue of M^-1 K exceeds c times the largest of the diagonal blocks;
-  /// 0: none is known in every state, and rows' sums tell.
+  /// Constant c such that no eigenvalue of M^-1 K exceeds c times the largest of the diagonal
+  /// blocks; 0: none holds in every state, and row sums are used instead.
   [[nodiscard]] virtual double bound_over_blocks(int dimension) const = 0;
 
   [[nodiscard]] Couplings couplings() const override;
@@ -76,7 +77,7 @@ class PointTerm : public BondTerm {
   [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
 
  protected:
-  /// Of the forces by convolutions [bytes].
+  /// Memory of the forces by convolutions [bytes].
   [[nodiscard]] virtual double bytes_of_forces() const = 0;
 
  private:
@@ -86,7 +87,7 @@ class PointTerm : public BondTerm {
   int threads_;
   std::vector<Offset> no_couplings_;      // of a lattice that is convolved
   std::vector<double> whole_weight_;      // per point, of a body without damage [m6]
-  std::vector<std::int32_t> neighbours_;  // that each has
+  std::vector<std::int32_t> neighbours_;  // of each point
   Offset count_ = 0;
 };
 

@@ -17,7 +17,7 @@ namespace {
 using Vector3 = Vector<3, double>;
 using Block = Matrix<3, double>;
 
-/// What an element does at a state: its corners, and the factor of their cross products.
+/// An element at a state: its corners, and the factor of their cross products.
 class ElementAt {
  public:
   ElementAt(const PressureTerm& term, const PressureTerm::Element& element, const StateView& at)
@@ -68,7 +68,7 @@ class ElementAt {
   [[nodiscard]] Block symmetric(int of, int with) const {
     return combined(derivative(with), derivative(of), -1.0);
   }
-  /// What is left.
+  /// The unsymmetric rest.
   [[nodiscard]] Block unsymmetric(int of, int with) const {
     return combined(derivative(with), derivative(of), 1.0);
   }
@@ -109,8 +109,8 @@ void for_each_pair(const PressureTerm& term, const PressureTerm::Element& elemen
 }
 
 /// The smallest weights that are exact for linear fields: sum w = 1, sum w (X - corner) = 0. With A
-/// the matrix of these sums w = A^T (A A^T)^-1 (1, 0, 0, 0), by elimination with places in
-/// spacings.
+/// the matrix of these sums w = A^T (A A^T)^-1 (1, 0, 0, 0), solved by elimination with positions
+/// in units of the spacing.
 std::vector<double> linear_weights(const Points& points, const std::vector<Index>& around,
                                    const Coordinates& corner) {
   constexpr double singular = 1e-6;  // of a matrix of whole and half numbers
@@ -179,7 +179,7 @@ class PressurePasses : public TermPasses {
     add_pulls(at, -1.0, force);
   }
 
-  /// Projection takes the load stiffness away: it has no definite part of its own.
+  /// Projection removes the load stiffness, which has no definite part of its own.
   void tangent(const StateView& at, double projection, Tangent& tangent, Write how) override {
     if (how == Write::over) tangent.clear();
     if (!acts(at)) return;

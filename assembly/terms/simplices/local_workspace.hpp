@@ -12,20 +12,20 @@
 
 namespace peristat {
 
-/// What the energies of triangles and tetrahedra depend on beside places; empty: nothing of it.
+/// Data that the energies of triangles and tetrahedra depend on beside positions; empty: none.
 struct Influences {
-  std::span<const double> of_bond;       ///< what is left of bonds
-  std::span<const double> of_point;      ///< the least of its bonds
+  std::span<const double> of_bond;       ///< integrity of bonds
+  std::span<const double> of_point;      ///< smallest integrity of a point's bonds
   std::span<const double> eigenstretch;  ///< of points
 };
 
-/// What a thread adds up over the interactions of one point with the partners above it. Everything
-/// is a function of the arms alone: sums belong to partners, and the point's own part follows from
-/// them, because an interaction does not change when all of its points move together.
+/// Sums of one thread over the interactions of one point with the partners above it. Everything is
+/// a function of the arms alone: sums belong to partners, and the point's own part follows from
+/// them, since an interaction does not change when all of its points move together.
 ///
 /// Interactions come as a group of fixed partners and blocks of four last partners side by side
-/// (see InteractionGroup). What belongs to a last partner is added to its place in its block; what
-/// belongs to a fixed one is added lane by lane, and the lanes are summed at the end.
+/// (see InteractionGroup). Contributions to a last partner are added at its place in its block;
+/// those to a fixed partner are added lane by lane, and the lanes are summed at the end.
 template <int D>
 struct LocalWorkspace {
   /// Most doubles that are added up per partner: the upper half of a symmetric block.
@@ -40,7 +40,7 @@ struct LocalWorkspace {
   LocalVectors<D> vector;        ///< another such field, for the product
   InteractionScratch scratch;
 
-  /// Takes up the integrities of the bonds among the point and its partners.
+  /// Looks up the integrities of the bonds among the point and its partners.
   void find_integrity(const Influences& integrity, Offset first_bond, bool pairs_are_known) {
     const std::span<const Index> partners = local.upper.points();
     const std::span<const double> of_bond = integrity.of_bond, of_point = integrity.of_point;
@@ -56,7 +56,7 @@ struct LocalWorkspace {
     }
   }
 
-  /// Influences of a block's interactions: the product of those of the bonds that they stand on.
+  /// Integrities of a block's interactions: products over the bonds that are their edges.
   template <class Group>
   [[nodiscard]] Lanes integrity_of(const Group& group, const InteractionBlock& block) const {
     if (!is_degraded_) return 1.0;
@@ -71,7 +71,7 @@ struct LocalWorkspace {
     return product;
   }
 
-  /// Takes up the eigenstretches of the point and its partners.
+  /// Looks up the eigenstretches of the point and its partners.
   void find_eigenstretch(std::span<const double> of_point) {
     has_eigenstretch_ = !of_point.empty();
     if (!has_eigenstretch_) return;
@@ -81,8 +81,8 @@ struct LocalWorkspace {
     for (std::size_t k = 0; k < partners.size(); ++k) eigenstretch_[k] = of_point[partners[k]];
   }
 
-  /// Takes off what a block's interactions would have grown by if nothing held them: m to m (1 +
-  /// s)^n, s the mean of their points'.
+  /// Subtracts the stress-free growth of a block's interactions: from m to m (1 + s)^n, s the mean
+  /// of their points' eigenstretches.
   template <class MeasureAt, class Fixed>
   void relieve(MeasureAt& measure, const Fixed& fixed, const InteractionBlock& block) const {
     if (!has_eigenstretch_) return;
@@ -105,7 +105,7 @@ struct LocalWorkspace {
     add<width>(&of_fixed_[std::size_t(partner) * width * lane_count], value);
   }
 
-  /// To the partners first .. first + 3, a lane each.
+  /// Adds to the partners first .. first + 3, a lane each.
   template <int width>
   void add_to_last(int first, const std::array<Lanes, width>& value) {
     add<width>(&of_last_[std::size_t(first) * width], value);

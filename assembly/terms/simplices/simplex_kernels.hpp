@@ -33,7 +33,7 @@ class BatchArms {
     reference_[last] = workspace_.local.reference.block(block.first);
     displacement_[last] = workspace_.displacement.block(block.first);
     if constexpr (Measure::template singular_at_zero<D>) {
-      // An empty lane may hold anything, also what has no gradient: it repeats the first full one.
+      // An empty lane may hold anything, also a measure without gradient: it repeats a full one.
       constexpr std::uint32_t full = (1U << lane_count) - 1U;
       if (block.active != full) {
         const int repeated = block.first + std::countr_zero(block.active);
@@ -47,7 +47,7 @@ class BatchArms {
     return result;
   }
 
-  /// Reference arm of the interactions whose measure was asked for last.
+  /// Reference arm of the interactions of the last call of `measure`.
   [[nodiscard]] const Vector<D, Lanes>& reference(int arm) const { return reference_[arm]; }
 
  private:
@@ -80,7 +80,7 @@ struct SimplexKernels {
     }
   }
 
-  /// Whether the pairs of a neighbourhood are needed to find an interaction.
+  /// True if interactions are not stored, so that finding them needs the pairs of a neighbourhood.
   static bool must_find(const SimplexTerm& term) {
     bool finds = false;
     term.for_each_kind([&](const auto& kind) { finds |= !kind.interactions.is_stored(); });
@@ -351,8 +351,8 @@ struct SimplexKernels {
   static constexpr int none = -1;
   using ArmOfLane = std::array<int, lane_count>;
 
-  /// Per lane the arm to the point that is the lowest one in the whole body; none: arms begin
-  /// there.
+  /// Per lane the arm to the point with the lowest number in the whole body; none: the point that
+  /// arms begin at.
   template <class Group>
   static ArmOfLane arms_to_lowest(const LocalWorkspace<D>& w, const PointNumbers& number,
                                   const Group& group, const InteractionBlock& block) {
@@ -378,8 +378,8 @@ struct SimplexKernels {
     return result;
   }
 
-  /// Makes all arms of a relative Hessian begin at the end of one, and that one end where they
-  /// began; done again it goes back.
+  /// Moves the origin of a relative Hessian's arms to the end of one of them, which then ends at
+  /// the old origin; a second call restores the Hessian.
   template <int arms>
   static void begin_at(int arm, double* matrix) {
     constexpr int size = arms * D;
@@ -396,8 +396,8 @@ struct SimplexKernels {
   }
 
   /// Moves the Hessian of each active lane by a share towards its positive semidefinite part; only
-  /// blocks P <= Q are read and written. The part depends on where arms begin: on all ranks that is
-  /// the lowest point, as on one.
+  /// blocks P <= Q are read and written. The result depends on the origin of the arms: this is the
+  /// lowest point, whatever the number of ranks.
   template <int arms>
   static void project(HessianBlocks<arms>& blocks, std::uint32_t active, double share,
                       const ArmOfLane& lowest) {

@@ -81,7 +81,7 @@ class SimplexPasses : public TermPasses {
     return {integrity.first(bonds), integrity.subspan(bonds), at.eigenstretch()};
   }
 
-  /// Of a part: what all have together counts each interaction once.
+  /// Energy of the owned points of a part: summed over the ranks it counts each interaction once.
   double owned_energy(const StateView& at) {
     std::vector<double> energies(setting_.points.volume.size());
     point_energies(at, energies, Write::over);
@@ -98,7 +98,7 @@ class SimplexPasses : public TermPasses {
   SimplexWorkspace<D> workspace_;
 };
 
-/// Whether some of them may store negative energy.
+/// True if some of them may store negative energy.
 template <class Kind>
 bool is_negative(const std::optional<Kind>& kind) {
   if (!kind) return false;
@@ -107,7 +107,7 @@ bool is_negative(const std::optional<Kind>& kind) {
   return is_reversed || kind->interactions.has_negative_factors();
 }
 
-/// The same names for one kind of simplices as for the other.
+/// Names and counts of one kind of simplices.
 template <class Measure>
 InteractionCount count_of(const Simplices<Measure>& kind) {
   constexpr bool is_triangle = Measure::arms == 2;

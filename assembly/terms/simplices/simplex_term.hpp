@@ -18,24 +18,24 @@ struct Simplices {
   HigherPotential potential;
 };
 
-/// Of the points of a part their numbers in the whole body; empty: these are those of the whole.
+/// Numbers of a part's points in the whole body; empty: the body is whole.
 using PointNumbers = std::vector<GlobalIndex>;
 
 /// The energies of triangles and tetrahedra, sums of w psi(a; A) and w psi(v; V) ([CPD] eq. 14, two
 /// and three neighbours). Both are passed over at once: they share the neighbourhoods of their
 /// points.
 ///
-/// A triangle or tetrahedron loses its stiffness with the bonds it stands on: its energy is
+/// A triangle or tetrahedron loses its stiffness with the bonds that are its edges: its energy is
 /// multiplied by the product of the integrities T(kappa) that the committed histories leave to
-/// them. These are constant between commits, so that the product has no derivative of its own, and
-/// forces and tangent stay those of one energy. The term remembers the integrity of every bond and
-/// then of every point, the least of its bonds'.
+/// them. These are constant between commits, so that the product has no derivative, and forces and
+/// tangent are those of one energy. The history is the integrity of every bond, followed by that of
+/// every point, the smallest of its bonds'.
 class SimplexTerm : public Term {
  public:
-  /// @param bonds that they stand on
-  /// @param numbers by which arms of projected tangents begin at the same point on all ranks
-  /// @throws std::logic_error for a negative constant if these can be damaged: what is lost with
-  ///         them would have to be paid with energy that nobody has put in
+  /// @param bonds that are their edges
+  /// @param numbers from which projected tangents choose the same origin of arms on all ranks
+  /// @throws std::logic_error for a negative constant if the bonds can be damaged: their loss would
+  ///         then raise the energy without any supply
   SimplexTerm(std::shared_ptr<const BondTerm> bonds, std::optional<Simplices<Area>> triangles,
               std::optional<Simplices<Volume>> tetrahedra, PointNumbers numbers = {});
 

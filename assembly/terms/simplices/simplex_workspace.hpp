@@ -8,7 +8,7 @@
 
 namespace peristat {
 
-/// What the passes over triangles and tetrahedra of one dimension work with.
+/// Buffers of the passes over triangles and tetrahedra of one dimension.
 template <int D>
 struct SimplexWorkspace {
   SimplexWorkspace(const SimplexTerm& of, const TermSetting& setting)
@@ -25,13 +25,13 @@ struct SimplexWorkspace {
 
   const SimplexTerm& term;
   const BlockPattern& pattern;
-  std::vector<Offset> places;  ///< of the bonds' blocks in the pattern; empty: in its order
+  std::vector<Offset> places;  ///< positions of bonds' blocks in the pattern; empty: its order
   Workspace& threads;
   std::vector<std::unique_ptr<LocalWorkspace<D>>> local;  ///< per thread
   std::vector<std::vector<double>>
       blocks;  ///< per thread, off-diagonal blocks of rows last..touched_end
 
-  /// Where the block of a bond is in the pattern.
+  /// Position of a bond's block in the pattern.
   [[nodiscard]] Offset place(Offset bond) const {
     return places.empty() ? bond : places[std::size_t(bond)];
   }

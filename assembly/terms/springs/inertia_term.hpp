@@ -8,8 +8,8 @@
 
 namespace peristat {
 
-/// The inertia of points in a step of an implicit motion: springs to where inertia alone would take
-/// them, which the environment holds. There are none without it.
+/// The inertia of points in a step of an implicit motion, as springs to the positions that inertia
+/// alone would take them to. The environment holds these; without it there are none.
 class InertiaTerm : public SpringTerm {
  public:
   explicit InertiaTerm(const Points& points) : SpringTerm(points), dofs_(points.reference.size()) {}
@@ -22,7 +22,7 @@ class InertiaTerm : public SpringTerm {
                 const Visit& visit) const {
     if (!environment || environment->inertia.stiffness.empty()) return;
     const InertialSprings& inertia = environment->inertia;
-    // Those of constraints stand behind the points'.
+    // Entries of handles come after those of the points.
     for (std::size_t dof = 0; dof < dofs_; ++dof) {
       visit(dof, inertia.stiffness[dof], displacement[dof] - inertia.place[dof]);
     }

@@ -7,8 +7,8 @@
 
 namespace peristat {
 
-/// The passes of springs from points to places: k (u - g)^2 / 2 per component. They are stable:
-/// projection changes nothing.
+/// The passes of springs from points to given positions: k (u - g)^2 / 2 per component. They are
+/// convex: projection changes nothing.
 /// @tparam Springs has for_each(displacement, environment, visit), which calls visit(dof, k, u - g)
 template <class Springs>
 class SpringPasses : public TermPasses {

@@ -12,7 +12,7 @@
 
 namespace peristat {
 
-/// The sums of StateTerm. Every point gathers what belongs to it, in one order: results are the
+/// The sums of StateTerm. Every point gathers its own contributions in one order: results are the
 /// same for any number of threads.
 template <int D>
 class StateKernels {
@@ -52,7 +52,8 @@ class StateKernels {
     kernel_ = left_;
   }
 
-  /// V (lambda - mu) theta d / M per point, and energies; returns their sum.
+  /// Finds the pressure V (lambda - mu) theta d / M and the energy of each point; returns the sum
+  /// of the energies.
   double find_states(std::span<const double> u) {
     for_ranges(Index(energy_.size()), [&](Index i) {
       const V here = of(u, i);
@@ -75,15 +76,15 @@ class StateKernels {
 
   [[nodiscard]] std::span<const double> energies() const { return energy_; }
 
-  /// What bonds lose depends on, as it was before they did.
+  /// State before bonds fail, which their losses depend on.
   struct Before {
     std::vector<double> kernel, pressure;
   };
   [[nodiscard]] Before remembered() const { return {{kernel_.begin(), kernel_.end()}, pressure_}; }
 
-  /// Pi loses the sum of delta kappa [(b_i + b_j) (xi . eta)^2 / (2 r^2) + (p_i + p_j) xi . eta], b
-  /// V d (d + 2) mu / M and p the mean of the pressures before and after; of the parts share(i,
-  /// bond, stretch) counts. After find_states of the same field.
+  /// Returns what Pi loses with bonds: the sum of delta kappa [(b_i + b_j) (xi . eta)^2 / (2 r^2) +
+  /// (p_i + p_j) xi . eta], b = V d (d + 2) mu / M and p the mean of the pressures before and
+  /// after, each bond weighted by share(i, bond, stretch). After find_states of the same field.
   template <class Share>
   [[nodiscard]] double losses(std::span<const double> u, const Before& before,
                               const Share& share) const {
@@ -123,8 +124,8 @@ class StateKernels {
     });
   }
 
-  /// Adds V dw/dH of the points, w their energy densities and H a displacement gradient that all of
-  /// a neighbourhood has, after find_states of the same field.
+  /// Adds V dw/dH of the points, w their energy densities and H a displacement gradient that is
+  /// uniform in a neighbourhood, after find_states of the same field.
   void add_virials(std::span<const double> u, std::span<double> virials) const {
     for_ranges(Index(energy_.size()), [&](Index i) {
       const V here = of(u, i);
@@ -140,8 +141,9 @@ class StateKernels {
     });
   }
 
-  /// Adds d2Pi/du2, row by row: the points j and k that a third one i sees have V (lambda - mu) g_j
-  /// g_k there, g_j = (d/M_i) kappa_ij xi and minus the sum of these for i itself.
+  /// Adds d2Pi/du2, row by row: two points j and k with a common neighbour i get the block
+  /// V (lambda - mu) g_j g_k from it, g_j = (d/M_i) kappa_ij xi and minus the sum of these for i
+  /// itself.
   void add_tangent(const BlockPattern& pattern, std::span<double> off_diagonal,
                    std::span<double> diagonal) const {
     const Index count = Index(energy_.size());
@@ -207,7 +209,7 @@ class StateKernels {
     }
   }
 
-  /// What theta of i does between j and the points from j on.
+  /// Adds the blocks of theta_i between j and the points k >= j.
   template <class BlockWith>
   void add_centre(Index i, Index j, const V& g_j, const std::vector<double>& own,
                   const BlockWith& block_with) const {
@@ -242,7 +244,7 @@ class StateKernels {
   const StateShares& shares_;
   const StateNetwork& network_;
   int threads_;
-  std::span<const double> kernel_;  // as damage leaves it
+  std::span<const double> kernel_;  // reduced by damage
   std::vector<double> left_;
   std::vector<double> dilatational_;  // V (lambda - mu) [J]
   std::vector<double> deviatoric_;    // V d (d + 2) mu / M

@@ -8,33 +8,33 @@
 
 namespace peristat {
 
-/// What the energy of states is summed with, frozen in the reference configuration.
+/// Constants of the energy of states, frozen in the reference configuration.
 struct StateShares {
   std::vector<double> kernel;  ///< kappa_ij = K(r) V_i V_j nu_ij of the bonds that are left
   std::vector<double> moment;  ///< per point M_i = sum_j kappa_ij r^2 over whole neighbourhoods
   std::vector<LamePair> constants{};  ///< per point [Pa]
 };
 
-/// The kernel's shares of bonds whose weights are w_ij = K(r) (r / delta) V_i V_j nu_ij, but for a
-/// factor that all of them have: w_ij / r.
+/// Kernel shares of bonds whose weights are w_ij = K(r) (r / delta) V_i V_j nu_ij, up to a factor
+/// that all of them have: w_ij / r.
 [[nodiscard]] std::vector<double> kernel_of_weights(const Bonds& bonds);
 
-/// sum_j kappa_ij r_ij^2 per point, r of the places as they are: with these moments the dilatation
+/// sum_j kappa_ij r_ij^2 per point with the actual distances r: with these moments the dilatation
 /// of a uniform dilation is right at every point, however few neighbours it has.
 [[nodiscard]] std::vector<double> moments_of(const Points& points, const Bonds& bonds,
                                              const std::vector<double>& kernel);
 
-/// Neighbours of points below them, and the points that see a third one together: what the bonds
-/// don't tell at once.
+/// Lower neighbours of each point, and pairs of points with a common neighbour: connectivity that
+/// the bonds do not store.
 struct StateNetwork {
   std::vector<Offset> offset;  ///< points + 1, of the neighbours below
   std::vector<Index> lower;    ///< ascending
-  std::vector<Offset> bond;    ///< to each of them
+  std::vector<Offset> bond;    ///< bond to each of these
   /// Blocks of the tangent: partners above a point within two bonds of it.
   std::vector<Offset> block_offset;
   std::vector<Index> partner;
 
-  /// @param reaches_twice whether points that see a third one together are coupled at all
+  /// @param reaches_twice true if points with a common neighbour are coupled
   StateNetwork(const Bonds& bonds, bool reaches_twice, int threads);
 
   [[nodiscard]] double bytes() const;

@@ -42,7 +42,7 @@ class StatePasses : public TermPasses {
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
                     History& history, std::span<double> gradient, Write how) override {
     const StateView now{displacement, history, Damage::grows, environment};
-    // Bonds that others count are followed, too.
+    // On all ranks: a bond that is damaged here may be counted by another rank.
     if (!term_.can_fail() || !any_of_all(sharing_, growth(now).degrading > 0)) {
       return this->gradient(now, gradient, how);
     }
@@ -55,8 +55,8 @@ class StatePasses : public TermPasses {
         this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
     found.growth = committed;
     found.moves_equilibrium = true;
-    // Where a bond was stretched against the dilatation the energy may rise as it breaks; that is
-    // no dissipation, and has to come from somewhere else.
+    // Where a bond was stretched against the dilatation the energy may rise as it breaks. That is
+    // no dissipation; the energy has to be supplied from elsewhere.
     const double mine = dissipated_of(displacement, remembered, before);
     const double dissipated = sum_of_all(sharing_, mine) < 0.0 ? 0.0 : mine;  // keeps NaN
     found.released = dissipated - (dissipated_by_law(history) - dissipated_by_law(before));
@@ -113,9 +113,9 @@ class StatePasses : public TermPasses {
     });
   }
 
-  /// Of the bonds that are counted here. Those that have broken beyond the stretch that they bear
-  /// did so when they passed it, when they held the square of the ratio less; the rest is not
-  /// dissipated, but overshoot.
+  /// Energy dissipated by the bonds that are counted here. Bonds that have overshot the stretch
+  /// that they bear broke when they passed it, and held less energy then, by the square of the
+  /// ratio; the rest is overshoot, not dissipation.
   [[nodiscard]] double dissipated_of(std::span<const double> displacement,
                                      const typename StateKernels<D>::Before& remembered,
                                      const History& before) const {
@@ -149,7 +149,7 @@ class StatePasses : public TermPasses {
 
   const StateTerm& term_;
   std::size_t slot_;
-  std::unique_ptr<TermPasses> stretches_;  // of its bonds, whose own forces count for nothing
+  std::unique_ptr<TermPasses> stretches_;  // damage of its bonds; their forces are unused
   const Points& points_;
   const Sharing* sharing_;
   const BlockPattern& pattern_;
@@ -190,7 +190,7 @@ double StateTerm::bound_over_blocks(int dimension) const {
 
 double StateTerm::stored_bytes() const {
   const double bonds = double(shares_.kernel.size()), points = double(shares_.moment.size());
-  // Shares, and those that damage leaves; of a point moment, constants and what passes find.
+  // Per bond kernel shares, twice once bonds can fail; per point moment, constants and results.
   return BondTerm::stored_bytes() + network_.bytes() + 8.0 * bonds * (can_fail() ? 2.0 : 1.0) +
          8.0 * points * (1.0 + 2.0 + 4.0);
 }

@@ -18,22 +18,22 @@ namespace peristat {
 ///   theta_i = (d / M_i) sum_j T_ij kappa_ij xi . eta,   M_i = sum_j kappa_ij r^2,
 ///
 /// kappa_ij = K(r) V_i V_j nu_ij symmetric, M_i of the whole neighbourhood: neither cracks nor
-/// damage change it, so that what is cut from the start and what breaks on the way is the same. At
-/// surfaces it is that of the neighbours that are there.
+/// damage change it, so that a bond cut from the start and one that breaks later have the same
+/// effect. At surfaces a neighbourhood consists of the neighbours that exist.
 ///
 /// Pi is quadratic, and no point's part of it is negative: theta^2 <= d^2 (1/M) sum T kappa
 /// (xi . eta)^2 / r^2 by Cauchy and Schwarz, so that it is at least (lambda + 2 mu / d) theta^2
 /// / 2. Forces of bonds are central along their direction in the reference: they add up to zero,
 /// and so do their moments about places in the reference, not in the present one.
 ///
-/// Bonds break as those of brittle bond models do, by their stretch in the deformed configuration:
-/// as a term of bonds it remembers that. What a commit takes away, at fixed displacements, counts
-/// as dissipated, of every bond what it held when it passed the stretch that it bears: by the law
-/// what a bond of the network's modulus dissipates, and the difference, of either sign, as
-/// released.
+/// Bonds break as those of brittle bond models do, by their stretch in the deformed configuration,
+/// which the term remembers as a term of bonds. The energy that a commit removes at fixed
+/// displacements counts as dissipated, with what each bond held when it passed the stretch that it
+/// bears. The part that the bonds' law dissipates, with the network's modulus, is reported as
+/// dissipated by the law; the difference, of either sign, as released energy.
 class StateTerm : public BondTerm {
  public:
-  /// @param bonds those that are left, with the weights that histories are told with
+  /// @param bonds uncut bonds, with the weights that dissipation by the law is computed with
   /// @throws std::logic_error for shares of other bonds or points
   StateTerm(std::shared_ptr<const Bonds> bonds, BondPotential potential,
             std::vector<char> never_fails, StateShares shares, int threads);
@@ -58,13 +58,13 @@ class StateTerm : public BondTerm {
   StateNetwork network_;
 };
 
-/// How large Pi is over the bonds' part of it: at most R, the largest of 1 and (d lambda + 2 mu) /
-/// ((d + 2) mu) of the points, and at least R', the smallest of these.
+/// Bounds of Pi over the bonds' part of it: at most R, the largest of 1 and
+/// (d lambda + 2 mu) / ((d + 2) mu) of the points, and at least R', the smallest of these.
 struct StateRatios {
   double most = 1.0, least = 1.0;
 
-  /// A number c so that no eigenvalue of M^-1 K, M the masses of points, exceeds c times the
-  /// largest of the diagonal blocks: of pairs of points it is 2, so c = 2 R / R'.
+  /// Constant c such that no eigenvalue of M^-1 K, M the masses of points, exceeds c times the
+  /// largest of the diagonal blocks: c = 2 for pairs of points, so c = 2 R / R'.
   [[nodiscard]] double bound_over_blocks() const { return 2.0 * most / least; }
 };
 

@@ -17,12 +17,12 @@ namespace {
 using Teuchos::RCP;
 using Teuchos::rcp;
 
-// The only types that Debian's Tpetra is instantiated for.
+// The only types for which Debian instantiates Tpetra.
 using Map = Tpetra::Map<int, long long>;
 using Import = Tpetra::Import<int, long long>;
 using Vector = Tpetra::MultiVector<double, int, long long>;
 
-/// What numbers of points make of entries: width per point.
+/// Map of entries, `width` per point, from numbers of points.
 RCP<const Map> map_of(const std::vector<std::int64_t>& points, int width,
                       const RCP<const Teuchos::Comm<int>>& ranks) {
   std::vector<long long> entries;

@@ -8,8 +8,8 @@
 #include "solvers/ranks/records.hpp"
 #include "src/core/communicator.hpp"
 
-// What needs MPI is a module of its own (load_ranks.cpp), so that runs of a sole rank never start
-// it; this is all that the two know of each other.
+// Code that needs MPI is a separate module (load_ranks.cpp), so that runs of a sole rank never
+// start it; this header is the whole interface between the two.
 
 namespace peristat::ranks {
 

@@ -12,12 +12,12 @@
 namespace peristat::ranks {
 namespace {
 
-/// Of a message; MPI counts in int.
+/// Largest message [bytes]; MPI counts in int.
 constexpr std::size_t most_bytes = std::size_t(1) << 30;
 constexpr int gather_tag = 1;
 
-/// All ranks that mpirun has started. MPI's own rule for errors ends all of them, so that nothing
-/// is asked about what it returns.
+/// All ranks that mpirun has started. MPI's default error handler ends all of them, so that return
+/// values need no checks.
 class MpiRanks : public Communicator {
  public:
   MpiRanks() {
@@ -86,7 +86,7 @@ class MpiRanks : public Communicator {
 
   [[noreturn]] void abort(const std::string& message, int exit_code) const override {
     std::cerr << message << std::endl;
-    // mpirun drops what it has not read when the end of all ranks comes.
+    // mpirun drops output that it has not read when all ranks end.
     constexpr std::chrono::milliseconds until_read{300};
     std::this_thread::sleep_for(until_read);
     MPI_Abort(world_, exit_code);
@@ -101,7 +101,7 @@ class MpiRanks : public Communicator {
     }
   }
 
-  MPI_Comm world_ = MPI_COMM_NULL;  // a copy: its messages meet no others
+  MPI_Comm world_ = MPI_COMM_NULL;  // a duplicate: its messages meet no others
   int rank_ = 0, count_ = 1;
 };
 
