@@ -366,8 +366,7 @@ struct RigidPieces::Levels {
   template <int D>
   void find_arms(std::span<const double> position) {
     const Index pieces = pieces_here();
-    std::vector<double> sums(std::size_t(pieces) * (D + 1), 0.0);  // sums of positions, and number
-                                                                   // of points
+    std::vector<double> sums(std::size_t(pieces) * (D + 1), 0.0);  // positions, count
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (Index p = 0; p < pieces; ++p) {
       double* const of_piece = &sums[std::size_t(p) * (D + 1)];
