@@ -12,7 +12,7 @@ struct Mode {
   friend bool operator==(const Mode&, const Mode&) = default;
 
   static const Mode newton;      ///< implicitly throughout
-  static const Mode relaxation;  ///< by dynamic relaxation throughout
+  static const Mode relaxation;  ///< by relaxation throughout
   static const Mode adaptive;    ///< implicitly while no damage grows, by relaxation while it does
   static const Mode arc_length;  ///< implicitly along the path itself, with fixed integrities
   static const Mode path;        ///< from one failure event to the next

@@ -8,7 +8,7 @@
 
 namespace peristat {
 
-/// Steps by dynamic relaxation. A step that fails is cut and tried again.
+/// Steps by dynamic relaxation or by the flow. A step that fails is cut and tried again.
 class RelaxedStepping : public Driver {
  public:
   /// Method for the last iterations of a step that holds.

@@ -48,7 +48,7 @@ class LuFactor {
   /// Entries of L and U together, and flops of a factorisation; 0 before the first.
   [[nodiscard]] double entries() const;
   [[nodiscard]] double flops() const;
-  /// "order AMD, 1.2e+06 entries (10 MB), 4e+08 flops"
+  /// "AMD order, factor 1.2e+06 entries (10 MB), 4e+08 flops"
   [[nodiscard]] std::string describe() const;
 
   /// Version of UMFPACK.

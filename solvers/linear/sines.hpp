@@ -9,7 +9,7 @@ namespace peristat {
 
 /// Inverse of the lattice's own operator on the box around the free points, by sines and cosines,
 ///
-///   M^-1 = R^T  T^-1 S^-1 T  R   for each component of the displacement by itself,
+///   M^-1 = R^T  T^-1 S^-1 T  R   for each component of the displacement,
 ///
 /// R puts the equations of a component into the box around them, with zeros at sites without one, T
 /// is the transform by cosines along axes whose ends are free and by sines along those that

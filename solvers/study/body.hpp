@@ -26,7 +26,7 @@ struct InteractionStorage {
 /// from then on.
 struct Body {
   Body() = default;
-  Body(const Body&) = delete;  // its members refer to its points: it stays where it is made
+  Body(const Body&) = delete;  // its members refer to its points, so it can't be moved
   Body& operator=(const Body&) = delete;
 
   BodySpecification specification;

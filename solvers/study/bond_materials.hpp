@@ -35,8 +35,7 @@ struct PointFactors {
 /// for each (DegradedByBond).
 class BondMaterials {
  public:
-  /// @param constants per material, and of each interface with constants of its own (see
-  ///        constants_of)
+  /// @param constants per material, and per interface with constants of its own (see all_materials)
   BondMaterials(const BodySpecification& from, const PointMaterials& materials,
                 const PointFactors& factors, const Points& points,
                 std::vector<DirectedConstant> constants);

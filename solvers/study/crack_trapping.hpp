@@ -24,7 +24,7 @@ struct CrackTrapping {
 [[nodiscard]] std::optional<CrackTrapping> crack_trapping(const BodySpecification& of,
                                                           int dimension, double spacing);
 
-/// "brittle bonds at horizon ratio 3.0 hold a crack up: it needs 1.14 to 1.19 of K_Ic …"
+/// "brittle bonds at horizon ratio 3 hold a crack up: it runs at 1.14 to 1.19 of K_Ic, …"
 [[nodiscard]] std::string description(const CrackTrapping& trapping);
 
 }  // namespace peristat
