@@ -12,21 +12,21 @@
 namespace peristat {
 namespace {
 
-/// Least cosine between a step and the tangent that it went along, and between the tangents at its
+/// Least cosine between a step and the tangent along which it goes, and between the tangents at its
 /// ends.
 constexpr double least_cosine = 0.9;
-/// Above this an easy step lets the next one grow.
+/// Least cosine at which an easy step lets the next one grow.
 constexpr double straight_cosine = 0.99;
 
-/// A critical point is located to this share of the step; where damage begins to one of the first
-/// step.
+/// A critical point is located to this fraction of the step, the onset of damage to this fraction
+/// of the first step.
 constexpr double share_of_located = 1e-4, share_of_onset = 1e-3;
 
-/// Steps that a path may take if nobody has said how many.
+/// Largest number of steps of a path for which none is given.
 constexpr int most_steps = 10'000;
 
-/// First step on a path that branches off: the largest displacement over the body's extent. Nearer
-/// to the bifurcation the two paths can hardly be told from one another.
+/// First step on a path that branches off: largest displacement over the body's extent. Nearer to
+/// the bifurcation the two paths can hardly be distinguished.
 constexpr double share_of_branch = 1e-3;
 
 constexpr const char* follows_no_damage =
@@ -51,8 +51,8 @@ double largest_size(const std::vector<double>& entries) {
   return largest;
 }
 
-/// A step that comes as near to the end of the load, or beyond it, is made to end there: of what
-/// was left.
+/// A step that ends this near to the end of the load, relative to the rest before it, or beyond the
+/// end, is made to end there.
 constexpr double share_of_end = 1e-3;
 
 LoadPoint at_stage(double stage) { return stage; }

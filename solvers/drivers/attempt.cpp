@@ -7,7 +7,7 @@
 namespace peristat {
 namespace {
 
-/// What searches of both kinds end with.
+/// Members that the results of both kinds of searches have.
 template <class Result>
 Attempt common_attempt(Result result, const LoadPoint& at) {
   Attempt attempt;

@@ -9,7 +9,7 @@
 
 namespace peristat {
 
-/// The last search for equilibrium, for what is told when it failed.
+/// Last search for equilibrium, with the data to report if it has failed.
 struct Attempt {
   Outcome outcome = Outcome::converged;
   int iterations = 0;
@@ -18,8 +18,8 @@ struct Attempt {
   std::optional<Inertia> inertia;
   bool has_negative_pivots = false;
   bool unstable_start = false;
-  double largest_residual = 0.0;  ///< that counts as equilibrium [N]; negative: none was asked for
-  std::string note;               ///< what else is to be told if it is accepted
+  double largest_residual = 0.0;  ///< that counts as equilibrium [N]; negative: none required
+  std::string note;               ///< remark to report if it is accepted
   Trial state;
   std::vector<double> external_force;
 
@@ -29,19 +29,19 @@ struct Attempt {
 [[nodiscard]] Attempt to_attempt(NewtonResult result, const LoadPoint& at);
 [[nodiscard]] Attempt to_attempt(RelaxationResult result, const LoadPoint& at);
 
-/// One that can't begin, since supports or loads have no value there.
+/// Attempt that can't begin, since supports or loads have no value there.
 [[nodiscard]] Attempt undefined_attempt(const State& from, const LoadPoint& at);
 
 [[nodiscard]] State state_of(const Attempt& attempt);
 
-/// Whether a smaller step can help.
+/// True if a smaller step can help.
 [[nodiscard]] bool worth_cutting(const Attempt& attempt);
 
-/// Whether relaxation may succeed where an implicit search has failed.
+/// True if relaxation may succeed where an implicit search has failed.
 [[nodiscard]] bool worth_relaxing(const Attempt& attempt);
 
-/// Why an attempt has failed, in words.
-/// @param what else is known of it; may be empty
+/// Describes why an attempt has failed.
+/// @param what further details; may be empty
 [[nodiscard]] std::string reason_of(const Attempt& attempt, const std::string& what);
 
 }  // namespace peristat

@@ -14,40 +14,40 @@
 namespace peristat {
 namespace {
 
-/// Time steps from one look at the stiffness to the next: more of them while it stays as it is.
+/// Time steps between two checks of the stiffness: more of them while it does not change.
 constexpr int fewest_between_looks = 4, most_between_looks = 64;
 constexpr int steps_between_interruptions = 20;
 
-/// Change of the bound with which the eigenvalue is taken to change in proportion.
+/// Relative change of the bound up to which the eigenvalue is assumed to change in proportion.
 constexpr double same_stiffness = 0.02;
 
-/// A step grows only if it becomes this much longer: with each change the scheme begins anew.
+/// A step grows only by at least this factor: with each change the scheme begins anew.
 constexpr double least_growth = 1.25;
 
-/// Of the energy that is turned over, what trapezoidal sums of work may leave out; and all that
-/// bonds dissipate, since those that break within a step lose the energy of its beginning or its
-/// end.
+/// Largest error of trapezoidal sums of work, relative to the energy turned over. In explicit steps
+/// all that bonds dissipate is allowed in addition, since those that break within a step lose the
+/// energy of its beginning or its end.
 constexpr double work_error = 0.05;
 
-/// Of what has been put in, the energy of a motion that grows by itself. A stable step leaves a
-/// multiple of the modified energy to the highest frequencies, 1 / (1 - (step / stable step)^2).
+/// Energy of an unstable motion, relative to the energy put in. A stable step gives the highest
+/// frequencies a multiple of the modified energy, 1 / (1 - (step / stable step)^2).
 constexpr double growth_of_instability = 100.0;
 
-/// The same where forces have no potential, whose energy is no balance: kinetic and stored energy
-/// of torn bodies came to 1.17 of what was put in, of one that was unstable to 4 and more.
+/// The same where forces have no potential, whose energy does not balance: kinetic and stored
+/// energy of torn bodies reached 1.17 of the energy put in, of an unstable one 4 and more.
 constexpr double growth_without_potential = 1.3;
 
-/// Of what has been put in, what the scheme's energy may differ from the printed one: it is
-/// (step / stable step)^2 of what moves at the highest frequency. Well-resolved motions have some
-/// hundredths of it at most; beyond a half the printed energies mean nothing.
+/// Largest allowed gap between conserved and printed energy, relative to the energy put in. The gap
+/// is (step / stable step)^2 of the energy at the highest frequency. Well-resolved motions have
+/// some hundredths of it at most; beyond a half the printed energies mean nothing.
 constexpr double unresolved = 0.5;
-/// Before so many steps a load that sets in at once has done too little work to be a measure.
+/// Steps before which a load that sets in at once has done too little work to be a scale.
 constexpr int steps_of_onset = 10;
 
-/// Of the given implicit step, the least that one is cut to.
+/// Smallest implicit step, relative to the given one.
 constexpr double least_step = 1.0 / 1024.0;
 
-/// A remainder of the way below this share of a step is round-off.
+/// A remaining time below this fraction of a step is round-off.
 constexpr double remainder = 1e-9;
 
 }  // namespace
@@ -62,7 +62,7 @@ const MotionSetting& Dynamics::setting() const {
 Advance Dynamics::next() {
   PathState& state = path_.state();
   if (state.dynamics.has_begun && !path_.goes_on()) return Advance::ended;
-  // Velocities change in steps that are accepted alone, and are long.
+  // Velocities and accelerations change in accepted steps alone; they are long, so not copied.
   std::vector<double> velocity = std::exchange(state.dynamics.velocity, {}),
                       acceleration = std::exchange(state.dynamics.acceleration, {});
   const PathState::Dynamics dynamics = state.dynamics;
@@ -115,7 +115,7 @@ Advance Dynamics::begin() {
     const double step = state.dynamics.step;
     state.dynamics.correction_at_start = motion->scheme_energy(step);
   }
-  // What the body begins with counts as work that was done before.
+  // The initial energy of the body counts as work that was done before.
   Ledger& entries = state.ledger.entries;
   entries = {};
   std::vector<double> damage(std::size_t(path_.damaged().points().count()));
@@ -226,7 +226,7 @@ std::string Dynamics::choose_step(const Trial& state, double time) {
            number_text(stable) + " s";
   }
   const double before = dynamics.step, wanted = options_.step_share * stable;
-  if (!std::isfinite(stable)) {  // any step is stable: all that moves has come apart, and flies on
+  if (!std::isfinite(stable)) {  // any step is stable: all that moves has come apart
     if (before > 0.0) return {};
     return "nothing has a stiffness, so that no step is the stable one; give dynamics.time_step";
   }
@@ -403,16 +403,16 @@ std::string Dynamics::fault_of_balance(const Ledger& after, double energy_of_ons
   dynamics.largest_energy =
       std::max({dynamics.largest_energy, std::abs(after.external_work), after.dissipated});
   const double error = after.balance_error() + dynamics.correction;
-  // Loads that set in give the body their energy before any work. Since (a + b)^2 <= 2 a^2 + 2 b^2,
-  // a motion that has forces or velocities a already has at most twice both energies then, and
-  // a half of four times that energy allows for it.
+  // Loads that set in give the body their energy before they do any work. Since (a + b)^2 <= 2 a^2
+  // + 2 b^2, a motion that has forces or velocities a already has at most twice both energies then.
+  // `unresolved`, a half, of four times the energy of onset allows for it.
   const double put_in = std::max(dynamics.largest_energy, 4.0 * energy_of_onset);
-  // Explicit steps are short, so that what a bond lacks that breaks in one is a part of what it
-  // dissipates; implicit ones would gain any amount by that.
+  // Explicit steps are short, so that the energy missing of a bond that breaks in one is a part of
+  // what it dissipates; implicit steps could gain any amount by this allowance.
   const double allowed =
       work_error * std::max(dynamics.largest_energy, is_implicit() ? 0.0 : energy) +
       (is_implicit() ? energy_of_onset : after.dissipated);
-  const bool is_damped = is_implicit() && options_.spectral_radius < 1.0;  // which loses energy
+  const bool is_damped = is_implicit() && options_.spectral_radius < 1.0;  // damping loses energy
   const bool balances = path_.damaged().has_potential();
   if (balances && (!(-error <= allowed) || !(is_damped || error <= allowed))) {
     return "the modified energy is " + number_text(error) + " J less than what was put in, " +

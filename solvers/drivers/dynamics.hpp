@@ -11,19 +11,19 @@
 namespace peristat {
 
 /// Follows the motion in time, by explicit steps (VelocityVerlet) or implicit ones (Newmark), from
-/// the initial state to the end of the programme of time. Each call goes to the next state that is
-/// told, a number of time steps on; PathState::steps counts time steps. The last step ends at the
-/// end.
+/// the initial state to the end of the programme of time. Each call goes to the next reported
+/// state, a number of time steps later; PathState::steps counts time steps. The last step ends at
+/// the end.
 ///
-/// Explicit: every so many time steps the stiffness of the present state is bounded. A step that is
-/// a share of the stable one follows it; one that is given ends the path where it is no longer
-/// stable. Implicit: a step that finds nothing, and one whose state breaks a balance, is halved;
-/// the next state that is told doubles it again, up to the given one.
+/// Explicit: after every so many time steps the stiffness of the present state is bounded. A step
+/// that is a fraction of the stable one is adapted to it; a given step ends the path once it is no
+/// longer stable. Implicit: a step that finds no solution, or whose state violates a balance, is
+/// halved; at the next reported state it is doubled again, up to the given one.
 ///
-/// A state that is told owes the balance of its modified energy, up to what trapezoidal sums of
-/// work leave out; that energy may not be far from the printed one, which is how motions show that
-/// the step does not resolve; nor may the energy be many times what has been put in, which is how
-/// steps that are too long show.
+/// A reported state must balance its modified energy, up to the error of trapezoidal sums of work.
+/// That energy must be near the printed one: a difference shows that the step does not resolve the
+/// motion. The energy must not be many times the energy put in: this shows that the step is too
+/// long.
 class Dynamics : public Driver {
  public:
   explicit Dynamics(Path& path);
@@ -32,7 +32,7 @@ class Dynamics : public Driver {
   [[nodiscard]] Advance next() override;
 
  private:
-  /// @throws std::logic_error if the path has none
+  /// @throws std::logic_error if the path has no motion
   [[nodiscard]] const MotionSetting& setting() const;
   [[nodiscard]] Advance begin();
   /// Searches the equilibrium of the conditions at t = 0, with integrities held.
@@ -40,22 +40,22 @@ class Dynamics : public Driver {
   [[nodiscard]] Attempt find_equilibrium();
   [[nodiscard]] Advance move();
   [[nodiscard]] bool is_implicit() const { return options_.scheme == MotionScheme::newmark; }
-  /// @param acceleration of implicit steps; empty: of the forces
+  /// @param acceleration of implicit steps; empty: that of the forces
   [[nodiscard]] std::unique_ptr<Motion> make_motion(const State& from, std::vector<double> velocity,
                                                     std::vector<double> acceleration);
-  /// Takes the implicit step back towards the given one, after one that has failed.
+  /// Lengthens the implicit step towards the given one, after it was shortened.
   void lengthen_step(double time);
-  /// @return whether there is a shorter implicit step to try
+  /// @return true if there is a shorter implicit step to try
   [[nodiscard]] bool shorten_step(double time, Outcome outcome, const std::string& reason);
-  /// The stiffness at a state; the eigenvalue is found again where the bound has changed.
+  /// Bounds the stiffness at a state; the eigenvalue is computed anew if the bound has changed.
   [[nodiscard]] Stiffness stiffness_at(const Trial& state);
-  /// Where the body's motion has no use of it until it is found again, and it is quickly found.
+  /// Frees the tangent if the motion does not use it and it is quickly computed anew.
   void give_back_tangent();
-  /// Chooses the step for the present stiffness.
-  /// @return why there is none
+  /// Chooses the time step for the present stiffness.
+  /// @return why there is none; empty if there is
   [[nodiscard]] std::string choose_step(const Trial& state, double time);
   [[nodiscard]] Advance accept(Motion& motion);
-  /// Of what is prescribed, the mean over a time step.
+  /// Sets the velocities of prescribed degrees of freedom, means over a time step.
   void add_velocity_of_supports(double time, std::vector<double>& velocity) const;
   [[nodiscard]] MotionRecord motion_record(const Motion& motion) const;
   [[nodiscard]] Ledger ledger_with(const Motion& motion, const MotionSums& sums,
@@ -68,7 +68,7 @@ class Dynamics : public Driver {
 
   const DynamicsOptions& options_;
   bool is_linearised_ = false;  // the tangent, near the present state
-  bool repeats_ = false;        // what was found is dropped, for shorter steps from the same state
+  bool repeats_ = false;        // the state found is dropped, for shorter steps from the last one
 };
 
 }  // namespace peristat

@@ -17,34 +17,35 @@
 namespace peristat {
 namespace {
 
-/// Residuals are measured against no less than this share of the largest forces so far: what has
-/// come apart has none.
+/// Residuals are measured against no less than this fraction of the largest forces so far: a body
+/// that has come apart carries none.
 constexpr double share_of_scale = 1e-5;
 
-/// The trapezoidal rule may err by this share of the energy that an elastic step stores; one that
-/// errs by more is cut.
+/// Largest error of the trapezoidal rule, relative to the energy turned over in an elastic step; a
+/// step with a larger one is cut.
 constexpr double share_of_work = 1e-3;
 
-/// Likewise, of all work so far: where little happens the rule may err.
+/// The same relative to all work so far: allowed where little happens.
 constexpr double share_of_total = 1e-5;
 
-/// Of the energy turned over, that may come from nothing by round-off.
+/// Largest energy that may come from nothing by round-off, relative to the energy turned over.
 constexpr double share_from_nothing = 1e-6;
 
-/// Relative residual at which a body counts as settled: its energy is known to the square of that.
+/// Relative residual at which a body counts as settled: the error of its energy is the square of
+/// it.
 constexpr double settled_tolerance = 1e-7;
 constexpr int most_settling_iterations = 10;
 
-/// Newton iterations in which a body that buckles as bonds break may come to rest.
+/// Newton iterations within which a body that buckles as bonds break may come to rest.
 constexpr int most_iterations_of_a_fall = 200;
 
-/// Events of one avalanche.
+/// Largest number of events of one avalanche.
 constexpr int most_events = 1'000'000;
 
-/// End of the segment of the programme that a stage is in.
+/// Begin of the segment of the programme that a stage is in.
 double segment_begin(double stage) { return LoadingProgramme::next_entry(stage) - 1.0; }
 
-/// Whether its bonds have softened along a law that this mode follows a saw-tooth of.
+/// True if bonds have softened along a law that this mode replaces by a saw-tooth.
 bool has_softened_smoothly(Path& path) {
   const PathState& state = path.state();
   const BondTerm* const bonds = path.damaged().model().failing_bonds();
@@ -79,7 +80,7 @@ Advance EventStepping::next() {
     borne_ = borne_stretches(path_.damaged().model(), path_.state().accepted.history);
   }
   if (events.at_strength) {
-    tells_ = false;  // it was told before the state was accepted
+    tells_ = false;  // reported before the state was accepted
     Settled settled =
         ahead_ ? std::move(*ahead_) : settle(path_.state().accepted, path_.state().ledger);
     tells_ = true;
@@ -136,7 +137,7 @@ double EventStepping::utilisation(const State& at, std::span<const double> borne
 std::vector<UtilisedBond> EventStepping::batch_of(const State& at) const {
   const Assembler& body = path_.damaged();
   const double most = utilisation(at, borne_), tolerance = path_.options().events.tolerance;
-  // Room for the gap that ends the batch.
+  // Leaves room for the gap that ends the batch.
   const double least = most * (1.0 - std::max(1.5 * tolerance, 1e-3));
   std::vector<UtilisedBond> all = utilised_bonds(
       body.points(), body.model(), StateView(at, Damage::held), borne_, least, body.threads());
@@ -166,7 +167,7 @@ bool EventStepping::pin(Settled& settled) {
                                            .action = action,
                                            .reason = state.pins.described(path_.problem().sums())});
   }
-  tangent_.reset();  // there are other equations
+  tangent_.reset();  // the equations have changed
   path_.state().events.tangent = {};
   if (path_.pin() == Advance::goes_on) return true;
   settled.outcome = Outcome::out_of_memory;
@@ -188,7 +189,7 @@ Attempt EventStepping::settle_nearby(const State& at, std::span<const double> bo
   NewtonOptions options = held();
   options.relative_tolerance = relative_tolerance;
   options.max_iterations = most_settling_iterations;
-  // It is no state to be told: the search for the next one is.
+  // Its iterations are not reported: it only precedes the search for the next state.
   StrengthResult found =
       search_strength(path_.problem(), tangent(), at, step, options,
                       [this](const IterationRecord&) { return asks_for_interrupt(); });
@@ -239,7 +240,7 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   };
   const State& from = settled.state;
   const bool has_settled = settles(settle_nearby(from, settled.borne, tolerance));
-  // What was stable comes to rest where it is stable, however far that is.
+  // A stable body comes to rest in a stable state, however far that is.
   const bool is_lost = has_settled && !was_bifurcated && is_unstable(settled.attempt);
   if ((!has_settled || is_lost) && settled.outcome != Outcome::interrupted &&
       !settles(settle_downhill(from, tolerance))) {
@@ -260,7 +261,7 @@ Attempt EventStepping::settle_anywhere(const State& at, std::span<const double> 
 
 bool EventStepping::is_unstable(const Attempt& attempt) {
   if (!tangent().has_negative_pivots()) return false;
-  // They are those of a state on the way.
+  // The known pivots are those of a state on the way.
   const LinearOutcome outcome = tangent().refresh(state_of(attempt));
   return outcome != LinearOutcome::solved || tangent().has_negative_pivots();
 }
@@ -370,7 +371,7 @@ EventStepping::Step EventStepping::run_avalanche() {
     }
   }
   step.how = std::to_string(passes + 1) + " events while the load is held";
-  // It is a state to be told now.
+  // This state is reported, so it needs the full accuracy.
   step.attempt = settle_anywhere(state.accepted, borne_, held().relative_tolerance);
   return step;
 }
@@ -415,7 +416,7 @@ void EventStepping::complete(Step& step) {
   FoundStep& found = step.found;
   found.record.mode = Mode::path.name;
   found.record.newton_iterations = step.attempt.iterations;
-  if (step.attempt.iterations == 0) tangent().forget();  // complete takes the tangent then
+  if (step.attempt.iterations == 0) tangent().forget();  // complete linearises the tangent then
   step.fault = peristat::complete(path_, step.attempt, found);
   if (!step.attempt.has_converged()) return;
   settle_work(step);
@@ -466,7 +467,7 @@ Advance EventStepping::accept(Step step, PathState before) {
                      path_.working_force(step.attempt.state, step.attempt.external_force),
                      step.found.energies);
     ahead_ = settle(reached, with_step);
-    if (ahead_->outcome == Outcome::interrupted) {  // whether the state is stable is not known
+    if (ahead_->outcome == Outcome::interrupted) {  // the state's stability is not known
       step.attempt.outcome = Outcome::interrupted;
       return fail(std::move(step), std::move(before));
     }

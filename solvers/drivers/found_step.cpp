@@ -12,14 +12,15 @@
 namespace peristat {
 namespace {
 
-/// Commits of one step of a body with triangles or tetrahedra, each of which may damage more bonds.
+/// Largest number of commits of one step of a body with triangles or tetrahedra, each of which may
+/// damage more bonds.
 constexpr int most_commits = 1000;
 
-/// Share of the loads that may pull on pieces that an avalanche has torn off, which are pinned: the
-/// body no longer bears what is more.
+/// Largest fraction of the loads that may act on pinned pieces that an avalanche has torn off:
+/// beyond it the body no longer carries its loads.
 constexpr double share_of_lost_load = 0.1;
 
-/// @return a sentence for a person; empty if the body bears its loads
+/// @return a message; empty if the body carries its loads
 std::string lost_load(const Path& path, const Attempt& attempt) {
   const std::vector<double>& load = attempt.external_force;
   const Sums sums = path.problem().sums();
@@ -30,7 +31,7 @@ std::string lost_load(const Path& path, const Attempt& attempt) {
          " N pull on what has come off: the body does not bear them";
 }
 
-/// Whether it is where the path is to end is told.
+/// Records the largest reaction, and reports if it has fallen so far that the path ends.
 void note_force(Path& path, const StepRecord& record) {
   PathState::SupportForce& force = path.state().force;
   force.present = 0.0;
@@ -48,7 +49,7 @@ void note_force(Path& path, const StepRecord& record) {
                        number_text(force.largest) + " N"});
 }
 
-/// Tells the accepted state as a row of the history.
+/// Reports the accepted state as a row of the history.
 void report(Path& path, const Attempt& attempt, FoundStep& found) {
   complete_record(path, attempt, found);
   if (!path.body().assembler.has_potential()) {
@@ -128,7 +129,7 @@ std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
                        path.working_force(attempt.state, attempt.external_force),
                        damaged.dissipated_energy, found.energies);
   if (!attempt.has_converged()) return {};
-  if (attempt.iterations == 0) {  // no tangent was needed so far
+  if (attempt.iterations == 0) {  // no tangent has been needed so far
     tangent.linearise(assembler, attempt.state.at(), 0.0);
   }
   std::string fault =

@@ -18,39 +18,40 @@ struct FoundStep {
   Ledger ledger;  ///< with the step
 };
 
-/// Reactions of the support sets in a state, of all ranks [N].
+/// Reactions of the support sets in a state, summed over all ranks [N].
 [[nodiscard]] std::map<std::string, Coordinates> reactions(
     const Path& path, const Trial& state, const std::vector<double>& external_force);
 
-/// Commits an equilibrium. Triangles and tetrahedra then lose what their bonds have lost, so that
-/// the body is out of equilibrium again: it is equilibrated at the fixed load and committed until
-/// nothing more is damaged.
-/// @param equilibrate leaves the next equilibrium in `attempt`, and its outcome
+/// Commits an equilibrium. Triangles and tetrahedra then lose the integrity that their bonds have
+/// lost, so that the body is out of equilibrium again: it is equilibrated at the fixed load and
+/// committed until nothing more is damaged.
+/// @param equilibrate stores the next equilibrium in `attempt`, and returns its outcome
 void commit(Path& path, Attempt& attempt, FoundStep& found,
             const std::function<Outcome()>& equilibrate);
 
-/// Closes the ledger of a step whose damage is committed, and checks what it owes.
-/// @return what is wrong with it; the attempt's outcome is then inconsistent
+/// Closes the ledger of a step whose damage is committed, and checks its balances.
+/// @return why the step is refused, with the attempt's outcome changed accordingly; empty if it is
+///         not
 [[nodiscard]] std::string complete(Path& path, Attempt& attempt, FoundStep& found);
 
-/// Fills in what a row of the history tells of an attempt that has become the path's last accepted
-/// state.
+/// Fills in the row of the history for an attempt that has become the path's last accepted state.
 void complete_record(const Path& path, const Attempt& attempt, FoundStep& found);
 
-/// Tells what has come off and is pinned.
+/// Reports fragments that have come off and are pinned.
 /// @param next increment of the stage
 void tell_of_fragments(const Path& path, double next);
 
-/// Pins what was found to have come off, and tells it; ends the path if that is to end it.
+/// Pins fragments that were found, and reports it; ends the path if they shall end it.
 [[nodiscard]] Advance resolve_fragments(Path& path, double next);
 
-/// Cuts the next step after one that failed, and tells it, if a smaller one may help and is
+/// Cuts the next step after one that failed, and reports it, if a smaller one may help and is
 /// allowed.
 [[nodiscard]] bool cut(Path& path, Increment& increment, const Attempt& attempt, double attempted,
                        const std::string& reason);
 
-/// Makes an attempt the path's last accepted state, tells it, and pins what has come free in it.
-/// @param next increment of the stage, for what is told
+/// Makes an attempt the path's last accepted state, reports it, and pins fragments that have come
+/// off.
+/// @param next increment of the stage, for the report
 [[nodiscard]] Advance accept(Path& path, Attempt attempt, FoundStep found, double next);
 
 }  // namespace peristat

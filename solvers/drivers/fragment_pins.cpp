@@ -9,13 +9,13 @@
 namespace peristat {
 namespace {
 
-/// Takes floating pieces out of the equations. One that a support still moves goes with it: only
-/// what is missing is pinned there.
+/// Takes floating pieces out of the equations. A piece that a support still moves is kept: only its
+/// free motions are pinned.
 void remove_pieces(Fragments& found, const std::vector<char>& prescribed, int dimension,
                    const Sharing* sharing) {
   const auto d = std::size_t(dimension);
   std::vector<double> removed(std::size_t(found.count) + 1, 1.0);
-  removed[0] = 0.0;  // the pieces that are held
+  removed[0] = 0.0;  // pieces that are held
   const std::size_t dofs = found.piece.size() * d;
   for (std::size_t dof = 0; dof < dofs; ++dof) {
     if (prescribed[dof]) removed[std::size_t(found.piece[dof / d])] = 0.0;
@@ -32,7 +32,7 @@ void FragmentPins::find(const Assembler& assembler, const State& state,
                         const Conditions& conditions, FragmentRemedy remedy) {
   const std::vector<char>& prescribed = conditions.prescribed();
   const DamagedNetwork network = damaged_network(assembler.model(), state.history);
-  // Linear forces know the directions of the reference alone.
+  // Linear forces use the directions of the reference configuration.
   const bool is_linear = assembler.model().balances().linear;
   const std::vector<double> rest(is_linear ? state.displacement.size() : 0, 0.0);
   const std::vector<double>& moved = is_linear ? rest : state.displacement;

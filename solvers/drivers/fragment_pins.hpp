@@ -9,39 +9,39 @@
 
 namespace peristat {
 
-/// What becomes of pieces that come off, and of points that hang on too few bonds.
+/// Treatment of pieces that come off, and of points with too few bonds.
 enum class FragmentRemedy {
-  hold,    ///< just enough of their degrees of freedom are pinned that they can't move freely
+  hold,    ///< just enough of their degrees of freedom are pinned to prevent free motion
   remove,  ///< all degrees of freedom of a piece leave the equations; loose points are held
   stop,    ///< the run ends
 };
 
-/// Pins that hold what has come off: no support, and no reaction. They do no work: what they hold
-/// doesn't move, and when they are taken away nothing follows them. A value, from which the
-/// equations are numbered (`free_dofs`).
+/// Auxiliary constraints of fragments that have come off; they are neither supports nor reactions.
+/// They do no work: pinned degrees of freedom don't move, and nothing moves when pins are removed.
+/// A value, from which the equations are numbered (`free_dofs`).
 struct FragmentPins {
-  Fragments found;           ///< looked for last; empty before anything was
-  std::vector<char> pinned;  ///< per degree of freedom; empty before anything was
+  Fragments found;           ///< of the last search; empty before the first
+  std::vector<char> pinned;  ///< per degree of freedom; empty before the first pins
 
-  /// Looks for what has come off in a state; nothing is pinned yet. Of a shared body this and the
-  /// sums are calls that all ranks make.
+  /// Finds fragments that have come off in a state; pins nothing yet. Collective if the body is
+  /// partitioned, as are the sums.
   void find(const Assembler& assembler, const State& state, const Conditions& conditions,
             FragmentRemedy remedy);
 
-  /// Whether what was found last asks for other pins than there are.
+  /// True if the last search requires other pins than there are.
   [[nodiscard]] bool are_outdated(const Sums& sums) const;
 
-  /// Pins what was found last.
+  /// Pins the fragments of the last search.
   void pin() { pinned = found.pinned; }
 
-  /// The equations, without what is prescribed or pinned.
+  /// Returns the equations, without prescribed and pinned degrees of freedom.
   [[nodiscard]] FreeDofs free_dofs(const std::vector<char>& prescribed, int dimension) const;
 
-  /// Forces of the pins, their 2-norm [N].
+  /// 2-norm of the forces of the pins [N].
   [[nodiscard]] double force(const Sums& sums, const Trial& state,
                              std::span<const double> external_force) const;
 
-  /// What was found last, for a person.
+  /// Describes the result of the last search.
   [[nodiscard]] std::string described(const Sums& sums) const;
 };
 

@@ -10,15 +10,15 @@
 namespace peristat {
 namespace {
 
-/// Where an implicit step that would damage a bond is cut to: this share of the interpolated way
-/// to the onset of damage.
+/// An implicit step that would damage a bond is cut to this fraction of the interpolated length to
+/// the onset of damage.
 constexpr double share_to_onset = 0.98;
 
-/// A force that falls by less, as a share of it, counts as constant.
+/// A force that falls by a smaller fraction counts as constant.
 constexpr double smallest_fall = 1e-9;
 
-/// By how much the force falls from the last accepted state to a found one, as a share of it: what
-/// does work on the increment of the displacements.
+/// Relative fall of the force from the last accepted state to a found one. The force is measured by
+/// its work on the increment of the displacements.
 double fall_of_force(const Path& path, const Attempt& attempt) {
   const std::vector<double>& before = path.state().ledger.force;
   const std::vector<double> after = path.working_force(attempt.state, attempt.external_force);
@@ -35,7 +35,7 @@ double fall_of_force(const Path& path, const Attempt& attempt) {
   return work_before > 0.0 ? 1.0 - work_after / work_before : 0.0;
 }
 
-/// What is told of a step in which the force begins to fall.
+/// Text that reports a step in which the force begins to fall.
 std::string peak_text(const Path& path, const LoadPoint& at, double fall) {
   const Conditions& conditions = path.setting().conditions;
   return "; the peak of the force lies between the load factors " +
@@ -44,7 +44,7 @@ std::string peak_text(const Path& path, const LoadPoint& at, double fall) {
          number_text(100.0 * fall) + " %";
 }
 
-/// Largest difference of a set's reactions, as a share of the largest reaction.
+/// Largest change of a set's reactions, as a fraction of the largest reaction.
 double largest_jump(const std::map<std::string, Coordinates>& before,
                     const std::map<std::string, Coordinates>& after) {
   double jump = 0.0, largest = 0.0;
@@ -64,8 +64,8 @@ Advance HandOver::next() {
   return path_.state().hand_over.relaxes ? relaxed_step() : implicit_step();
 }
 
-/// Damage is relaxation's: where an implicit state would damage a bond does not matter, but that it
-/// would.
+/// Damage is left to relaxation: what matters is only whether an implicit state would damage a
+/// bond.
 Advance HandOver::implicit_step() {
   ImplicitStep step = implicit_.search(Damage::held);
   if (step.attempt.has_converged()) {

@@ -7,17 +7,18 @@
 namespace peristat {
 namespace {
 
-/// Shorter than this share of the first step, one that fails under a control is an avalanche.
+/// A step that fails under a control and is shorter than this fraction of the first is an
+/// avalanche.
 constexpr double share_of_avalanche = 0.25;
 
-/// Of equilibria in an avalanche.
+/// Largest number of equilibria in an avalanche.
 constexpr int most_passes = 1000;
 
-/// After so many searches with growing damage that failed one after another, such a search is tried
-/// in every eighth pass alone: it takes five times the iterations of one with held damage.
+/// After so many failed searches with growing damage in a row, such a search is tried only in every
+/// eighth pass: it takes five times the iterations of one with held damage.
 constexpr int most_failures = 4, passes_between_tries = 8;
 
-/// Share by which a step may exceed the load at which the first point fails.
+/// Fraction by which a step may exceed the load at which the first point fails.
 constexpr double most_overload = 0.02;
 
 }  // namespace
@@ -141,7 +142,7 @@ bool ImplicitStepping::approach_failure(const ImplicitStep& step) {
 
 Outcome ImplicitStepping::pin_loose(const State& at, ImplicitStep& step) {
   if (!path_.damaged().model().fails_in_avalanches()) {
-    return Outcome::converged;  // pinned once accepted
+    return Outcome::converged;  // pinned after acceptance
   }
   FragmentPins& pins = path_.state().pins;
   const FragmentRemedy remedy = path_.options().fragments;
@@ -211,8 +212,9 @@ void ImplicitStepping::run_avalanche(ImplicitStep& step) {
   name_snap_back(step);
 }
 
-/// An avalanche that comes to no state, or to one that owes energy, is none: the body would have to
-/// unload first. What ends it for reasons of its own keeps its name.
+/// Renames a failed avalanche: if it reaches no state, or one whose energy does not balance, it is
+/// a snap-back, for which the body would have to unload. Outcomes with other causes keep their
+/// name.
 void ImplicitStepping::name_snap_back(ImplicitStep& step) {
   Attempt& attempt = step.attempt;
   const Outcome outcome = attempt.outcome;
@@ -260,9 +262,9 @@ Advance ImplicitStepping::fail(ImplicitStep step) {
   return path_.stop(std::move(attempt), step.attempted, reason);
 }
 
-/// Whether a step as small as allowed has failed because bonds soften.
+/// True if a step as small as allowed has failed because bonds soften.
 bool ImplicitStepping::is_limit_point(const Attempt& attempt) const {
-  if (path_.setting().conditions.control()) return false;  // beyond one pivots are negative anyway
+  if (path_.setting().conditions.control()) return false;  // pivots are negative beyond one anyway
   const bool may_soften = path_.body().assembler.model().has_history();
   if (!may_soften || !path_.options().adaptive) return false;
   return attempt.outcome == Outcome::not_positive_definite ||

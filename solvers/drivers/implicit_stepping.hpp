@@ -8,34 +8,34 @@
 
 namespace peristat {
 
-/// An implicit step on its way.
+/// An implicit step in progress.
 struct ImplicitStep {
   LoadPoint target = 0.0;
   double attempted = 0.0;  ///< see Increment::length
   Attempt attempt;
-  DamageGrowth growth;  ///< that committing what the first search has found would bring
+  DamageGrowth growth;  ///< that a commit of the first search's state would bring
   FoundStep found;
-  std::string fault;        ///< what is known of a failure beside its outcome
-  std::string avalanche;    ///< what is told of one; empty if there was none
-  bool has_pinned = false;  ///< more than was pinned before
+  std::string fault;        ///< details of a failure beside its outcome
+  std::string avalanche;    ///< description of one; empty if there was none
+  bool has_pinned = false;  ///< further degrees of freedom than before
 };
 
-/// Implicit steps. One that fails is cut and tried again; an easy one lets the next grow.
+/// Implicit steps. A step that fails is cut and tried again; after an easy one the next may grow.
 class ImplicitStepping : public Driver {
  public:
   explicit ImplicitStepping(Path& path);
 
-  /// Under a control, where no equilibrium is found along with the damage: at the next value of the
-  /// control equilibria are found with the integrities held, and damaged where they are
-  /// overstretched, until none is.
+  /// Follows an avalanche under a control, if no equilibrium is found along with the damage. At the
+  /// next value of the control equilibria are found with held integrities, and overstretched bonds
+  /// are damaged, until there is none.
   void run_avalanche(ImplicitStep& step);
   /// Searches the equilibrium of the next step.
-  /// @param damage whether it may grow in it
+  /// @param damage whether it may grow in the step
   [[nodiscard]] ImplicitStep search(Damage damage);
-  /// Commits the damage of a state that was found, and checks it: it may still fail.
+  /// Commits the damage of a converged state, and checks it: the step may still fail.
   void establish(ImplicitStep& step);
   [[nodiscard]] Advance accept(ImplicitStep step);
-  /// Cuts, or stops.
+  /// Cuts the step, or ends the path.
   [[nodiscard]] Advance fail(ImplicitStep step);
 
   [[nodiscard]] Increment& increment() { return increment_; }
@@ -44,13 +44,13 @@ class ImplicitStepping : public Driver {
   [[nodiscard]] Advance next() override;
 
  private:
-  /// Cuts a step of the preload that damages the body: its work is found in steps.
+  /// Cuts a step of the preload that damages the body, so that its work is summed in steps.
   [[nodiscard]] bool refines_preload(const ImplicitStep& step);
-  /// Cuts a step beyond the load that points bear: all that are overloaded fail together, so that
-  /// coarse steps would take down what fine ones never load.
+  /// Cuts a step beyond the load that points bear: all overloaded points fail together, so that a
+  /// coarse step would break points that fine ones never overload.
   [[nodiscard]] bool approach_failure(const ImplicitStep& step);
   [[nodiscard]] bool is_limit_point(const Attempt& attempt) const;
-  /// Pins what failing points leave loose before its equilibrium is searched for again.
+  /// Pins what failing points leave loose, before the equilibrium is searched again.
   [[nodiscard]] Outcome pin_loose(const State& at, ImplicitStep& step);
   [[nodiscard]] bool may_be_avalanche(const ImplicitStep& step) const;
   static void name_snap_back(ImplicitStep& step);
@@ -58,7 +58,7 @@ class ImplicitStepping : public Driver {
   Increment increment_;
 };
 
-/// Why a step has failed, with its pivots.
+/// Describes why a step has failed, with its negative pivots.
 [[nodiscard]] std::string reason_of(const ImplicitStep& step);
 
 /// "1 bond", "2 bonds"

@@ -7,28 +7,28 @@
 
 namespace peristat {
 
-/// How the step of the stage is cut and grows.
+/// Options for cutting the step of the stage and for its growth.
 struct IncrementOptions {
   bool adaptive = true;  ///< cut after a failure and grow again; otherwise a failure ends the run
   double smallest_step = 1e-6;  ///< of the stage; a cut below it ends the run
   double growth = 2.0;          ///< factor of the step after an easy success
 };
 
-/// How large a step of the stage is taken next. A step ends at the next entry of the programme's
-/// tables at the latest: every entry is reached. On the way to step 0 it is a step of the preload,
-/// of which all is tried first.
+/// Size of the next step of the stage. A step ends at the next entry of the programme's tables at
+/// the latest, so that every entry is reached. Before step 0 it is a step of the preload, which is
+/// first tried as a whole.
 class Increment {
  public:
-  /// @param steps equal ones from one entry to the next, of which the first is tried
-  /// @param largest that it may grow to; 0 means 1 / steps
-  /// @param next size of the next step, kept by the path's state; 0: that of the first
+  /// @param steps number of equal steps from one entry to the next, the size of the first one
+  /// @param largest limit of its growth; 0 means 1 / steps
+  /// @param next size of the next step, stored in the path's state; 0: that of the first
   Increment(int steps, double largest, const IncrementOptions& options, double& next)
       : options_(options),
         largest_(largest > 0.0 ? largest : 1.0 / steps),
         first_(std::min(1.0 / steps, largest_)),
         next_(next) {}
 
-  /// Where the next step from a load point goes.
+  /// Load point to which the next step goes.
   [[nodiscard]] LoadPoint next_point(const LoadPoint& from) const {
     if (from.preload == 1.0) return target(from.stage);
     const double rest = 1.0 - from.preload, step = next_ > 0.0 ? next_ : rest;
@@ -41,10 +41,10 @@ class Increment {
     return from.preload == 1.0 ? to.stage - from.stage : to.preload - from.preload;
   }
 
-  /// A path may go on with a smaller limit than it had.
+  /// Size of the next step; a resumed path may have a smaller limit than before.
   [[nodiscard]] double value() const { return next_ > 0.0 ? std::min(next_, largest_) : first_; }
 
-  /// Target of the next step; the last one to an entry is not left a remainder of round-off.
+  /// Target of the next step; the last step to an entry leaves no remainder of round-off.
   [[nodiscard]] double target(double stage) const {
     const double entry = LoadingProgramme::next_entry(stage);
     return entry - stage - value() > LoadingProgramme::tolerance ? stage + value() : entry;
@@ -54,9 +54,9 @@ class Increment {
     return options_.adaptive && increment >= options_.smallest_step;
   }
   void cut_to(double increment) { next_ = increment; }
-  /// Makes steps of the preload as short as those of the programme, where a longer one would damage
+  /// Makes steps of the preload as short as those of the programme, if a longer one would damage
   /// the body.
-  /// @return whether this one was longer
+  /// @return true if this one was longer
   bool refine_preload(double attempted) {
     const bool is_longer = attempted > first_ + LoadingProgramme::tolerance;
     if (!can_cut_to(first_) || !is_longer) return false;
@@ -64,7 +64,7 @@ class Increment {
     return true;
   }
   void enlarge_to(double increment) { next_ = std::max(value(), increment); }
-  /// @return whether it grew
+  /// @return true if it grew
   bool grow() {
     if (!options_.adaptive || value() >= largest_) return false;
     next_ = std::min(options_.growth * value(), largest_);

@@ -13,7 +13,8 @@ void follow_to_end(Path& path) {
   for (Advance advance = Advance::goes_on; advance == Advance::goes_on;) {
     const int before = path.next_step();
     advance = driver->advance();
-    // What ended the path right after an accepted step is found again from the step before.
+    // A state whose path failed right after it is not passed on: a resumed path starts from the
+    // step before and fails again.
     const bool can_go_on = advance == Advance::goes_on || path.outcome() == Outcome::converged;
     if (reached && can_go_on && path.next_step() > before) reached(path.state());
   }

@@ -6,23 +6,23 @@
 
 namespace peristat {
 
-/// What mode arc_length does beside stepping.
+/// Options of mode arc_length beside those of its steps.
 struct ArcLengthOptions {
-  /// Ends the path, unless the load has come to its end before; 0: only that ends it.
+  /// Number of steps after which the path ends, unless the load ends before; 0: only the load ends
+  /// it.
   int steps = 0;
-  double largest_step = 1e6;  ///< to which steps may grow: in effect as far as the path is straight
-  bool branches_off = true;   ///< at a bifurcation of a stable path to the path that leaves there
+  double largest_step = 1e6;  ///< limit of their growth: in effect as far as the path is straight
+  bool branches_off = true;   ///< at a bifurcation of a stable path, to the path that leaves there
 };
 
-/// What mode path does.
+/// Options of mode path.
 struct EventOptions {
-  /// Bonds within this share of the most utilised one break with it; 0: those alone that tie with
+  /// Bonds within this fraction of the most utilised one break with it; 0: only those that tie with
   /// it.
   double tolerance = 0.002;
 };
 
-/// How a body in motion is followed in time.
-/// How a motion goes from one time step to the next.
+/// Time integration scheme of a motion.
 enum class MotionScheme {
   verlet,   ///< explicit: VelocityVerlet
   newmark,  ///< implicit: Newmark
@@ -30,19 +30,19 @@ enum class MotionScheme {
 
 /// Where a motion begins.
 enum class MotionStart {
-  rest,         ///< undeformed, but for initial displacements
+  rest,         ///< undeformed, except for initial displacements
   equilibrium,  ///< in the equilibrium of supports and loads at t = 0
 };
 
 struct DynamicsOptions {
-  double time_step = 0.0;   ///< [s]; 0: a share of the stable one
-  double step_share = 0.9;  ///< of the stable step, which is found anew as the stiffness changes
-  int steps_per_row = 100;  ///< time steps from one state that is told to the next
+  double time_step = 0.0;   ///< [s]; 0: `step_share` of the stable one
+  double step_share = 0.9;  ///< of the stable step, which is recomputed as the stiffness changes
+  int steps_per_row = 100;  ///< time steps between two reported states
   MotionScheme scheme = MotionScheme::verlet;
   double spectral_radius = 1.0;  ///< of the implicit scheme at the highest frequencies, see Newmark
   MotionStart start = MotionStart::rest;
 
-  /// Whether equilibria are searched, at the start or in each step.
+  /// True if equilibria are searched, at the start or in each step.
   [[nodiscard]] bool searches() const {
     return scheme == MotionScheme::newmark || start == MotionStart::equilibrium;
   }
@@ -59,16 +59,16 @@ struct LoadSteppingOptions {
   int easy_iterations = 5;      ///< a step with no more iterations than this was easy
   /// Bonds that may break in one implicit step; a step with more is cut. 0: no limit.
   int max_broken_bonds = 0;
-  int relaxation_steps = 1;  ///< likewise in relaxation
+  int relaxation_steps = 1;  ///< equal relaxed steps from one entry to the next
   RelaxationOptions relaxation{};
-  /// Relative residual of a relaxed step at which Newton's method takes its last iterations over,
+  /// Relative residual of a relaxed step at which Newton's method takes over its last iterations,
   /// in adaptive mode.
   double newton_takes_over_at = 1e-5;
-  /// Of the stage, in adaptive mode: a relaxed step in which the force begins to fall is halved
-  /// until it is no longer than this. 0: never.
+  /// Adaptive mode: a relaxed step in which the force begins to fall is halved until it is no
+  /// longer than this, in the stage. 0: never.
   double peak_tolerance = 0.0;
-  /// Share of the largest force on a support so far below which the path has come to its end. 0:
-  /// only the load ends it.
+  /// The path ends once the largest force on a support falls below this fraction of its largest
+  /// value so far. 0: only the load ends it.
   double stop_below = 0.0;
   ArcLengthOptions arc_length{};
   EventOptions events{};

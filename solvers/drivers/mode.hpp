@@ -4,19 +4,19 @@
 
 namespace peristat {
 
-/// How the states of a load path are found: which driver of the table in drivers.cpp. Those that
-/// others ask for have a constant.
+/// Method by which the states of a load path are found: name of a driver in the table in
+/// drivers.cpp. Modes that are referred to elsewhere have a constant.
 struct Mode {
   std::string_view name;
 
   friend bool operator==(const Mode&, const Mode&) = default;
 
   static const Mode newton;      ///< implicitly throughout
-  static const Mode relaxation;  ///< by dynamic relaxation throughout
+  static const Mode relaxation;  ///< by relaxation throughout
   static const Mode adaptive;    ///< implicitly while no damage grows, by relaxation while it does
-  static const Mode arc_length;  ///< implicitly along the path itself, its integrities fixed
-  static const Mode path;        ///< from one breaking bond to the next
-  static const Mode dynamics;    ///< the motion in time, explicitly
+  static const Mode arc_length;  ///< implicitly along the path itself, with fixed integrities
+  static const Mode path;        ///< from one failure event to the next
+  static const Mode dynamics;    ///< the motion in time
 };
 
 inline constexpr Mode Mode::newton{"newton"};

@@ -14,7 +14,7 @@ namespace peristat {
 
 struct PathState;
 
-/// What an accepted state is made of besides its record.
+/// An accepted state, besides its record.
 struct AcceptedState {
   const Trial& trial;  ///< with its damage committed
   const std::vector<double>& external_force;
@@ -22,17 +22,17 @@ struct AcceptedState {
   std::span<const double> velocity{};   ///< of a body in motion, per degree of freedom [m/s]
 };
 
-/// Receives what happens; all members may be empty.
+/// Callbacks for what happens on a path; all members may be empty.
 struct LoadSteppingObserver {
   std::function<void(const IterationRecord&)> iteration;
   std::function<void(const DecisionRecord&)> decision;
-  /// An accepted state. The record's energies, damage and reactions are set.
+  /// Called for an accepted state. The record's energies, damage and reactions are set.
   std::function<void(const StepRecord&, const AcceptedState&)> accepted;
-  /// What the path can go on from: after an accepted step, once its driver has decided what is
-  /// next.
+  /// Called with the state from which the path can be resumed: after an accepted step, once its
+  /// driver has decided what is next.
   std::function<void(const PathState&)> reached;
   std::function<bool()> interrupted;
-  /// A sentence about an error of supports or loads that shows only at some stage.
+  /// Describes an error of supports or loads that shows only at some stage.
   std::function<std::string(const InputError&)> describe;
 };
 

@@ -9,7 +9,7 @@ namespace peristat {
 
 namespace {
 
-/// What the first of the ranks says that has something to say.
+/// Returns the message of the first rank that has one. Collective.
 std::optional<std::string> first_of_all(const Communicator& ranks,
                                         const std::optional<std::string>& mine) {
   std::string first;
@@ -46,7 +46,7 @@ Path::Path(const PathSetting& setting, PathState from)
     throw std::logic_error("a path that its stand-in carries goes on with the stand-in");
   }
   state_.accepted.environment = setting.conditions.environment(load_point(state_.accepted));
-  if (setting.body.assembler.sharing()) {  // of whose states images are no part
+  if (setting.body.assembler.sharing()) {  // whose states do not include images
     setting.conditions.constraints().move(state_.accepted.displacement);
   }
   number_equations();
@@ -136,7 +136,7 @@ void Path::find_control_sign() {
   const auto loads = [&](double load) { return LoadPoint(from.stage, load); };
   if (find_rate(problem(), solved.solver, solved.tangent, {from}, loads, from.load.value_or(0.0),
                 rate) != LinearOutcome::solved) {
-    return;  // the search names it
+    return;  // the search reports the failure
   }
   const double answer = setting_.conditions.control()->value(rate);
   const bool is_odd = solved.solver.inertia()->negative % 2 == 1;
@@ -166,7 +166,7 @@ Attempt Path::search(const State& from, const BorderedStep& step, const NewtonOp
         bordered_newton(problem(), body().solver, body().tangent, from, step, options,
                         [this](const IterationRecord& row) { return iterated(row); });
     Attempt attempt = to_attempt(std::move(found.newton), step.loads(found.unknown));
-    // States on the way of an avalanche, whose damage is held, need not be stable.
+    // States within an avalanche, with held damage, need not be stable.
     const bool may_stay = setting_.conditions.control() && options.damage == Damage::grows;
     if (may_stay && attempt.has_converged()) judge_stability_under_control(attempt, step.loads);
     return attempt;

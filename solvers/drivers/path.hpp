@@ -13,15 +13,15 @@
 
 namespace peristat {
 
-/// A body, and what searches its equilibria.
+/// A body with the solver, tangent and equations that its equilibria are searched with.
 struct SolvedBody {
   Assembler& assembler;
   LinearSolver& solver;  ///< analyzed for the body's pattern and `free`
   TangentOperator& tangent;
-  const FreeDofs& free;  ///< what the supports leave free
+  const FreeDofs& free;  ///< degrees of freedom that the supports leave free
 };
 
-/// What a path is followed with; all that it refers to outlives the path.
+/// Setting of a path; everything that it refers to outlives the path.
 struct PathSetting {
   SolvedBody body;
   const Conditions& conditions;
@@ -32,21 +32,21 @@ struct PathSetting {
   const MotionSetting* motion = nullptr;  ///< of mode dynamics
 };
 
-/// Whether a driver goes on.
+/// Does a driver go on?
 enum class Advance { goes_on, ended };
 
-/// A path and its state, with what all drivers share: searches, and telling what happens.
+/// A path and its state, with what all drivers share: searches and reports.
 class Path {
  public:
-  /// From rest, before what acts at load 0 is put on.
+  /// Begins at rest, before the preload.
   explicit Path(const PathSetting& setting);
 
-  /// From a state that a path with the same setting has reached. Its solvers have to be prepared
+  /// Begins at a state that a path with the same setting has reached. Its solvers must be prepared
   /// before a driver goes on.
-  /// @throws std::logic_error if its stand-in is in force and there is none
+  /// @throws std::logic_error if its stand-in is in use and there is none
   Path(const PathSetting& setting, PathState from);
 
-  /// Puts the solvers on the rungs, and before the equations, of the state.
+  /// Prepares the solvers for the equations of the state, on its rungs of their ladders.
   [[nodiscard]] LinearOutcome prepare_solvers();
 
   [[nodiscard]] const PathSetting& setting() const { return setting_; }
@@ -56,65 +56,65 @@ class Path {
   [[nodiscard]] Outcome outcome() const { return outcome_; }
   [[nodiscard]] Attempt& last_attempt() { return last_attempt_; }
 
-  /// Whether it goes on: there is load left, and the force has not fallen to where it is to end.
+  /// True if there is load left, and the force has not fallen to where the path ends.
   [[nodiscard]] bool goes_on() const;
-  /// Whether the supports' force has fallen below the share of its peak that ends the path, at a
-  /// load that the body has not borne before: what falls with a planned unloading has not failed.
+  /// True if the supports' force has fallen below the fraction of its peak that ends the path, at a
+  /// load that the body has not carried before: a fall by a planned unloading is no failure.
   [[nodiscard]] bool has_fallen() const;
-  /// Whether step 0, the state at load 0, is still to be found.
+  /// True if step 0, the state at load 0, is still to be found.
   [[nodiscard]] bool is_preloading() const { return state_.accepted.preload < 1.0; }
   [[nodiscard]] int next_step() const { return is_preloading() ? 0 : state_.steps + 1; }
 
-  /// The body in force: the stand-in until damage begins.
+  /// The body in use: its stand-in (surrogate model) until damage begins.
   [[nodiscard]] const SolvedBody& body() const;
-  /// The body whose bonds are damaged, whatever stands in for it.
+  /// The body whose bonds are damaged, even if a stand-in is in use.
   [[nodiscard]] Assembler& damaged() const { return setting_.body.assembler; }
-  /// The equations, without what is pinned.
+  /// The equations, without pinned degrees of freedom.
   [[nodiscard]] const FreeDofs& free() const;
   [[nodiscard]] EquilibriumProblem problem() const;
   [[nodiscard]] std::vector<double> working_force(const Trial& state,
                                                   std::span<const double> external_force) const;
 
-  /// Why supports and loads have no value at a stage, if that is so.
+  /// Returns why supports and loads have no value at a load point; nothing if they have.
   [[nodiscard]] std::optional<std::string> refusal_of_conditions(const LoadPoint& at) const;
 
-  /// By Newton's method, under the conditions' control if they have one. What acts at load 0 is put
-  /// on before the control begins.
+  /// Searches by Newton's method, under the conditions' control if they have one. The preload is
+  /// applied before the control begins.
   [[nodiscard]] Attempt search(const State& from, const LoadPoint& target,
                                const NewtonOptions& options);
-  /// By Newton's method with a load that is found, too.
+  /// Searches by Newton's method with the load as an unknown.
   [[nodiscard]] Attempt search(const State& from, const BorderedStep& step,
                                const NewtonOptions& options);
 
-  /// Prepares the solver of the body in force for the equations.
+  /// Prepares the solver of the body in use for the present equations.
   [[nodiscard]] Advance analyze();
-  /// Pins what was found last: there are other equations.
+  /// Pins the fragments that were found last, which changes the equations.
   [[nodiscard]] Advance pin();
-  /// Goes back to the equations of earlier pins.
+  /// Returns to the equations of earlier pins.
   [[nodiscard]] Advance pin_as_before(FragmentPins pins);
 
-  /// Told of every iteration of the next step; returns true to interrupt.
+  /// Reports an iteration of the next step; returns true to interrupt.
   [[nodiscard]] bool iterated(IterationRecord row) const;
-  /// Tells a decision about the next step.
-  /// @param at that was attempted
+  /// Reports a decision about the next step.
+  /// @param at load point that was attempted
   void tell(const LoadPoint& at, DecisionRecord decision) const;
   /// Ends the path with an attempt that failed.
   [[nodiscard]] Advance stop(Attempt attempt, double attempted, const std::string& reason);
 
-  void forget_last_attempt() { last_attempt_ = {}; }  // the vectors of a large body count
+  void forget_last_attempt() { last_attempt_ = {}; }  // frees the vectors of a large body
   void note_rungs();
 
  private:
   void number_equations();
   [[nodiscard]] Attempt search_by_control(const State& from, double target,
                                           const NewtonOptions& options);
-  /// Refuses a state that a body would leave although its control stands still: it may have one
-  /// negative pivot, and that only if the load turned since rest (the determinant of the tangent
-  /// changes its sign with the control's answer). Otherwise a bifurcation has been passed.
+  /// Refuses a state that the body would leave although its control is fixed. A state may have one
+  /// negative pivot only if the load has turned since rest (the determinant of the tangent changes
+  /// its sign with the rate of the control). Otherwise a bifurcation has been passed.
   void judge_stability_under_control(Attempt& found, const LoadPath& loads);
   void find_control_sign();
   [[nodiscard]] std::string description(const InputError& error) const;
-  /// Of the state that a search has ended in, for what is told of it.
+  /// Counts the pivots in the state in which a search has ended, for the report.
   void count_pivots(Attempt& attempt) const;
 
   PathSetting setting_;

@@ -8,7 +8,8 @@
 namespace peristat {
 namespace {
 
-/// Share of the body's energy whose release in an implicit step is a jump over a limit point.
+/// An implicit step that releases more than this fraction of the body's energy has jumped over a
+/// limit point.
 constexpr double share_of_jump = 5e-3;
 
 }  // namespace

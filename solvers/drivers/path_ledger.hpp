@@ -10,7 +10,7 @@
 
 namespace peristat {
 
-/// What a step has turned over, beside what follows from the states before and after it [J].
+/// Energies of a step that do not follow from the states before and after it [J].
 struct StepEnergies {
   double released = 0.0;  ///< see Evaluation::released
   double heating = 0.0;   ///< see heating_work
@@ -19,14 +19,14 @@ struct StepEnergies {
     double drained = 0.0;  ///< see RelaxationResult
   };
   std::optional<Relaxed> relaxed;  ///< summed over the iterations of relaxation
-  /// On the way to step 0 without damage. A slow way from rest works as much as the body stores,
-  /// however nonlinear it is, so that this is the work, not the trapezoidal rule's.
+  /// On the way to step 0 without damage. Slow loading from rest does as much work as the body
+  /// stores, however nonlinear it is; this is used in place of the trapezoidal rule.
   bool is_elastic_preload = false;
-  /// Bonds broke one after the other under a control that stood still: what the work is more than
-  /// what is stored and dissipated counts as drained.
+  /// Bonds broke one after the other under a fixed control: work in excess of the stored and
+  /// dissipated energy counts as drained.
   bool is_avalanche = false;
-  /// Where the step had come to before its points failed: it has worked, and been heated, up to
-  /// there.
+  /// State of the step before its points failed: the work is summed by way of this state, and
+  /// heating up to it.
   struct Intact {
     std::vector<double> force, displacement;
   };
@@ -37,30 +37,30 @@ struct StepEnergies {
 ///
 /// External work is summed with the trapezoidal rule over each step, of the loads on the free and
 /// of the reactions on the prescribed degrees of freedom, and of heating. Relaxation sums the work
-/// over each of its iterations, too: what that is more is the numerical work. What acts at load 0
-/// is put on slowly, see StepEnergies::is_elastic_preload.
+/// over each of its iterations, too; the excess is the numerical work. The preload, which acts at
+/// load 0, is applied slowly, see StepEnergies::is_elastic_preload.
 struct PathLedger {
   Ledger entries;
   double released = 0.0;      ///< by triangles and tetrahedra whose bonds were damaged [J]
-  std::vector<double> force;  ///< that does work, in the last accepted state [N]
+  std::vector<double> force;  ///< working force in the last accepted state [N]
 
-  /// Begins in a state: what is stored there counts as work that was done before.
+  /// Begins in a state: the energy stored there counts as work that was done before.
   /// @param working see working_force
   void begin(const Trial& state, std::vector<double> working);
 
-  /// The entries with a step to a state whose damage is committed.
+  /// Returns the entries after a step to a state whose damage is committed.
   /// @param dissipated by the bonds on the whole path, see DamageState [J]
   [[nodiscard]] Ledger with_step(const Sums& sums, std::span<const double> displacement_before,
                                  const Trial& state, std::span<const double> working,
                                  double dissipated, const StepEnergies& step) const;
 
-  /// Takes up a step that was accepted, with its entries.
+  /// Accepts a step with its entries.
   void accept(const Ledger& with_step, std::vector<double> working, const StepEnergies& step);
 
-  /// Whether an implicit step in which damage grew has released what nobody takes up. A stable path
-  /// balances, but for the little that single bonds release as they snap; beyond a limit point the
-  /// search lands where its steps happen to lead.
-  /// @return a sentence for a person; empty if it has not
+  /// Checks whether an implicit step with growing damage has released energy that nothing takes up.
+  /// A stable path balances, except for the little that single bonds release as they snap; beyond a
+  /// limit point the search ends wherever its steps lead.
+  /// @return a message; empty if it has not
   [[nodiscard]] std::string jump_to(const Ledger& with_step) const;
 };
 

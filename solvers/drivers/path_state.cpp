@@ -22,7 +22,7 @@ bool are_sizes_of(const History& history, const Assembler& body) {
   for (std::size_t term = 0; term < terms; ++term) {
     if (!at_rest.of(term).empty() && !is_as_long(at_rest, term)) return false;
   }
-  // Terms that follow others have no history before these have changed.
+  // Terms that follow others have no history before the others have changed.
   const History followed = body.history_of(bond_stretches(body.model(), history));
   for (std::size_t term = 0; term < terms; ++term) {
     const bool is_told = !history.of(term).empty();

@@ -14,21 +14,20 @@
 namespace peristat {
 
 /// Everything that a path needs to go on from where a driver has left it. Bodies, conditions and
-/// options are constant and not in it; searches keep nothing from one step to the next, and draw
-/// no random numbers. A value: a copy goes on by itself.
-/// Nor do solvers: every step factorises a tangent of its own before it takes up one that is at
-/// hand.
+/// options are constant and not in it. Searches keep nothing from one step to the next, and draw no
+/// random numbers. Solvers keep nothing either: every step factorises a tangent of its own before
+/// it reuses one. A value: a copy goes on by itself.
 struct PathState {
   State accepted;  ///< the last one: displacement, stage, histories
   int steps = 0;   ///< accepted after step 0
   PathLedger ledger;
   FragmentPins pins;
-  /// 2-norm of the largest reaction of a support, in the accepted state and so far [N].
+  /// Largest reaction of a support (2-norm), in the accepted state and so far [N].
   struct SupportForce {
     double present = 0.0, largest = 0.0;
     double top = 0.0;  ///< highest stage so far
   } force;
-  bool stands_in = false;  ///< the stand-in is in the place of the body
+  bool stands_in = false;  ///< the stand-in (surrogate model) replaces the body
   struct Rungs {
     int body = 0, stand_in = 0;
   } rungs;                          ///< of ladders of solvers: see LinearSolver::rung
@@ -41,64 +40,67 @@ struct PathState {
     double increment = 0.0;  ///< likewise
     RelaxationMotion motion;
   } relaxed;
-  /// Under a control: +1 or -1 as the control answers to the load at load 0; 0: not known yet.
+  /// Under a control: sign of its response to the load at load 0, reversed if the number of
+  /// negative pivots is odd there; 0: not known yet.
   int control_sign = 0;
-  /// The controlled displacement in step 0, from which the programme's values count [m].
+  /// Controlled displacement in step 0, to which the programme's values are added [m].
   double control_at_load_zero = 0.0;
   struct Arc {
     double increment = 0.0;  ///< of the arc length in the next step; 0: as in the first
-    /// Of the path in the accepted state, per unit of the arc length: of the displacement [m], and
-    /// of the stage. Empty: not found yet.
+    /// Direction of the path in the accepted state, per unit of the arc length: of the displacement
+    /// [m], and of the stage. Empty: not found yet.
     std::vector<double> direction;
     double stage_direction = 0.0;
     double displacement_scale = 0.0;     ///< norm of du/dstage at rest [m]
     std::int64_t negative_pivots = 0;    ///< in the accepted state
-    bool passes_critical_point = false;  ///< with the next step; it has been located
+    bool passes_critical_point = false;  ///< in the next step; it has been located
   } arc;
   struct HandOver {
-    bool relaxes = false;        ///< on the side of relaxation
+    bool relaxes = false;        ///< relaxation is in use
     bool is_near_onset = false;  ///< an implicit step was cut to end just before damage begins
-    bool force_falls = false;    ///< has fallen in the last relaxed step
-    double peak_before = 0.0;    ///< stage by which the force has fallen; 0: no peak is searched
+    bool force_falls = false;    ///< it has fallen in the last relaxed step
+    double peak_before = 0.0;    ///< stage at which the force has fallen; 0: no peak is searched
   } hand_over;
-  /// Of mode path.
+  /// State of mode path.
   struct Events {
-    bool at_strength = false;    ///< bonds of the accepted state are at what they bear
+    bool at_strength = false;    ///< bonds of the accepted state are at their resistance
     double top = 0.0;            ///< highest stage so far
-    double longest = 0.0;        ///< change of the stage in a step; 0: as far as the next event
-    double largest_scale = 0.0;  ///< that a residual was measured against so far [N]
+    double longest = 0.0;        ///< largest change of the stage in a step; 0: no limit
+    double largest_scale = 0.0;  ///< largest scale of a residual so far [N]
     double broke_at = 0.0;       ///< load factor of the last event
-    /// What bonds that broke before their strength lacked of the energy that they dissipate [J].
+    /// Energy that bonds dissipate beyond what they stored, because they broke before their
+    /// strength [J].
     double batch_work = 0.0;
-    double released = 0.0;  ///< under the given control [J]
-    /// Of the last state under the given control [J]: stored and dissipated energy less the work of
-    /// its dead loads and the batches' work, and what was drained up to it.
+    double released = 0.0;  ///< under the given control so far [J]
+    /// In the last state under the given control [J]: stored and dissipated energy less the work of
+    /// its dead loads and the batches' work, and the energy drained up to it.
     double response_energy = 0.0, response_drained = 0.0;
     std::int64_t count = 0;      ///< events so far
-    TangentReference tangent{};  ///< that the accepted state was found with
+    TangentReference tangent{};  ///< tangent of the accepted state's search
   } events;
-  /// Of mode dynamics; the stage is the time.
+  /// State of mode dynamics; the stage is the time.
   struct Dynamics {
-    bool has_begun = false;            ///< the initial state has been told
+    bool has_begun = false;            ///< the initial state has been reported
     std::vector<double> velocity;      ///< per degree of freedom, in the accepted state [m/s]
     std::vector<double> acceleration;  ///< likewise, of implicit steps [m/s2]
-    double step = 0.0;                 ///< in force [s]
+    double step = 0.0;                 ///< time step in use [s]
     /// (dt^2/8) F.M^-1 F at the start, and what the steps have added to it [J].
     double correction_at_start = 0.0, correction = 0.0;
-    double largest_energy = 0.0;           ///< that has been put in so far [J]
-    Stiffness stiffness;                   ///< whose eigenvalue was found last
+    double largest_energy = 0.0;           ///< largest energy put in so far [J]
+    Stiffness stiffness;                   ///< with the eigenvalue found last
     double last_bound = 0.0;               ///< of the stiffness [1/s2]
-    int look_interval = 0, next_look = 0;  ///< at the stiffness, in time steps
+    int look_interval = 0, next_look = 0;  ///< checks of the stiffness, in time steps
   } dynamics;
 };
 
-/// A history without what terms remember that follow others, which is found anew from the rest.
+/// Returns a history without the entries of terms that follow others, which are recomputed from the
+/// rest.
 [[nodiscard]] History own_history(const History& history, const Assembler& body);
 
-/// The other way round.
+/// Returns a history with these entries recomputed.
 [[nodiscard]] History with_followers(History history, const Assembler& body);
 
-/// Whether the sizes of its arrays are those of a body's; terms that follow others may have none.
+/// True if the sizes of its arrays are those of a body's; terms that follow others may be empty.
 /// @param prescribed per degree of freedom
 [[nodiscard]] bool is_of_body(const PathState& state, const Assembler& body,
                               const std::vector<char>& prescribed);

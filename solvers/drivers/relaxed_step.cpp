@@ -12,7 +12,7 @@ namespace {
 /// Newton iterations that may finish a relaxed step: quadratic convergence needs no more.
 constexpr int most_finishing_iterations = 8;
 
-/// Only a stable equilibrium close by is taken; anything else is left to relaxation.
+/// Options that accept only a stable equilibrium close by; anything else is left to relaxation.
 NewtonOptions finishing_options(NewtonOptions options, bool has_factor) {
   options.projection = Projection::never;
   options.factorizes_first = !has_factor;
@@ -21,7 +21,7 @@ NewtonOptions finishing_options(NewtonOptions options, bool has_factor) {
   return options;
 }
 
-/// Newton's last iterations at the fixed load.
+/// Does Newton's last iterations at the fixed load.
 /// @return false if relaxation has to go on
 bool finish(Path& path, RelaxedStep& step, NewtonOptions options) {
   options.scale = step.scale;
@@ -86,8 +86,8 @@ void relax_and_finish(Path& path, RelaxedStep& step, const LoadPoint& target) {
     options.relative_tolerance = std::max(tolerance, last);
     relax_towards(path, step, target, options);
     if (step.attempt.outcome == Outcome::iteration_limit) {
-      // A motion without much stiffness, as of a part that hangs on its last bonds: relaxation
-      // hardly sees it, a search with projected tangents does.
+      // A motion of little stiffness, as of a part that hangs on its last bonds, hardly relaxes; a
+      // search with projected tangents finds its equilibrium.
       finish(path, step, newton_options);
       return;
     }

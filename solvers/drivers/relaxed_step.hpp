@@ -4,9 +4,9 @@
 
 namespace peristat {
 
-/// A relaxed step on its way: where it is, and its share of the ledger.
+/// A relaxed step in progress: where it is, and its part of the ledger.
 struct RelaxedStep {
-  /// At the last accepted state.
+  /// Begins at the last accepted state.
   explicit RelaxedStep(const State& accepted);
 
   Attempt attempt;
@@ -15,11 +15,11 @@ struct RelaxedStep {
   bool has_factor = false;  ///< a tangent of this step is factorised
 };
 
-/// By dynamic relaxation.
+/// Relaxes to a load point, by dynamic relaxation or by the flow.
 void relax_towards(Path& path, RelaxedStep& step, const LoadPoint& target,
                    RelaxationOptions options);
 
-/// By dynamic relaxation until Newton's method is able to finish.
+/// The same until Newton's method is able to finish.
 void relax_and_finish(Path& path, RelaxedStep& step, const LoadPoint& target);
 
 }  // namespace peristat

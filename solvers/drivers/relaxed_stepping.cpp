@@ -5,7 +5,8 @@
 namespace peristat {
 namespace {
 
-/// The flow has a solver at hand; a motion that never rests has nothing to finish.
+/// Newton's method finishes the flow, which uses the solver anyway; a step that does not hold has
+/// nothing to finish.
 RelaxedStepping::Finish finish_of(const RelaxationOptions& options, RelaxedStepping::Finish asked) {
   if (!options.holds) return RelaxedStepping::Finish::relaxation;
   return options.method == RelaxationMethod::flow ? RelaxedStepping::Finish::newton : asked;

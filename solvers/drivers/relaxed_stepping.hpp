@@ -8,10 +8,10 @@
 
 namespace peristat {
 
-/// Steps by dynamic relaxation. One that fails is cut and tried again.
+/// Steps by dynamic relaxation or by the flow. A step that fails is cut and tried again.
 class RelaxedStepping : public Driver {
  public:
-  /// Who does the last iterations of a step that holds.
+  /// Method for the last iterations of a step that holds.
   enum class Finish { relaxation, newton };
 
   explicit RelaxedStepping(Path& path, Finish finish = Finish::relaxation);
@@ -19,13 +19,13 @@ class RelaxedStepping : public Driver {
   struct Found {
     RelaxedStep step;
     double attempted = 0.0;  ///< increment of the stage
-    std::string fault;       ///< what is known of a failure beside its outcome
+    std::string fault;       ///< details of a failure beside its outcome
   };
   /// Relaxes the next step, commits its damage, and checks it.
   [[nodiscard]] Found search();
-  /// @param what else is told of it; may be empty
+  /// @param what further text for its report; may be empty
   [[nodiscard]] Advance accept(Found found, const std::string& what = {});
-  /// Cuts, or stops.
+  /// Cuts the step, or ends the path.
   [[nodiscard]] Advance fail(Found found);
 
   [[nodiscard]] Increment& increment() { return increment_; }

@@ -85,7 +85,7 @@ void transfer_tangent(StateArchive& archive, TangentReference& tangent) {
 void transfer(StateArchive& archive, PathState& state) {
   auto& [accepted, steps, ledger, pins, force, stands_in, rungs, relaxation_seconds, implicit,
          relaxed, control_sign, control_at_load_zero, arc, hand_over, events, dynamics] = state;
-  // The environment is made anew from the load point, see Path.
+  // The environment is recomputed from the load point, see Path.
   [[maybe_unused]] auto& [displacement, stage, history, load, environment, preload] = accepted;
   archive.transfer("accepted/displacement", displacement, Rows::dofs);
   archive.transfer("accepted/stage", stage);

@@ -6,12 +6,12 @@
 
 namespace peristat {
 
-/// Preconditioners of Trilinos: incomplete factors, Chebyshev polynomial or multigrid of the stored
-/// tangent, as a matrix of its own. Multigrid is given the rigid motions of the current
-/// configuration.
+/// Trilinos preconditioners of the stored tangent, which they copy into a matrix of their own:
+/// incomplete factorisation, Chebyshev polynomial or multigrid. Multigrid receives the rigid
+/// motions of the current configuration.
 class AssembledPreconditioner : public Preconditioner {
  public:
-  /// @param sharing of a part of a body, which outlives it; null: the body is whole
+  /// @param sharing partition of the body, which outlives this; null: the body is not partitioned
   explicit AssembledPreconditioner(MatrixPreconditionerKind kind, const Sharing* sharing = nullptr)
       : preconditioner_(kind), sharing_(sharing) {}
 

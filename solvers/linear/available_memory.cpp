@@ -12,7 +12,7 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-/// Value in bytes behind `key` in a file of lines "key: value kB", or unlimited.
+/// Value in bytes after `key` in a file of lines "key: value kB", or unlimited.
 double kilobytes_in(const char* file, const std::string& key) {
   std::ifstream lines(file);
   std::string word;
@@ -29,7 +29,7 @@ double number_in(const std::string& file) {
   return stream >> value ? value : unlimited;
 }
 
-/// Room left in the control group of this process (version 2, or the memory controller of version
+/// Memory left in the control group of this process (version 2, or the memory controller of version
 /// 1).
 double control_group_room() {
   std::ifstream groups("/proc/self/cgroup");

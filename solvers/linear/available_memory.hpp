@@ -5,13 +5,13 @@
 
 namespace peristat {
 
-/// A case that does not fit (exit code 4); told before the memory is asked for.
+/// Thrown if a case does not fit into memory (exit code 4), before the memory is allocated.
 class MemoryError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Memory that this process may still take [bytes]: what the system calls available, limited by the
-/// control group and by the limit of the address space.
+/// Memory that this process may still allocate [bytes]: what the system reports as available,
+/// limited by the control group and by the limit of the address space.
 [[nodiscard]] double available_memory();
 
 /// "1.5 GB"

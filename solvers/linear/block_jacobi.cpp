@@ -12,8 +12,8 @@
 namespace peristat {
 namespace {
 
-/// Writes a number to the diagonal and zeros elsewhere to rows and columns of prescribed degrees of
-/// freedom.
+/// Sets the rows and columns of prescribed degrees of freedom to zero, and their diagonal entries
+/// to `diagonal`.
 template <int D>
 void set_prescribed(const Index* equation, double diagonal, double* block) {
   for (int r = 0; r < D; ++r) {
@@ -53,7 +53,7 @@ constexpr std::size_t upper_half(int dimension) {
   return std::size_t(dimension) * std::size_t(dimension + 1) / 2;
 }
 
-/// @param entries_only whether blocks count as diagonal
+/// @param entries_only off-diagonal entries of the blocks are taken as zero
 template <int D>
 LinearOutcome invert_all(const FreeDofs& free, const std::vector<double>& blocks, bool entries_only,
                          std::vector<double>& upper_halves) {
@@ -99,7 +99,7 @@ void add_all(const FreeDofs& free, const std::vector<double>& upper_halves, int 
   }
 }
 
-/// Means of blocks and their transposes: what an unsymmetric tangent is preconditioned by.
+/// Returns the symmetric parts of the blocks, which precondition an unsymmetric tangent.
 std::vector<double> symmetric_parts(std::vector<double> blocks, std::size_t d) {
   for (std::size_t first = 0; first < blocks.size(); first += d * d) {
     for (std::size_t r = 0; r < d; ++r) {

@@ -6,15 +6,15 @@
 
 namespace peristat {
 
-/// M = the diagonal of K_ff, or its diagonal blocks, one per point; of an unsymmetric tangent their
-/// symmetric parts.
+/// M = the diagonal of K_ff, or its diagonal blocks, one per point; for an unsymmetric tangent, the
+/// symmetric parts of the blocks.
 class BlockJacobi : public Preconditioner {
  public:
   enum class Blocks { entries, points };
   explicit BlockJacobi(Blocks blocks) : blocks_(blocks) {}
 
   void analyze(const BlockPattern& pattern, const FreeDofs& free) override;
-  /// Negative or zero pivots of a diagonal block are the tangent's, too, if it is symmetric.
+  /// A negative or zero pivot of a diagonal block shows that a symmetric tangent has one, too.
   [[nodiscard]] LinearOutcome build(const TangentOperator& tangent) override;
   void apply(std::span<const double> residual, std::span<double> correction) override;
   [[nodiscard]] std::string describe() const override;
@@ -26,8 +26,8 @@ class BlockJacobi : public Preconditioner {
   Blocks blocks_;
   const FreeDofs* free_ = nullptr;
   int threads_ = 1;
-  /// Of each point, the upper half of the inverse block; rows and columns of prescribed degrees of
-  /// freedom are zero.
+  /// Per point: upper half of the inverse block; rows and columns of prescribed degrees of freedom
+  /// are zero.
   std::vector<double> inverse_;
 };
 

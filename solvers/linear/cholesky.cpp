@@ -50,7 +50,7 @@ struct Cholesky::Cholmod {
   int last_iterations = 0;
   bool counts_pivots = true;
   bool factor_valid = false;    // factor holds numbers
-  bool factor_current = false;  // of the present tangent
+  bool factor_current = false;  // factor is that of the present tangent
 
   explicit Cholmod(FactorReuse how) : reuse(how) {
     cholmod_l_start(&common);
@@ -76,7 +76,7 @@ struct Cholesky::Cholmod {
     cholmod_l_free_dense(&work_e, &common);
   }
 
-  /// Fill-reducing order of the points that have an equation, in terms of those points.
+  /// Returns a fill-reducing order of the points that have an equation, by their numbers.
   std::vector<Long> order_points(const BlockPattern& pattern,
                                  const std::vector<Index>& number_of_point, Index points) {
     const auto at = [](void* array) { return static_cast<Long*>(array); };
@@ -111,8 +111,8 @@ struct Cholesky::Cholmod {
     return order;
   }
 
-  /// visit(i, j) for the diagonal and each block i < j of points with an equation, in their
-  /// numbers.
+  /// Calls visit(i, j) for the diagonal and each block i < j; i and j number the points that have
+  /// an equation.
   template <class Visit>
   static void for_each_free_block(const BlockPattern& pattern, const std::vector<Index>& number,
                                   const Visit& visit) {
@@ -186,14 +186,14 @@ struct Cholesky::Cholmod {
     const LinearOutcome outcome = outcome_of_status();
     if (outcome == LinearOutcome::not_positive_definite) return count_pivots();
     if (outcome != LinearOutcome::solved) return outcome;
-    // The pivots of LL^T are the squares of its diagonal, and this is their least over the largest.
+    // The pivots of LL^T are the squares of its diagonal; rcond is the least over the largest.
     if (cholmod_l_rcond(factor, &common) <= zero_pivot) return LinearOutcome::singular;
     inertia = Inertia{free->count(), 0, 0};
     factor_valid = factor_current = true;
     return outcome;
   }
 
-  /// Of the filled matrix; the diagonal entry stands first in its column.
+  /// Largest diagonal entry of the filled matrix; the diagonal entry comes first in its column.
   double largest_diagonal() const {
     const double* values = static_cast<const double*>(matrix->x);
     const Long* begin = static_cast<const Long*>(matrix->p);
@@ -204,7 +204,7 @@ struct Cholesky::Cholmod {
     return largest;
   }
 
-  /// Inertia by LDL^T (Sylvester's law), where it is wanted and affordable.
+  /// Computes the inertia by LDL^T (Sylvester's law), if it is wanted and affordable.
   LinearOutcome count_pivots() {
     if (!counts_pivots || estimate.flops > largest_inertia_flops)
       return LinearOutcome::not_positive_definite;
@@ -213,7 +213,7 @@ struct Cholesky::Cholmod {
     cholmod_l_change_factor(CHOLMOD_PATTERN, 0, 0, 1, 1, signs, &common);
     common.supernodal = CHOLMOD_SIMPLICIAL;
     common.final_ll = 0;
-    common.dbound = 1e-3 * zero_pivot * largest_diagonal();  // LDL^T gives up at an exact zero
+    common.dbound = 1e-3 * zero_pivot * largest_diagonal();  // LDL^T stops at an exact zero
     cholmod_l_factorize(matrix, signs, &common);
     const bool finished = common.status == CHOLMOD_OK || common.status == CHOLMOD_DSMALL;
     const bool complete = finished && signs->xtype == CHOLMOD_REAL;

@@ -7,7 +7,7 @@
 
 namespace peristat {
 
-/// What the symbolic factorisation knows before any number is computed.
+/// Size and cost of the factor, known after the symbolic factorisation.
 struct FactorEstimate {
   double entries = 0.0;  ///< of the factor
   double flops = 0.0;    ///< of one factorisation
@@ -15,12 +15,13 @@ struct FactorEstimate {
   [[nodiscard]] double bytes() const { return 8.0 * entries; }
 };
 
-/// When a factorisation serves as preconditioner for later tangents instead of being redone.
+/// Limits on the reuse of a factorisation as preconditioner for later tangents.
 struct FactorReuse {
-  /// Of conjugate gradients per solve; 0 factorises every tangent. The actual limit is lower where
-  /// so many iterations would cost more than half a factorisation.
+  /// Largest number of conjugate-gradient iterations per solve; 0 factorises every tangent. The
+  /// actual limit is lower where so many iterations would cost more than half a factorisation.
   int max_iterations = 12;
-  double tolerance = 1e-12;  ///< relative residual of those solves, whatever would suffice
+  double tolerance = 1e-12;  ///< relative residual of these solves, even where the caller accepts
+                             ///< more
 };
 
 /// Direct solver: CHOLMOD's supernodal LL^T with 64-bit indices, analysed once per pattern.
@@ -37,8 +38,8 @@ struct FactorReuse {
 /// where that costs no more than `largest_inertia_flops`.
 class Cholesky : public LinearSolver {
  public:
-  /// @param largest_factor [bytes]; analyze ends as out_of_memory for a larger one, before any of
-  ///        it is taken
+  /// @param largest_factor [bytes]; analyze returns out_of_memory for a larger one, before it is
+  ///        allocated
   explicit Cholesky(FactorReuse reuse = {},
                     double largest_factor = std::numeric_limits<double>::infinity());
   ~Cholesky() override;
@@ -58,7 +59,7 @@ class Cholesky : public LinearSolver {
   /// Version of CHOLMOD.
   [[nodiscard]] static std::string library_version();
 
-  /// Above this the simplicial LDL^T, some twenty times slower than LL^T, is not tried.
+  /// The simplicial LDL^T, some twenty times slower than LL^T, is not tried above this cost.
   static constexpr double largest_inertia_flops = 2e10;
 
  private:

@@ -11,8 +11,8 @@
 namespace peristat {
 namespace {
 
-/// Which column each degree of freedom has; those of ghosts that the rows reach come last, and
-/// rows.ghosts tells their equations.
+/// Numbers the columns of the degrees of freedom. Ghosts that the rows reach come last, and
+/// rows.ghosts receives their equations in the whole matrix.
 std::vector<Index> number_columns(const BlockPattern& pattern, const FreeDofs& free,
                                   const Sharing& sharing, CompressedRows& rows) {
   const auto d = std::size_t(free.dimension), owned = std::size_t(sharing.owned());
@@ -43,7 +43,8 @@ CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free,
   const Index points = pattern.points();
   const int d = tangent.dimension;
 
-  // The bonds to lower partners, which the pattern keeps with those; ascending, as i ascends.
+  // Blocks with lower partners, which the pattern stores in the partners' rows; ascending, as i
+  // ascends.
   std::vector<Offset> lower_offset(std::size_t(points) + 1, 0);
   for (const Index j : pattern.partner) ++lower_offset[std::size_t(j) + 1];
   for (Index i = 0; i < points; ++i) lower_offset[i + 1] += lower_offset[i];

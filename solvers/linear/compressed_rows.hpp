@@ -9,21 +9,20 @@
 
 namespace peristat {
 
-/// K_ff, the rows and columns of the free degrees of freedom, both triangles.
-/// @param sharing of a part of a body, whose ghosts have no equations here, but columns; a call
-/// that
-///        all ranks then make
+/// Returns K_ff: rows and columns of the free degrees of freedom, both triangles. Collective if the
+/// body is partitioned.
+/// @param sharing partition of the body, whose ghosts have columns here but no equations
 [[nodiscard]] CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free,
                                              const Sharing* sharing = nullptr);
 
-/// Which point and component each equation is of.
+/// Returns the point and component of each equation.
 [[nodiscard]] EquationBlocks equation_blocks(const FreeDofs& free);
 
-/// Translations along the axes and rotations about them (2D: about z; 1D: none) at the free degrees
-/// of freedom, one after the other. Lengths are divided by the body's, so that all entries are of
-/// order one.
+/// Returns the translations along the axes and the rotations about them (2D: about z; 1D: none) at
+/// the free degrees of freedom, one after the other. Lengths are divided by the body's, so that all
+/// entries are of order one. Collective if the body is partitioned.
 /// @param positions points x dimension, row major [m]
-/// @param sharing of a part of a body; a call that all ranks then make
+/// @param sharing partition of the body; null: the body is not partitioned
 [[nodiscard]] NearNullSpace rigid_motions(std::span<const double> positions, const FreeDofs& free,
                                           const Sharing* sharing = nullptr);
 

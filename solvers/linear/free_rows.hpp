@@ -5,8 +5,8 @@
 
 namespace peristat {
 
-/// K_ff from the rows of K: one row and one column per equation.
-/// @param rows taken over: what leaves makes room in place
+/// Returns K_ff from the rows of K: one row and one column per equation.
+/// @param rows moved in and compacted in place
 [[nodiscard]] SparseRows free_rows(SparseRows rows, const FreeDofs& free);
 
 }  // namespace peristat

@@ -106,10 +106,11 @@ std::vector<std::int64_t> labels_over_ranks(const Sharing& sharing, int dimensio
   const auto [before, all] = ranks.count_all(std::int64_t(owned));
   const double first = double(before);
   constexpr double none = std::numeric_limits<double>::max();
-  // The least number of those that are joined here; ghosts then tell of lower ones elsewhere.
+  // Lowest number of the owned points that are joined here; ghosts then bring lower ones from other
+  // ranks.
   std::vector<double> least(joined.size(), none), of_points(joined.size(), none);
   for (std::size_t i = owned; i-- > 0;) least[std::size_t(joined[i])] = first + double(i);
-  const auto handles = std::size_t(sharing.count());  // after all points that are here
+  const auto handles = std::size_t(sharing.count());  // handles follow all points of this rank
   for (std::size_t i = handles; i < joined.size(); ++i) {
     least[std::size_t(joined[i])] = double(all) + double(i - handles);
   }

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double worn_out = 1.5;
 
-/// Round-off of b - K x, in units of epsilon times the largest diagonal entry of K times ||x||. A
-/// slender body's displacements are so large that no solver's residual goes below.
+/// Round-off of b - K x, in units of epsilon times the largest diagonal entry of K times ||x||. The
+/// displacements of a slender body are so large that no solver reduces the residual further.
 constexpr double round_off = 20.0 * std::numeric_limits<double>::epsilon();
 
 const char* words_for(KrylovMethod method) {
@@ -78,7 +78,7 @@ LinearOutcome IterativeSolver::look_at(const TangentOperator& tangent) {
   }
   const std::size_t d = std::size_t(tangent.dimension);
   for (const Index dof : free_->dof) {
-    // A point without stiffness; without symmetry others may hold it.
+    // The point has no stiffness. In an unsymmetric tangent other points may hold it.
     if (!tangent.as_unsymmetric() &&
         tangent.diagonal[std::size_t(dof) * d + std::size_t(dof) % d] == 0.0) {
       return LinearOutcome::singular;

@@ -17,7 +17,7 @@
 namespace peristat {
 namespace {
 
-/// Address space of MUMPS' libraries, and what they allocate at once.
+/// Address space of MUMPS' libraries and their first allocations.
 constexpr std::size_t room_for_mumps = std::size_t(64) << 20;
 
 const mumps::Module& mumps_module() {
@@ -48,7 +48,7 @@ LinearOutcome outcome_of(mumps::FactorOutcome outcome) {
 struct Ldlt::Implementation {
   std::unique_ptr<mumps::SymmetricFactor> factor;
   mumps::LowerEntries entries;
-  std::vector<std::size_t> begin;  // of the columns among the entries
+  std::vector<std::size_t> begin;  // start of each column in the entries
   std::vector<double> values;
   const FreeDofs* free = nullptr;
   const Tangent* tangent = nullptr;

@@ -6,9 +6,9 @@
 
 namespace peristat {
 
-/// Direct solver for tangents that need not be positive definite: L D L^T with pivoting, of MUMPS.
-/// The signs of its pivots are always known. Every tangent is factorised; it takes about as long as
-/// Cholesky's factor, and twice the memory.
+/// Direct solver for tangents that need not be positive definite: L D L^T with pivoting, by MUMPS.
+/// The signs of its pivots are always known. Every tangent is factorised, in about the time of
+/// Cholesky's factorisation and with twice the memory.
 class Ldlt : public LinearSolver {
  public:
   Ldlt();
@@ -25,7 +25,7 @@ class Ldlt : public LinearSolver {
   [[nodiscard]] int last_iterations() const override { return 0; }
   [[nodiscard]] std::string describe() const override;
 
-  /// Version of MUMPS, which this loads.
+  /// Version of MUMPS; loads its module.
   [[nodiscard]] static std::string library_version();
 
  private:

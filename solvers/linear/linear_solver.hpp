@@ -10,7 +10,7 @@
 
 namespace peristat {
 
-/// What became of a factorisation or a solve.
+/// Outcome of a factorisation or a solve.
 enum class LinearOutcome {
   solved,
   not_positive_definite,  ///< negative pivots or negative curvature: see inertia()
@@ -26,24 +26,24 @@ struct Inertia {
   Index positive = 0, negative = 0, zero = 0;
 };
 
-/// Sums over the life of a solver, for the summary.
+/// Sums over the lifetime of a solver, for the summary.
 struct LinearStatistics {
   std::int64_t factorisations = 0;
-  std::int64_t iterations = 0;  ///< of conjugate gradients
+  std::int64_t iterations = 0;  ///< of Krylov methods
   double seconds = 0.0;         ///< wall time in all calls [s]
 };
 
-/// Whether an earlier factorisation may stand in as preconditioner for that of a new tangent.
+/// May an earlier factorisation serve as preconditioner for a new tangent?
 enum class FactorUse { factorize_now, may_reuse };
 
-/// Solves K_ff x = b on the free degrees of freedom. Implementations keep what the pattern
-/// determines between tangents.
+/// Solves K_ff x = b on the free degrees of freedom. Between tangents, implementations keep what
+/// depends on the pattern alone.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
 
-  /// Once per pattern, before anything else. The pattern and the degrees of freedom outlive the
-  /// solver.
+  /// Prepares for a pattern; called once per pattern, before anything else. The pattern and the
+  /// degrees of freedom outlive the solver.
   /// @return solved, or out_of_memory
   [[nodiscard]] virtual LinearOutcome analyze(const BlockPattern& pattern,
                                               const FreeDofs& free) = 0;
@@ -51,13 +51,14 @@ class LinearSolver {
   /// Takes a new tangent, which must live until the last solve with it.
   [[nodiscard]] virtual LinearOutcome factorize(const TangentOperator& tangent, FactorUse use) = 0;
 
-  /// Whether a tangent that is not positive definite has its pivots' signs counted, where that is
-  /// affordable: it costs far more than finding out. Otherwise such a tangent may be singular, too.
+  /// Sets whether to count the signs of the pivots of a tangent that is not positive definite,
+  /// where that is affordable: it costs far more than the detection. Without counting, a tangent
+  /// reported as not positive definite may be singular.
   virtual void count_pivots(bool counts) = 0;
 
   /// x and b have one entry per equation.
   /// @param tolerance of the relative residual ||b - K_ff x|| / ||b||; direct solvers reach what
-  ///        they can and only fail where that is gross
+  ///        they can and fail only if the residual is gross
   [[nodiscard]] virtual LinearOutcome solve(std::span<const double> b, std::span<double> x,
                                             double tolerance) = 0;
 
@@ -69,12 +70,12 @@ class LinearSolver {
   /// Iterations of the last solve; 0 for a direct solve.
   [[nodiscard]] virtual int last_iterations() const = 0;
 
-  /// Of a ladder of solvers, how many were given up; 0 for a solver by itself.
+  /// Number of solvers that a ladder has given up; 0 for a solver by itself.
   [[nodiscard]] virtual int rung() const { return 0; }
-  /// Where a ladder begins; before `analyze`.
+  /// Sets the rung on which a ladder begins; called before `analyze`.
   virtual void start_at(int /*rung*/) {}
 
-  /// A line for the log: what it is and what it costs.
+  /// Returns a line for the log: the solver and its cost.
   [[nodiscard]] virtual std::string describe() const = 0;
 };
 

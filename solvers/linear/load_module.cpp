@@ -15,8 +15,9 @@
 namespace peristat {
 namespace {
 
-/// The loader tells why in words alone: "cannot open shared object file: Error 24", "failed to map
-/// segment from shared object", "cannot allocate memory in static TLS block", ...
+/// Throws the exception that fits the loader's reason. The loader gives it as text alone: "cannot
+/// open shared object file: Error 24", "failed to map segment from shared object", "cannot allocate
+/// memory in static TLS block", ...
 [[noreturn]] void throw_why_not(const char* library, const std::string& reason) {
   const std::string message = std::string(library) + " can't be loaded: " + reason;
   for (const int cause : {EMFILE, ENFILE}) {
@@ -36,8 +37,8 @@ bool is_missing(const std::string& file, const std::string& reason) {
   return reason.starts_with(file + ": ") && reason.ends_with(std::strerror(ENOENT));
 }
 
-/// Lets the launcher that started the program build a module that it has not built so far.
-/// @return whether a launcher started the program
+/// Has the launcher that started the program build a module that is missing.
+/// @return true if a launcher started the program
 /// @throws MachineError if the build fails or is interrupted
 bool build_by_launcher(const char* library, const std::string& file) {
   if (std::getenv("PERISTAT_LAUNCHER") == nullptr) return false;

@@ -8,10 +8,10 @@
 namespace peristat {
 namespace {
 
-/// Address space of Trilinos, 180 MB as measured, and what its solvers allocate.
+/// Address space of Trilinos, 180 MB as measured, and of what its solvers allocate.
 constexpr std::size_t room_for_trilinos = std::size_t(256) << 20;
 
-/// Loads the module at the first call. It stays: Kokkos is stopped when the process ends.
+/// Loads the module on the first call. It stays loaded: Kokkos is stopped when the process ends.
 const trilinos::Module& trilinos_module() {
   static const trilinos::Module* const loaded = [] {
     void* const symbol =

@@ -11,13 +11,13 @@
 namespace peristat {
 namespace {
 
-/// Frobenius norm of the skew part over that of the whole up to which the symmetric part stands in.
+/// Frobenius norm of the skew part over that of the whole, up to which the symmetric part is used.
 constexpr double nearly_symmetric = 0.03;
 
-/// Of a solve by factors, which need not be refined.
+/// Tolerance of a solve by factors, which need not be refined.
 constexpr double rough = 1e-3;
 
-/// Blocks (i, j), i < j, of rows over whole points, whose pattern is symmetric.
+/// Pattern of the blocks (i, j), i < j, of rows over whole points with a symmetric pattern.
 BlockPattern upper_blocks(const SparseRows& rows, int d) {
   std::vector<Offset> offset{0};
   std::vector<Index> partner;
@@ -31,7 +31,7 @@ BlockPattern upper_blocks(const SparseRows& rows, int d) {
   return BlockPattern::of_rows(std::move(offset), std::move(partner));
 }
 
-/// Adds half of the rows and of their transpose.
+/// Writes the symmetric part of the rows to the tangent.
 /// @return squared Frobenius norm of twice the skew part over that of the rows
 double fill_symmetric_part(const SparseRows& rows, Tangent& tangent) {
   const auto d = Index(tangent.dimension);
@@ -123,7 +123,7 @@ LinearOutcome LocalOperator::build(const TangentOperator& tangent) {
 
 void LocalOperator::apply(std::span<const double> residual, std::span<double> correction) {
   if (cholesky_) {
-    // What a solve lacks in digits, iterations make up for.
+    // Iterations make up for the digits that a rough solve lacks.
     static_cast<void>(cholesky_->solve(residual, correction, rough));
     return;
   }

@@ -10,28 +10,28 @@
 
 namespace peristat {
 
-/// M = the short-range stand-in of an unsymmetric tangent (UnsymmetricTangent::local_rows). Its
-/// long waves have the stiffness of K, so that the number of iterations hardly depends on the size
-/// of the body.
+/// M = a short-range approximation of an unsymmetric tangent (UnsymmetricTangent::local_rows). It
+/// has the stiffness of K for long waves, so that the number of iterations hardly depends on the
+/// size of the body.
 ///
-/// Where the stand-in is nearly symmetric its symmetric part is factorised as L L^T, on all threads
-/// and with half of the entries; elsewhere, and where that is not positive definite, the stand-in
-/// itself as L U. For GMRES and BiCGStab.
+/// If the approximation is nearly symmetric, its symmetric part is factorised as L L^T, on all
+/// threads and with half of the entries. Otherwise, and if that part is not positive definite, the
+/// approximation itself is factorised as L U. For GMRES and BiCGStab.
 class LocalOperator : public Preconditioner {
  public:
-  /// @param most_bytes matrix and factors may take
+  /// @param most_bytes limit for matrix and factors
   explicit LocalOperator(double most_bytes = std::numeric_limits<double>::infinity())
       : most_bytes_(most_bytes), factor_(most_bytes) {}
 
   void analyze(const BlockPattern& pattern, const FreeDofs& free) override;
-  /// @return inaccurate where the stand-in is singular: K itself need not be
+  /// @return inaccurate if the approximation is singular: K itself need not be
   /// @throws std::logic_error for a symmetric tangent
   [[nodiscard]] LinearOutcome build(const TangentOperator& tangent) override;
   void apply(std::span<const double> residual, std::span<double> correction) override;
   [[nodiscard]] std::string describe() const override { return "local operator"; }
 
   [[nodiscard]] const LuFactor& factor() const { return factor_; }
-  /// Whether the symmetric part stands in.
+  /// True if the symmetric part is factorised.
   [[nodiscard]] bool is_symmetric() const { return cholesky_ != nullptr; }
 
  private:

@@ -19,8 +19,8 @@ struct EntryPlace {
   }
 };
 
-/// visit(row, place) for each stored entry of one column of the lower triangle of K_ff in ascending
-/// rows, the diagonal first.
+/// Calls visit(row, place) for each stored entry of one column of the lower triangle of K_ff in
+/// ascending rows, the diagonal first.
 template <class Visit>
 void for_each_entry_of_column(const BlockPattern& pattern, const FreeDofs& free, Index equation,
                               const Visit& visit) {

@@ -18,20 +18,20 @@ namespace {
 static_assert(std::is_same_v<Offset, SuiteSparse_long>);
 using Long = SuiteSparse_long;
 
-/// Rows from which METIS gains in the factor over AMD, a fifth of the flops and more.
+/// Rows from which METIS has a smaller factor than AMD, by a fifth of the flops and more.
 constexpr Index smallest_for_metis = 5'000;
 
-/// A condition number of which no digit of a solution is left.
+/// Condition number that leaves no digit of a solution.
 constexpr double singular_condition = 1.0 / std::numeric_limits<double>::epsilon();
 
-/// Memory of UMFPACK: working arrays over the factor, and bytes per entry of the matrix, as
-/// measured within a factor of 1.5 (1.2 to 1.6 times the factor in 2D and 3D).
+/// Memory of UMFPACK, measured within a factor of 1.5: factor and working arrays over the factor
+/// (1.2 to 1.6 in 2D and 3D), and bytes per entry of the matrix.
 constexpr double working_memory = 1.5, bytes_per_matrix_entry = 10.0;
 
-/// Matrix entries that are kept here, to tell whether the next matrix is the same.
+/// Bytes per matrix entry of the copy that is kept here to recognise an unchanged matrix.
 constexpr double bytes_of_copy = sizeof(Long) + sizeof(double);
 
-/// One thread for OpenBLAS, which asks OpenMP.
+/// Restricts OpenBLAS, which follows OpenMP, to one thread.
 class OneThread {
  public:
   OneThread() : before_(omp_get_max_threads()) { omp_set_num_threads(1); }
@@ -59,7 +59,7 @@ LinearOutcome outcome_of(Long status) {
 
 struct LuFactor::Umfpack {
   double most_bytes;
-  // UMFPACK takes columns: these are rows, of which it factorises the transpose.
+  // UMFPACK takes columns: given these rows, it factorises the transpose.
   std::vector<Long> begin, column;
   std::vector<double> value;
   void *symbolic = nullptr, *numeric = nullptr;
@@ -71,8 +71,8 @@ struct LuFactor::Umfpack {
   explicit Umfpack(double bytes) : most_bytes(bytes) {
     umfpack_dl_defaults(control.data());
     control[UMFPACK_PRL] = 0;
-    // What interacts does so both ways, so that the pattern is symmetric but for cracks. Left to
-    // itself UMFPACK would need the values to see it, and its order would depend on them.
+    // Interactions couple both ways, so that the pattern is symmetric except at cracks. By default
+    // UMFPACK would need the values to detect this, and its order would depend on them.
     control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
     control[UMFPACK_IRSTEP] = 0;
   }
@@ -109,8 +109,8 @@ struct LuFactor::Umfpack {
     const Long status = umfpack_dl_symbolic(size(), size(), begin.data(), column.data(), nullptr,
                                             &symbolic, control.data(), info.data());
     if (status != UMFPACK_OK) return outcome_of(status);
-    // Where rows and columns of a single entry leave no square rest, UMFPACK falls back on an order
-    // for unsymmetric patterns, and knows bounds alone.
+    // If rows and columns of a single entry leave no square rest, UMFPACK falls back on an order
+    // for unsymmetric patterns, and gives only bounds.
     const bool is_symmetric = info[UMFPACK_SYMMETRIC_LUNZ] > 0.0;
     entries = is_symmetric ? info[UMFPACK_SYMMETRIC_LUNZ]
                            : info[UMFPACK_LNZ_ESTIMATE] + info[UMFPACK_UNZ_ESTIMATE];
@@ -121,7 +121,8 @@ struct LuFactor::Umfpack {
   }
 
   void apply_inverse(const std::vector<double>& b, double* x) const {
-    // Of the transpose's transpose. Without refinement the matrix is not looked at.
+    // Solves with the transpose of the factorised transpose. Without refinement the matrix is not
+    // read.
     umfpack_dl_solve(UMFPACK_Aat, nullptr, nullptr, nullptr, x, b.data(), numeric, control.data(),
                      nullptr);
   }
@@ -136,8 +137,9 @@ struct LuFactor::Umfpack {
     return sums;
   }
 
-  /// From below, of the matrix A with its rows scaled to sums of one, so that units and materials
-  /// don't matter: growth under A^-1 D, D the row sums, of a vector that has been through it once.
+  /// Lower bound of the condition number of the matrix A with its rows scaled to sums of one, so
+  /// that units and materials don't matter: growth under A^-1 D, D the row sums, of a vector to
+  /// which it has been applied once.
   [[nodiscard]] double condition() const {
     const auto largest = [](const std::vector<double>& v) {
       double most = 0.0;
@@ -196,7 +198,7 @@ LinearOutcome LuFactor::factorize(SparseRows matrix) {
     if (outcome != LinearOutcome::solved) return outcome;
   }
   own.value = std::move(matrix.value);
-  matrix = {};  // gives its memory back before the factor is made
+  matrix = {};  // frees its memory before the factor is made
   return own.find_numbers();
 }
 

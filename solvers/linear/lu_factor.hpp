@@ -10,45 +10,45 @@
 
 namespace peristat {
 
-/// Factors L U of a sparse matrix that need not be symmetric, by UMFPACK with 64-bit indices and
-/// threshold pivoting. A fill-reducing order is found once per pattern, and a matrix that comes
-/// again, to the last bit, is not factorised again.
+/// L U factors of a sparse matrix that need not be symmetric, by UMFPACK with 64-bit indices and
+/// threshold pivoting. A fill-reducing order is found once per pattern. A matrix that equals the
+/// last one to the last bit is not factorised again.
 ///
-/// Works on one thread: its products are so small that two threads wait for each other more than
-/// they win (on busy cores up to thirty times as long), and so its bits do not depend on their
-/// number.
+/// Works on one thread: its products are so small that two threads lose more by waiting for each
+/// other than they gain (on busy cores up to thirty times as long). The result therefore does not
+/// depend on the number of threads.
 class LuFactor {
  public:
-  /// @param most_bytes matrix and factor may take; factorize ends as out_of_memory where they are
-  ///        expected to need more, before they take it
+  /// @param most_bytes limit for matrix and factor; factorize returns out_of_memory if they are
+  ///        expected to need more, before they are allocated
   explicit LuFactor(double most_bytes = std::numeric_limits<double>::infinity());
   ~LuFactor();
 
-  /// Drops the numbers and the order.
+  /// Frees the factors and the order.
   void reset();
 
-  /// @return solved; singular where the condition number leaves no digit, and for values that are
-  ///         not finite; out_of_memory. Pivots would not tell: without symmetry the last one of a
+  /// @return solved; singular if the condition number leaves no digit, and for values that are not
+  ///         finite; out_of_memory. Pivots are no criterion: without symmetry the last pivot of a
   ///         singular matrix may be 1e-6 of the largest.
   [[nodiscard]] LinearOutcome factorize(SparseRows matrix);
-  /// Whether there are factors of the last matrix.
+  /// True if there are factors of the last matrix.
   [[nodiscard]] bool is_ready() const;
 
-  /// v = A^-1 v, after a factorisation that went well. There is no refinement: residuals are for
-  /// the operator itself to tell.
+  /// v = A^-1 v, after a successful factorisation. There is no refinement: the caller computes
+  /// residuals with the operator itself.
   void solve(std::span<double> v) const;
 
-  /// Of the last matrix: sum_j |a_ij|.
+  /// Largest sum_j |a_ij| of the last matrix.
   [[nodiscard]] double largest_row_sum() const;
 
-  /// Counts over the life: orders that were found, and factorisations.
+  /// Numbers of orders and factorisations computed so far.
   [[nodiscard]] int orders() const;
   [[nodiscard]] int factorisations() const;
 
   /// Entries of L and U together, and flops of a factorisation; 0 before the first.
   [[nodiscard]] double entries() const;
   [[nodiscard]] double flops() const;
-  /// "order AMD, 1.2e+06 entries (10 MB), 4e+08 flops"
+  /// "AMD order, factor 1.2e+06 entries (10 MB), 4e+08 flops"
   [[nodiscard]] std::string describe() const;
 
   /// Version of UMFPACK.

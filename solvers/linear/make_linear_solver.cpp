@@ -20,37 +20,37 @@
 namespace peristat {
 namespace {
 
-/// Products that a load step takes by conjugate gradients with rigid pieces: some four solves of
-/// 15 iterations, and builds of the preconditioner, each worth 30.
+/// Products with the tangent in a load step by conjugate gradients with rigid pieces: some four
+/// solves of 15 iterations, and builds of the preconditioner, each worth 30.
 constexpr double products_of_a_step = 120.0;
 
-/// With sines some four solves of 12 iterations, and builds worth 2.
+/// The same with sines: some four solves of 12 iterations, and builds worth 2 products each.
 constexpr double iterations_of_a_step_with_sines = 48.0, products_of_builds_of_sines = 4.0;
 
-/// Iterations after which sines were the wrong choice.
+/// Iterations after which sines give way to the next solver.
 constexpr int patience_with_sines = 100;
 
-/// Factorisations up to this are done whatever the alternative [flop], and up to the second for the
-/// sake of pivots.
+/// Factorisations up to the first limit [flop] are done whatever the alternative; up to the second
+/// if pivots are needed or many systems share a tangent.
 constexpr double small_factorisation = 1e8, affordable_factorisation = 2e10;
 
-/// Iterations in one solve that no choice of the user's own should exceed.
+/// Iterations in one solve where no other solver takes over.
 constexpr int most_iterations = 20'000;
 
-/// Products for a solve by GMRES with the local operator, and by BiCGStab where masses dominate;
-/// and solves of a load step, which need one factorisation where the tangent stays the same.
+/// Products per solve by GMRES with the local operator, and by BiCGStab where masses dominate; and
+/// solves per load step, which share one factorisation if the tangent stays the same.
 constexpr double products_of_gmres = 70.0, products_with_inertia = 10.0, solves_of_a_step = 3.0;
 
-/// Of these, most that GMRES keeps vectors of, least, and the share of the memory for them.
+/// Most and fewest vectors that GMRES keeps, and the fraction of the available memory for them.
 constexpr double most_vectors = 200.0, least_vectors = 30.0, share_of_vectors = 0.25;
 
-/// Iterations after which GMRES with the local operator is given up, where there is another way.
+/// Iterations after which GMRES with the local operator gives way to the next solver.
 constexpr int patience_of_gmres = 600;
 
 /// Iterations in one solve of a ladder on several ranks, where no factorisation takes over.
 constexpr int patience_on_ranks = 2000;
 
-/// Iterations for a system of masses with a little stiffness: two to five are the rule.
+/// Iterations for a system of masses with a little stiffness: two to five are typical.
 constexpr int patience_with_inertia = 100;
 
 using SharedBox = std::shared_ptr<const LatticeBox>;
@@ -102,7 +102,7 @@ KrylovMethod krylov_method(LinearMethod method) {
   return method == LinearMethod::gmres ? KrylovMethod::gmres : KrylovMethod::conjugate_gradients;
 }
 
-/// Estimated seconds of a load step.
+/// Estimated seconds of a factorisation, of a product, and of a load step by iterations.
 struct Seconds {
   double direct, product, iterative;
   explicit Seconds(const LinearProblem& problem)
@@ -120,7 +120,7 @@ struct Seconds {
 
 ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
   const auto [direct, product, iterative] = Seconds(problem);
-  // A solve by iterations may take three times what factorising is estimated at.
+  // The iterations of a solve may take three times the estimated time of a factorisation.
   const int patience =
       static_cast<int>(std::clamp(3.0 * direct / std::max(product, 1e-9), 200.0, 2000.0));
   const SolverLadder::Rung cholesky{"cholesky", [available = problem.available_bytes] {
@@ -186,7 +186,7 @@ ChosenSolver choose_on_ranks(const LinearProblem& problem, SolverLadder::Reporte
           Seconds(problem).iterative, "auto: factorisations and sines are for one rank"};
 }
 
-/// Vectors that GMRES keeps before it begins anew.
+/// Number of vectors that GMRES keeps before it restarts.
 int restart_for(const LinearProblem& problem) {
   const double vector = 8.0 * std::max(problem.unknowns, 1.0);
   double room = share_of_vectors * problem.available_bytes / vector;
@@ -208,8 +208,8 @@ std::unique_ptr<LinearSolver> make_unsymmetric(LinearMethod method, Precondition
                                            ranks_of(problem.sharing));
 }
 
-/// Estimated seconds of a load step with an unsymmetric tangent, which passes over its bonds twice
-/// in a product.
+/// Estimated seconds of a load step with an unsymmetric tangent, whose product visits every bond
+/// twice.
 struct UnsymmetricSeconds {
   double direct, iterative;
   explicit UnsymmetricSeconds(const LinearProblem& problem)

@@ -14,12 +14,12 @@ namespace peristat {
 enum class LinearMethod {
   automatic,
   cholesky,
-  ldlt,  ///< bears negative pivots
+  ldlt,  ///< accepts negative pivots
   conjugate_gradients,
   minres,
   gmres,
-  lu,       ///< of unsymmetric tangents
-  bicgstab  ///< of unsymmetric tangents
+  lu,       ///< for unsymmetric tangents
+  bicgstab  ///< for unsymmetric tangents
 };
 
 enum class TangentStorage { automatic, stored, matrix_free };
@@ -34,7 +34,7 @@ enum class PreconditionerKind {
   riluk,
   chebyshev,
   multigrid,
-  local_operator  ///< of unsymmetric tangents
+  local_operator  ///< for unsymmetric tangents
 };
 
 struct LinearSolverOptions {
@@ -42,28 +42,29 @@ struct LinearSolverOptions {
   PreconditionerKind preconditioner = PreconditionerKind::automatic;
 };
 
-/// Why a tangent that is symmetric, or is not, can't be solved with this method or preconditioner;
-/// empty if it can.
+/// Returns why this method or preconditioner can't be used with a tangent that is symmetric, or is
+/// not; empty if it can.
 [[nodiscard]] std::string what_is_against(LinearMethod method, bool is_symmetric);
 [[nodiscard]] std::string what_is_against(PreconditionerKind preconditioner, bool is_symmetric);
 
-/// Whether a solver with these options can do without a stored tangent.
+/// True if a solver with these options can do without a stored tangent.
 [[nodiscard]] bool can_be_matrix_free(const LinearSolverOptions& options);
 
-/// What the choice of a solver goes by.
+/// Data that the choice of a solver depends on.
 struct LinearProblem {
-  bool is_symmetric = true;   ///< the tangent; otherwise it is an UnsymmetricTangent
-  double unknowns = 0.0;      ///< of unsymmetric tangents: the length of the vectors of GMRES
-  double bonds = 0.0;         ///< blocks of the tangent, or what is passed over in a product
+  bool is_symmetric = true;   ///< of the tangent; otherwise it is an UnsymmetricTangent
+  double unknowns = 0.0;      ///< for unsymmetric tangents: the length of the vectors of GMRES
+  double bonds = 0.0;         ///< blocks of the tangent, or bonds visited by a matrix-free product
   double factor_flops = 0.0;  ///< of one factorisation, as estimated from dimension, size and shape
   double factor_bytes = 0.0;  ///< of the direct solver
   double available_bytes = std::numeric_limits<double>::infinity();
-  bool is_stored = true;      ///< the tangent: direct solvers and Trilinos' preconditioners need it
+  bool is_stored = true;      ///< tangent is stored: direct solvers and Trilinos' preconditioners
+                              ///< need it
   bool may_soften = false;    ///< damage grows in implicit steps: stability is in question
   bool solves_often = false;  ///< many systems have the same tangent
   bool has_inertia = false;   ///< masses are part of the tangent, as in implicit time steps
-  const Sharing* sharing = nullptr;  ///< of a part of a body, which outlives the solver
-  /// Where the points stand, which sines need; nothing: they can't be taken.
+  const Sharing* sharing = nullptr;  ///< of a partitioned body, which outlives the solver
+  /// Lattice sites of the points, which `sines` needs; null: `sines` can't be used.
   std::shared_ptr<const LatticeBox> box{};
 };
 
@@ -75,17 +76,18 @@ struct ChosenSolver {
   std::string reason;
 };
 
-/// Solver of a body's linear systems. `automatic` takes the direct solver where a factorisation is
-/// a matter of a tenth of a second, where pivots are to tell whether a softening body is stable and
-/// a factorisation takes less than a second, and where it is estimated to be faster; otherwise
-/// conjugate gradients with rigid pieces. Both give way to others when they fail (SolverLadder).
+/// Makes the solver of a body's linear systems. `automatic` takes the direct solver if a
+/// factorisation is small (1e8 flop), if it takes less than a second and either pivots are needed
+/// to judge the stability of a softening body or many systems share a tangent, or if it is
+/// estimated to be faster. Otherwise it takes conjugate gradients, with sines if there is a box and
+/// with rigid pieces if not. A solver that fails gives way to others (SolverLadder).
 ///
-/// Of a part of a body, what iterates: no rank has the whole of a tangent to factorise, nor of the
-/// box of a lattice. All ranks make the same call and choose alike.
+/// For a partitioned body the solver is iterative: no rank has the whole tangent to factorise, nor
+/// the whole box of a lattice. Collective; all ranks choose alike.
 ///
-/// Of an unsymmetric tangent: BiCGStab with block Jacobi where masses dominate; L U where its
-/// factor fits and is estimated to be faster; otherwise GMRES with the local operator.
-/// @param tell of a ladder's falls; may be empty
+/// For an unsymmetric tangent: BiCGStab with block Jacobi if masses dominate; L U if its factor
+/// fits and is small or estimated to be faster; otherwise GMRES with the local operator.
+/// @param tell receives each fall of a ladder to the next solver; may be empty
 [[nodiscard]] ChosenSolver make_linear_solver(const LinearSolverOptions& options,
                                               const LinearProblem& problem,
                                               SolverLadder::Reporter tell);

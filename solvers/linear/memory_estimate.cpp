@@ -10,9 +10,9 @@
 namespace peristat {
 namespace {
 
-/// Program, libraries and files; CHOLMOD and BLAS, whose pages are read where a linear system is
-/// solved; Trilinos, which is loaded where it is used; what its multigrid, of more libraries, takes
-/// beside that [bytes].
+/// Memory [bytes] of: program, libraries and files; CHOLMOD and BLAS, whose pages are read once a
+/// linear system is solved; Trilinos, which is loaded on first use; further libraries of its
+/// multigrid.
 constexpr double base_bytes = 26e6, linear_algebra_bytes = 6e6, trilinos_bytes = 44e6,
                  multigrid_bytes = 11e6;
 
@@ -20,29 +20,29 @@ constexpr double base_bytes = 26e6, linear_algebra_bytes = 6e6, trilinos_bytes =
 /// cases/cantilever, 1.56 GB for the plate with a hole at 120 000 points.
 constexpr double factor_overhead = 1.2;
 
-/// MUMPS' libraries; its copies of the matrix and its pattern beside our own; and its factor with
-/// its workspace over Cholesky's, as measured: its order is worse where the natural one is best, in
-/// slender bodies of 3D.
+/// MUMPS, as measured: memory of its libraries; bytes per entry of its copies of the matrix and of
+/// our pattern; and its factor with its workspace over Cholesky's, by dimension. Its order is worse
+/// where the natural one is best, in slender bodies of 3D.
 constexpr double ldlt_library_bytes = 8e6, ldlt_bytes_per_entry = 32.0;
 constexpr std::array<double, 3> ldlt_overhead{1.2, 1.2, 2.0};
 
-/// Of a run without its tangent and linear solver: the bonds, and vectors of the search for
-/// equilibrium. Everything is stored once, in doubles unless told otherwise.
+/// Memory of a run without its tangent and linear solver: the bonds, and vectors of the search for
+/// equilibrium. Everything is stored once, in doubles unless noted.
 double body_bytes(const BodySize& size) {
   const double d = size.dimension;
-  // Reference, last and present displacement, present and last gradient, loads, what does work,
-  // right-hand side, solution, and equations as pairs of integers.
+  // Reference position, last and present displacement, present and last gradient, loads, working
+  // force, right-hand side, solution, and equations as pairs of integers.
   const double vectors = 11.5 * d;
-  // Rows gathered and sums of the workspace: see row_width and block_width. Without them a
-  // checkpoint is seen: four vectors as they are and as bytes.
+  // Workspace: gathered rows and sums, see row_width and block_width. With convolutions there are
+  // none, and a checkpoint determines the peak: four vectors as they are and as bytes.
   const double gathered = size.dimension == 3 ? 8.0 + 6.0 : 4.0 + 4.0;
   const double workspace = size.is_convolved ? 8.0 * d : gathered;
   const double scalars = 4.0;
-  // Largest stretches, a copy of them for the way back, and flags.
+  // Largest stretches, a copy of them for a step back, and flags.
   const double per_bond =
       size.bytes_per_bond + (size.has_history && !size.is_convolved ? 19.0 : 0.0);
   const double run = per_bond * size.bonds + 8.0 * size.points * (vectors + workspace + scalars);
-  // The neighbour search gathers the bonds of its parts.
+  // The neighbour search holds the bonds of its parts and the gathered ones.
   const double search =
       2.0 * size.bytes_per_bond * size.bonds + 8.0 * size.points * (2.0 * d + 5.0);
   return base_bytes + std::max(run, search);
@@ -56,12 +56,12 @@ double krylov_bytes(const BodySize& size, bool is_gmres) {
   return 8.0 * size.points * (vectors * d + d + 0.5 * d * (d + 1.0));
 }
 
-/// The coarse level of rigid pieces.
+/// Coarse level of rigid pieces.
 double coarse_bytes(const BodySize& size, double points) {
   const double d = size.dimension;
   const double motions = 0.5 * d * (d + 1.0);
-  // Boxes of 5/3 horizons; in 3D larger ones where their factor would take 100 bytes per point, on
-  // many ranks per point of sixteen ranks.
+  // Boxes are 5/3 horizons wide; in 3D they are larger where their factor would take more than 100
+  // bytes per point, on more than sixteen ranks per point of sixteen ranks.
   const double ratio = size.coupling_ratio > 0.0 ? size.coupling_ratio : size.horizon_ratio;
   const double most = 100.0 * std::min(1.0, 16.0 / double(size.ranks)) * points;
   double pieces = points / std::pow(5.0 / 3.0 * ratio, d);
@@ -70,20 +70,21 @@ double coarse_bytes(const BodySize& size, double points) {
   const double factor = size.dimension == 3
                             ? std::min(8.0 * 36.0 * 8.0 * std::pow(pieces, 4.0 / 3.0), most)
                             : 8.0 * 3.2 * coarse * std::log2(std::max(coarse, 2.0));
-  // Blocks with the neighbours of a piece, 26 in 3D, half of them stored: with their keys, and as
-  // entries of which CHOLMOD makes two copies. Then there are no Krylov vectors yet.
+  // Blocks of a piece with its neighbours, 26 in 3D, half of them stored: with their keys, and as
+  // entries of which CHOLMOD makes two copies. At that time there are no Krylov vectors yet.
   const double gathered = 72.0 * motions * motions * pieces * 0.5 * (std::pow(3.0, d) + 1.0);
   return factor_overhead * factor + std::max(0.0, gathered - 8.0 * 6.0 * d * size.points);
 }
 
-/// What rigid pieces add to that.
+/// Memory of rigid pieces beside krylov_bytes.
 double rigid_pieces_bytes(const BodySize& size) {
   const double gathered = size.gathered_points < 0.0 ? size.points : size.gathered_points;
   return size.points * (4.0 * size.dimension + 16.0) +
          (gathered > 0.0 ? coarse_bytes(size, gathered) : 0.0);
 }
 
-/// What the surrogate adds: its springs, as a tangent and as a matrix, and their factor.
+/// Memory of the surrogate beside krylov_bytes: springs as a tangent and as a matrix, and their
+/// factor.
 double surrogate_bytes(const BodySize& size) {
   const double d = size.dimension, points = std::max(size.points, 2.0);
   const std::array<double, 3> springs{1.0, 4.0, 9.0};
@@ -91,22 +92,23 @@ double surrogate_bytes(const BodySize& size) {
   double factor = 2.0 * blocks;  // of blocks
   if (size.dimension == 2) factor = 3.2 * points * std::log2(points);
   if (size.dimension == 3) {
-    // Nested dissection of the cubes that a slender body is as long as.
+    // Nested dissection of a slender body as a row of cubes.
     const double cubes = std::max(1.0, size.longest / std::sqrt(points / size.longest));
     factor = 8.0 * std::pow(points, 4.0 / 3.0) / std::sqrt(cubes);
   }
   return 8.0 * d * d * (3.0 * blocks + factor);
 }
 
-/// Bytes per entry of the whole matrix that a preconditioner of Trilinos takes, as measured: two
-/// copies of the compressed rows, and in RILUK the factors, in multigrid the coarser levels.
+/// Bytes per entry of the assembled matrix of a Trilinos preconditioner, as measured: two copies of
+/// the compressed rows, and the factors of RILUK or the coarser levels of multigrid.
 double trilinos_bytes_per_entry(PreconditionerKind kind) {
   return kind == PreconditionerKind::chebyshev ? 24.0
          : kind == PreconditionerKind::riluk   ? 36.0
                                                : 33.0;
 }
 
-/// On several ranks: the springs as a tangent, and as a matrix with multigrid's coarser levels.
+/// The same on several ranks: springs as a tangent, and as a matrix with the coarser levels of
+/// multigrid.
 double distributed_surrogate_bytes(const BodySize& size) {
   const double d = size.dimension;
   const std::array<double, 3> springs{1.0, 4.0, 9.0};
@@ -116,14 +118,14 @@ double distributed_surrogate_bytes(const BodySize& size) {
           trilinos_bytes_per_entry(PreconditionerKind::multigrid) * (2.0 * blocks + 1.0));
 }
 
-/// Of an unsymmetric tangent's rows that are factorised: as they are told, and as UMFPACK takes
-/// them with its own workspace.
+/// Bytes per entry of an unsymmetric tangent's rows for a factorisation: as rows() returns them,
+/// and as UMFPACK stores them with its own workspace.
 constexpr double lu_bytes_per_entry = 12.0 + 26.0;
 
 /// UMFPACK's workspace over the factor.
 constexpr double lu_overhead = 1.5;
 
-/// Neighbours in the short-range stand-in of an unsymmetric tangent, with the point itself.
+/// Neighbours in the short-range approximation of an unsymmetric tangent, with the point itself.
 constexpr std::array<double, 3> local_neighbours{3.0, 9.0, 27.0};
 
 double lu_bytes(const BodySize& size, double entries_per_row) {
@@ -136,16 +138,16 @@ double local_operator_bytes(const BodySize& size) {
   return lu_bytes(size, local_neighbours[std::size_t(size.dimension) - 1] * size.dimension);
 }
 
-/// GMRES without rigid pieces may need this many vectors.
+/// Number of vectors of GMRES for an unsymmetric tangent.
 constexpr double vectors_of_unsymmetric_gmres = 70.0;
 
-/// What sines add: the place of each point, and per place of the box a value and the symbols of the
-/// components in single precision.
+/// Memory of sines: the site of each point, and per lattice site of the box a value and the symbols
+/// of the components in single precision.
 double sines_bytes(const BodySize& size) {
   return 4.0 * size.points + (8.0 + 4.0 * size.dimension) * size.places;
 }
 
-/// Of an iterative solver with its preconditioner.
+/// Memory of an iterative solver for an unsymmetric tangent, with its preconditioner.
 double unsymmetric_bytes(const BodySize& size, const LinearSolverOptions& options) {
   const double d = size.dimension;
   const bool keeps_vectors = options.method != LinearMethod::bicgstab;
@@ -173,14 +175,14 @@ double bonds_per_point(int dimension, double horizon_ratio) {
 
 LuEstimate estimate_lu(int dimension, double unknowns, double entries_per_row) {
   const double n = std::max(unknowns, 2.0), e = std::min(entries_per_row, n);
-  LuEstimate estimate{n * e, 0.5 * n * e * e};  // of a band
+  LuEstimate estimate{n * e, 0.5 * n * e * e};  // banded matrix
   if (dimension == 2) {
     estimate = {0.6 * e * n * std::log2(n), 0.35 * e * e * std::pow(n, 1.5)};
   } else if (dimension == 3) {
     estimate = {2.6 * std::pow(e, 2.0 / 3.0) * std::pow(n, 4.0 / 3.0),
                 0.2 * std::pow(e, 4.0 / 3.0) * n * n};
   }
-  // A full matrix at most.
+  // At most a full matrix.
   return {std::min(estimate.entries, n * n), std::min(estimate.flops, 2.0 / 3.0 * n * n * n)};
 }
 
@@ -216,10 +218,10 @@ MemoryEstimate estimate_memory(const BodySize& size) {
   const double block = size.has_symmetric_blocks ? 0.5 * d * (d + 1.0) : d * d;
   estimate.body_bytes = body_bytes(size) + 8.0 * size.points * d * (d + 1.0);
   estimate.tangent_bytes = 8.0 * blocks * block;
-  // The reduced tangent in whole blocks, where each is, and its pattern.
+  // The reduced tangent in whole blocks, the places of its blocks, and its pattern.
   if (size.is_constrained) estimate.tangent_bytes += blocks * (8.0 * d * d + 8.0 + 4.0);
   estimate.matrix_bytes = 16.0 * (blocks + size.points) * d * d;
-  // Then the direct solver takes conjugate gradients with an old factor, too.
+  // The direct solver then also uses conjugate gradients with an old factor, which need Trilinos.
   if (affordable_iterations(estimate.factor_flops, estimate.factor_entries) > 1.0) {
     estimate.matrix_bytes += trilinos_bytes;
   }
@@ -236,7 +238,7 @@ double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const
     case PreconditionerKind::block_jacobi:
       return bytes;
     case PreconditionerKind::automatic:
-    case PreconditionerKind::local_operator:  // has no symmetric tangents
+    case PreconditionerKind::local_operator:  // not for symmetric tangents
     case PreconditionerKind::rigid_pieces:
       return bytes + rigid_pieces_bytes(size);
     case PreconditionerKind::surrogate:

@@ -4,7 +4,7 @@
 
 namespace peristat {
 
-/// In the place of a solver where no equations are solved.
+/// Placeholder for a solver where no equations are solved.
 class NoSolver : public LinearSolver {
  public:
   [[nodiscard]] LinearOutcome analyze(const BlockPattern&, const FreeDofs&) override {

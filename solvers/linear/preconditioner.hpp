@@ -9,17 +9,17 @@
 
 namespace peristat {
 
-/// Approximate inverse of K_ff; symmetric and positive definite, but for those of unsymmetric
-/// tangents. Of a part of a body all ranks build it and apply it at the
-/// same time; each may meet an outcome of its own, the worst of which counts.
+/// Approximate inverse of K_ff; symmetric and positive definite, except for unsymmetric tangents.
+/// For a partitioned body `build` and `apply` are collective; outcomes may differ between ranks,
+/// and the worst one counts.
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
 
-  /// Once per pattern. The degrees of freedom outlive the preconditioner.
+  /// Prepares for a pattern, once. The degrees of freedom outlive the preconditioner.
   virtual void analyze(const BlockPattern& pattern, const FreeDofs& free) = 0;
 
-  /// Takes up the numbers of a tangent, which need not live on.
+  /// Computes the preconditioner of a tangent, which need not live on.
   /// @return solved; not_positive_definite or singular where the tangent turns out to be so;
   ///         inaccurate where only the preconditioner fails; out_of_memory
   [[nodiscard]] virtual LinearOutcome build(const TangentOperator& tangent) = 0;

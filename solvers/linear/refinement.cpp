@@ -8,12 +8,13 @@
 namespace peristat {
 namespace {
 
-/// Largest relative residual of a solve, after refinement. Beside a critical point the solution is
-/// so large that its last digits leave more: it still solves a system that is this near.
+/// Largest relative residual of a solve, after refinement, and largest backward error. Near a
+/// critical point the solution is so large that its round-off exceeds the former: it then solves a
+/// system that is as near as the latter.
 constexpr double accepted_residual = 1e-6, accepted_backward_error = 1e-12;
 
-/// Corrections of a solution by its residual: more do not help where two did not, and a residual
-/// this small needs none.
+/// Largest number of corrections by the residual: more do not help where two did not. A relative
+/// residual below `fine` needs none.
 constexpr int most_refinements = 2;
 constexpr double fine = 1e-12;
 

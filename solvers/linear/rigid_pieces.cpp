@@ -29,19 +29,19 @@ namespace {
 using Long = SuiteSparse_long;
 using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Long>;
 
-/// Width of the boxes that the body is divided into, in horizons: the smaller, the fewer iterations
-/// and the larger the coarse matrix. And the least, in bonds of the shortest kind.
+/// Width of the boxes that the body is divided into, in horizons, and its lower limit, in lengths
+/// of the shortest bond. Smaller boxes need fewer iterations and have a larger coarse matrix.
 constexpr double box_in_horizons = 5.0 / 3.0, box_in_spacings = 2.5;
 
-/// Whether the coarse factor of a grid of boxes is too large for a body; boxes then grow beyond
-/// that width.
-/// @param boxes  along each direction
-/// @param points of the whole body
-/// @param ranks  that share them: one of them has the factor
+/// True if the coarse factor of a grid of boxes is too large for a body; the boxes are then made
+/// wider.
+/// @param boxes number along each direction
+/// @param points number in the whole body
+/// @param ranks number that share the points; one of them stores the factor
 bool is_too_fine(int dimension, const std::array<double, 3>& boxes, double points, int ranks) {
   const double all = boxes[0] * boxes[1] * boxes[2];
   if (dimension < 3) return all > (dimension == 1 ? 1e6 : 2e5);
-  // Blocks of 6 x 6 numbers in the factor: nested dissection's, or those within the band of a
+  // Number of 6 x 6 blocks in the factor: that of nested dissection, or within the band of a
   // slender body.
   const double section = all / *std::max_element(boxes.begin(), boxes.end());
   const double blocks = std::min(8.0 * std::pow(all, 4.0 / 3.0), 2.0 * section * all);
@@ -50,19 +50,20 @@ bool is_too_fine(int dimension, const std::array<double, 3>& boxes, double point
   return bytes_of_block * blocks > bytes_per_point * share * points && all > 1.0;
 }
 
-/// A motion that keeps less than this of its length beside the others is one of theirs.
+/// A motion is dropped as linearly dependent if the others leave less than this of its length.
 constexpr double dependent = 1e-6;
 
-/// A block below this share of its points' diagonal is a broken bond.
+/// A bond is broken if its block is below this fraction of the diagonal of its points.
 constexpr double broken = 1e-9;
 
-/// Keeps motions without stiffness from a zero pivot; far below what changes a correction.
+/// Shift of the diagonal of E that avoids zero pivots of motions without stiffness; far below what
+/// changes a correction.
 constexpr double relative_shift = 1e-12;
 
 constexpr int motions_of(int dimension) { return dimension * (dimension + 1) / 2; }
 
-/// What a vector at a point contributes to the rigid motions about a centre: itself to the
-/// translations, its moments in the planes of the axes to the rotations.
+/// Contribution of a vector at a point to the rigid motions about a centre: the vector itself to
+/// the translations, its moments in the planes of the axes to the rotations.
 template <int D>
 std::array<double, motions_of(D)> moments(const float* arm, const std::array<double, D>& vector) {
   std::array<double, motions_of(D)> result{};
@@ -74,7 +75,7 @@ std::array<double, motions_of(D)> moments(const float* arm, const std::array<dou
   return result;
 }
 
-/// The transposed map: displacement of a point by amounts of the motions.
+/// The transposed map: displacement of a point for given amounts of the motions.
 template <int D>
 std::array<double, D> displacement(const float* arm,
                                    const std::array<double, motions_of(D)>& amount) {
@@ -97,45 +98,46 @@ Index root(std::vector<Index>& parent, Index i) {
 
 struct RigidPieces::Levels {
   const FreeDofs* free = nullptr;
-  const Sharing* sharing = nullptr;         // of a part of a body
-  Index first_ghost = 0, first_handle = 0;  // of a part
-  bool has_handles = false;                 // of a part, on this rank
-  std::vector<Index> with_ghosts;   // of a part: equations, with those of ghosts on their ranks
-  const Index* equation = nullptr;  // per degree of freedom: none, or one of this rank's
+  const Sharing* sharing = nullptr;         // null: the body is not partitioned
+  Index first_ghost = 0, first_handle = 0;  // of a partitioned body
+  bool has_handles = false;                 // this rank of a partitioned body owns generalised dofs
+  std::vector<Index> with_ghosts;   // of a partitioned body: equations, 0 for free dofs of ghosts
+  const Index* equation = nullptr;  // per degree of freedom: equation of this rank, or none
   GatheredPieces gathered_pieces;
   BlockJacobi fine{BlockJacobi::Blocks::points};
   Eigen::CholmodSupernodalLLT<Matrix, Eigen::Lower> coarse;
   std::vector<Index> box;    // per point and handle
   std::vector<Index> piece;  // likewise; none: a ghost or a handle that no bond here reaches
-  /// Points x dimension, from the centre of their piece: Q is made of them whenever it is needed.
-  /// Single precision is enough for what is a choice of subspace.
+  /// Points x dimension, from the centre of their piece: Q is computed from them whenever it is
+  /// needed. Single precision suffices, since it only selects a subspace.
   std::vector<float> arm;
-  /// Pieces of the body x motions x motions: column k has the amounts of the piece's motions that
-  /// make its k-th orthonormal one. This, `first` and the factor are where pieces are gathered.
+  /// Pieces of the body x motions x motions: column k has the amounts of the piece's motions in its
+  /// k-th orthonormal one. This, `first` and the factor exist where pieces are gathered.
   std::vector<double> to_basis;
-  std::vector<Index> first;   // coarse equation of each piece, and their number
+  std::vector<Index> first;   // first coarse equation of each piece, and their number
   std::vector<Index> member;  // points and handles of this rank, grouped by its pieces
-  std::vector<Index> offset;  // of each piece here in member
+  std::vector<Index> offset;  // start in `member` of each piece here
   Eigen::VectorXd coarse_residual, coarse_correction;
-  bool has_boxes = false;     // of the present pattern
+  bool has_boxes = false;     // for the present pattern
   bool is_fine_alone = true;  // there are no coarse equations
   double length_unit = 1.0;   // of the arms [m]: keeps them within what single precision holds
   int dimension = 0, threads = 1;
 
   [[nodiscard]] const Communicator* ranks() const { return sharing ? &sharing->ranks() : nullptr; }
   [[nodiscard]] Index owned(Index points) const { return sharing ? sharing->owned() : points; }
-  /// Of a part, whether a point is a ghost: its rank has what it is coupled with, too.
+  /// True for a ghost of a partitioned body: its owner also has the blocks of its bonds.
   [[nodiscard]] bool is_ghost(Index i) const {
     return sharing && i >= first_ghost && i < first_handle;
   }
-  /// Whether equations of a point, or of a handle of constraints, are this rank's.
+  /// True if the equations of a point, or of a generalised degree of freedom, are this rank's.
   [[nodiscard]] bool has_row(Index i) const {
     if (!sharing || i < first_ghost) return true;
     return has_handles && i >= first_handle;
   }
   [[nodiscard]] Index pieces_here() const { return static_cast<Index>(offset.size()) - 1; }
 
-  /// Of a part of a body, which degrees of freedom of ghosts have equations there.
+  /// For a partitioned body, finds which degrees of freedom of ghosts have equations on their
+  /// owner.
   void take_part() {
     equation = free->equation.data();
     if (!sharing) return;
@@ -154,8 +156,8 @@ struct RigidPieces::Levels {
     equation = with_ghosts.data();
   }
 
-  /// Boxes in the reference configuration: they don't depend on when the solver was made, nor on
-  /// ranks.
+  /// Finds the boxes in the reference configuration, so that they depend neither on when the solver
+  /// was made nor on the ranks.
   void find_boxes(const TangentOperator& tangent, std::span<const double> position) {
     const int d = dimension;
     const Couplings in_place = couplings_in_place(tangent);
@@ -216,7 +218,7 @@ struct RigidPieces::Levels {
     }
   }
 
-  /// Traces of the diagonal blocks of ghosts, as their owners have them.
+  /// Returns the traces of the diagonal blocks of ghosts, as their owners have them.
   [[nodiscard]] std::vector<double> traces_of_ghosts(const TangentOperator& tangent) const {
     if (!sharing) return {};
     std::vector<double> traces(std::size_t(tangent.pattern.points()));
@@ -233,7 +235,7 @@ struct RigidPieces::Levels {
     return sum;
   }
 
-  /// Points that unbroken bonds join within their box, by one that stands for them.
+  /// Joins points that unbroken bonds connect within their box; returns a representative for each.
   [[nodiscard]] std::vector<Index> join_in_boxes(const TangentOperator& tangent) const {
     const BlockPattern& pattern = tangent.pattern;
     const int entries = dimension * dimension;
@@ -245,7 +247,7 @@ struct RigidPieces::Levels {
     std::vector<Index> parent(points);
     std::iota(parent.begin(), parent.end(), 0);
     const auto join = [&](Index i, Index j) { parent[root(parent, i)] = root(parent, j); };
-    // Bonds to later threads' points are left to the end.
+    // Bonds to points of later threads are joined at the end.
     std::vector<std::vector<std::pair<Index, Index>>> across(std::size_t(tangent.threads()));
     tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
       if (!has_row(i)) return;
@@ -270,9 +272,9 @@ struct RigidPieces::Levels {
     return parent;
   }
 
-  /// Numbers the pieces here in the order of their points; ghosts that no bond here reaches have
-  /// none.
-  /// @return how many
+  /// Numbers the pieces of this rank in the order of their points; ghosts that no bond here reaches
+  /// have none.
+  /// @return number of pieces
   Index number_pieces_of_part(const TangentOperator& tangent, const std::vector<Index>& joined) {
     const BlockPattern& pattern = tangent.pattern;
     const Index points = pattern.points(), own = sharing->owned();
@@ -295,7 +297,7 @@ struct RigidPieces::Levels {
     return Index(of_pieces.size());
   }
 
-  /// Parts of the boxes that unbroken bonds join.
+  /// Finds the pieces: parts of the boxes that unbroken bonds join.
   void find_pieces(const TangentOperator& tangent) {
     const Index points = tangent.pattern.points();
     const std::vector<Index> joined = join_in_boxes(tangent);
@@ -335,7 +337,7 @@ struct RigidPieces::Levels {
     return result;
   }
 
-  /// The motions of its piece at a point: motions x D, zero where a component is prescribed.
+  /// Motions of a point's piece at the point: motions x D, zero where a component is prescribed.
   template <int D>
   Eigen::Matrix<double, motions_of(D), D> motions_at(Index i) const {
     Eigen::Matrix<double, motions_of(D), D> result;
@@ -360,11 +362,11 @@ struct RigidPieces::Levels {
                                                   std::size_t(offset[p + 1] - offset[p]));
   }
 
-  /// Of all points with a piece, from its centre.
+  /// Finds the arms of all points with a piece, from its centre.
   template <int D>
   void find_arms(std::span<const double> position) {
     const Index pieces = pieces_here();
-    std::vector<double> sums(std::size_t(pieces) * (D + 1), 0.0);  // of positions, and how many
+    std::vector<double> sums(std::size_t(pieces) * (D + 1), 0.0);  // positions, count
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (Index p = 0; p < pieces; ++p) {
       double* const of_piece = &sums[std::size_t(p) * (D + 1)];
@@ -387,7 +389,7 @@ struct RigidPieces::Levels {
     }
   }
 
-  /// Gram's matrices of the motions of the pieces on their equations.
+  /// Returns the Gram matrices of the pieces' motions on their equations.
   template <int D>
   std::vector<double> find_grams() {
     constexpr int motions = motions_of(D), entries = motions * motions;
@@ -406,7 +408,8 @@ struct RigidPieces::Levels {
     return gathered_pieces.sum(std::move(grams), entries);
   }
 
-  /// Orthonormal motions of each piece on its equations, by Gram and Schmidt's method done twice.
+  /// Finds orthonormal motions of each piece on its equations, by the Gram-Schmidt method done
+  /// twice.
   template <int D>
   void find_basis(std::vector<double> grams) {
     constexpr int motions = motions_of(D), entries = motions * motions;
@@ -436,7 +439,7 @@ struct RigidPieces::Levels {
     std::partial_sum(first.begin(), first.end(), first.begin());
   }
 
-  /// Blocks of E between two pieces, as one thread adds them up.
+  /// Blocks of E between two pieces, accumulated by one thread.
   template <int D>
   class CoarseBlocks {
    public:
@@ -468,7 +471,7 @@ struct RigidPieces::Levels {
     std::size_t last_ = 0;
   };
 
-  /// Blocks of the lower triangle of E by threads, or by ranks where they are gathered.
+  /// Returns the blocks of the lower triangle of E by threads, or gathered from all ranks.
   template <int D>
   std::vector<CoarseBlocks<D>> coarse_blocks(const TangentOperator& tangent) const {
     constexpr int motions = motions_of(D);
@@ -483,8 +486,8 @@ struct RigidPieces::Levels {
       const Motions at_i = motions_at<D>(i);
       part.between(own, own).noalias() +=
           at_i * Entries(&tangent.diagonal[std::size_t(i) * D * D]) * at_i.transpose();
-      // K_ij times the motions at j, transposed, is added up over partners of the same piece, which
-      // mostly follow one another.
+      // K_ij times the motions at j, transposed, is summed over successive partners of the same
+      // piece, because partners of one piece mostly follow one another.
       Motions of_run = Motions::Zero();
       Index run = FreeDofs::none;
       bool is_shared = false;
@@ -545,8 +548,8 @@ struct RigidPieces::Levels {
     return gathered;
   }
 
-  /// Lower triangle of E from its blocks, which are in terms of the pieces' motions, not of the
-  /// basis.
+  /// Assembles the lower triangle of E from its blocks, which are in terms of the pieces' motions,
+  /// not of the orthonormal basis.
   template <int D>
   Matrix gathered(const std::vector<CoarseBlocks<D>>& parts) {
     using Block = typename CoarseBlocks<D>::Block;
@@ -620,7 +623,8 @@ struct RigidPieces::Levels {
     return LinearOutcome::solved;
   }
 
-  /// E^-1 on the moments of all pieces, to amounts of their motions, in place.
+  /// Applies E^-1 to the moments of all pieces, in place: the result is the amounts of their
+  /// motions.
   template <int D>
   void solve_coarse(std::vector<double>& of_pieces) {
     constexpr int motions = motions_of(D);
@@ -679,7 +683,7 @@ struct RigidPieces::Levels {
 
 RigidPieces::RigidPieces(const Sharing* sharing) : levels_(std::make_unique<Levels>()) {
   levels_->sharing = sharing;
-  levels_->coarse.cholmod().print = 0;  // negative pivots are an outcome, no warning
+  levels_->coarse.cholmod().print = 0;  // negative pivots are an outcome, not a warning
 }
 RigidPieces::~RigidPieces() = default;
 

@@ -17,23 +17,23 @@
 namespace peristat {
 namespace {
 
-/// An end of the box is held if the plane of places beyond it has so many prescribed degrees of
-/// freedom for each free one in the plane before it.
+/// An end of the box is held if the plane of sites beyond it has at least this many prescribed
+/// degrees of freedom for each free one in the plane before it.
 constexpr double held_share = 0.5;
 
-/// A mean stiffness against translations below this share of the stencil's is round-off.
+/// A mean stiffness against translations below this fraction of the stencil's is round-off.
 constexpr double no_translation = 1e-10;
 
-/// The symbol is at least this share of that of springs to the nearest neighbours with the same
+/// Lower limit of the symbol, as a fraction of that of nearest-neighbour springs with the same
 /// stiffness for long waves: in a deformed state it may vanish where the tangent does not.
 constexpr double least_share = 0.01;
 
 using Numbers = std::array<Index, 3>;
 
-/// Sums over pairs of points by the sizes of their offsets along the axes, 0 ... reach.
+/// Sums over pairs of points, by the absolute values of their offsets along the axes, 0 ... reach.
 struct Stencil {
   Numbers size{1, 1, 1};    // reach + 1
-  std::vector<double> sum;  // by offset, of each component
+  std::vector<double> sum;  // by offset, for each component
 
   void clear(const Numbers& reach, int components) {
     for (int a = 0; a < 3; ++a) size[a] = reach[a] + 1;
@@ -48,11 +48,11 @@ struct Stencil {
   }
 };
 
-/// The equations of a component of the displacement in the box around them.
+/// Box around the equations of one component of the displacement.
 struct Component {
   Numbers first{}, extent{1, 1, 1};
   std::array<RowEnd, 3> below{}, above{};
-  std::vector<float> inverse;  // of the symbol, by mode; empty: that of an earlier component
+  std::vector<float> inverse;  // inverse of the symbol, by mode
 
   [[nodiscard]] std::size_t place(const Numbers& at) const {
     return (std::size_t(at[0] - first[0]) * std::size_t(extent[1]) +
@@ -73,9 +73,9 @@ struct Sines::Symbols {
   std::shared_ptr<const LatticeBox> box;
   const FreeDofs* free = nullptr;
   int dimension = 0, threads = 1;
-  Numbers reach{};  // of the pattern, in places
+  Numbers reach{};  // of the pattern, in lattice sites
   std::vector<Component> components;
-  std::vector<TrigonometricTransform> transforms;  // different ones
+  std::vector<TrigonometricTransform> transforms;  // distinct ones
   std::vector<std::size_t> transform_of;           // by component
 
   [[nodiscard]] bool is_free(Index point, int component) const {
@@ -94,7 +94,7 @@ struct Sines::Symbols {
     }
   }
 
-  /// Where the equations of a component are, and which ends of their box supports hold.
+  /// Finds the box of a component's equations, and which of its ends supports hold.
   Component find_component(int c) const {
     Component result;
     Numbers last{-1, -1, -1};
@@ -133,7 +133,7 @@ struct Sines::Symbols {
     for (int a = 0; a < dimension; ++a) {
       result.below[a] = end(a, 0);
       result.above[a] = end(a, 1);
-      // Rather beyond a free side than into a support.
+      // Extends beyond a free side rather than into a support.
       const Index more = good_size(result.extent[a]) - result.extent[a];
       const bool goes_below = result.below[a] == RowEnd::free && result.above[a] == RowEnd::held;
       if (goes_below) result.first[a] -= more;
@@ -142,7 +142,7 @@ struct Sines::Symbols {
     return result;
   }
 
-  /// Components with the same box and ends share a transform.
+  /// Makes the transforms; components with the same box and ends share one.
   void plan() {
     transforms.clear();
     transform_of.clear();
@@ -155,7 +155,7 @@ struct Sines::Symbols {
     }
   }
 
-  /// The same of a tangent that tells them itself.
+  /// Returns the sums of a tangent that provides its stencil itself.
   Stencil sums(const LatticeStencil& of_tangent) {
     reach = {};
     const auto apart = [](const StencilEntry& entry) {
@@ -173,7 +173,7 @@ struct Sines::Symbols {
     return all;
   }
 
-  /// Minus the sums of the tangent's diagonal components over pairs of points.
+  /// Returns minus the sums of the tangent's diagonal components over pairs of points.
   Stencil sums(const TangentOperator& tangent) {
     if (const LatticeStencil told = tangent.stencil(); !told.empty()) return sums(told);
     const int d = dimension;
@@ -203,8 +203,8 @@ struct Sines::Symbols {
 
 namespace {
 
-/// Of one component: the weights w(o) of offsets o >= 0, so that S(k) = s + sum_o w (1 - prod cos);
-/// each stands for the offsets with other signs, too.
+/// Mean stencil of one component: the weights w(o) of offsets o >= 0, so that S(k) = s + sum_o w (1
+/// - prod cos); each includes the offsets with other signs.
 struct MeanStencil {
   Numbers size{1, 1, 1};
   std::vector<double> weight;
@@ -238,7 +238,7 @@ struct MeanStencil {
   }
 };
 
-/// Cosines of an axis' modes at the offsets of the stencil: modes x size.
+/// Returns the cosines of an axis' modes at the offsets of the stencil: modes x size.
 std::vector<double> cosines(const TransformAxis& axis, Index size) {
   std::vector<double> result;
   for (Index mode = 0; mode < axis.count; ++mode) {
@@ -247,7 +247,7 @@ std::vector<double> cosines(const TransformAxis& axis, Index size) {
   return result;
 }
 
-/// 1 / (factor S) of each mode of a box.
+/// Returns 1 / (factor S) for each mode of a box.
 std::vector<float> inverse_symbol(const MeanStencil& of, std::vector<TransformAxis> axes,
                                   double factor, int threads) {
   axes.resize(3);
@@ -268,7 +268,8 @@ std::vector<float> inverse_symbol(const MeanStencil& of, std::vector<TransformAx
   };
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (Index i = 0; i < n0; ++i) {
-    // Summed axis by axis: over the offsets along the first, then the second, then the third.
+    // The sums are done axis by axis: over the offsets along the first, then the second, then the
+    // third.
     std::vector<double> plane(r1 * r2, 0.0), row(r2);
     for (std::size_t o = 0; o < r0; ++o) {
       const double wave = cosine[0][std::size_t(i) * r0 + o];
@@ -288,8 +289,8 @@ std::vector<float> inverse_symbol(const MeanStencil& of, std::vector<TransformAx
       }
     }
   }
-  // A body that no side of its box holds has a mode without a symbol: it gets that of the longest
-  // wave.
+  // If no side of the box is held, the constant mode has a zero symbol: it gets the inverse symbol
+  // of the longest wave.
   if (!std::isfinite(at(0, 0, 0))) {
     float longest = 0.0F;
     if (n0 > 1) longest = std::max(longest, at(1, 0, 0));

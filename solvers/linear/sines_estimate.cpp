@@ -8,16 +8,18 @@
 namespace peristat {
 namespace {
 
-/// Iterations grow from some 22 by 2 for each width that a plate is long, from 25 by 6 in 3D; rigid
-/// pieces take 32 and 36, and as much as 13 products more for each that is built.
+/// Largest ratio of length to width, by dimension. Iterations grow from some 22 by 2 for each width
+/// that a plate is long, in 3D from 25 by 6. Rigid pieces take 32 and 36, and the cost of 13
+/// products more for each build.
 constexpr std::array<double, 3> most_slender{std::numeric_limits<double>::infinity(), 4.0, 2.0};
 
-/// A slot half through a plate takes 35 to 41 iterations, a hole a fifth as wide as the plate 21.
+/// Smallest filled fraction of the box, and largest fraction of interrupted rows. A slot half
+/// through a plate takes 35 to 41 iterations, a hole a fifth as wide as the plate 21.
 constexpr double least_filled = 0.75, most_interrupted = 0.3;
 
 using Numbers = std::array<Index, 3>;
 
-/// Ranges of the free points of a component, and of all points.
+/// Range of the free points of a component, or of all points.
 struct Ranges {
   Numbers first{}, last{-1, -1, -1};
   Index count = 0;
@@ -38,7 +40,7 @@ struct Ranges {
   [[nodiscard]] double extent(int axis) const { return double(last[axis] - first[axis]) + 1.0; }
 };
 
-/// Share of the rows of places along an axis in which an empty place stands between points.
+/// Fraction of the rows of lattice sites along an axis in which an empty site lies between points.
 double interrupted_rows(const LatticeBox& box, int axis) {
   const auto other = [&](int k) { return (axis + k) % 3; };
   const std::size_t rows = std::size_t(box.extent[other(1)]) * std::size_t(box.extent[other(2)]);

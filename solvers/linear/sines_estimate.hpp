@@ -6,11 +6,11 @@
 
 namespace peristat {
 
-/// Whether conjugate gradients with Sines are estimated to take no more iterations for a whole
-/// elastic body than with rigid pieces, by what was measured (benchmarks/RESULTS.md): in each
-/// component supports hold whole sides of the box around its free points, and nothing inside; the
-/// box is filled but for holes, which few rows of places along its axes meet; and it is compact, up
-/// to 4 times as long as wide in 2D and twice in 3D.
+/// True if, for an undamaged elastic body, conjugate gradients with Sines are estimated to take no
+/// more iterations than with rigid pieces, by what was measured (benchmarks/RESULTS.md). For each
+/// component supports must hold whole sides of the box around its free points, and nothing inside.
+/// The box must be filled except for holes, which interrupt few rows of lattice sites along its
+/// axes. It must be compact, up to 4 times as long as wide in 2D and twice in 3D.
 /// @param prescribed one flag per degree of freedom of the points
 [[nodiscard]] bool suits_sines(const LatticeBox& box, const std::vector<char>& prescribed);
 

@@ -5,7 +5,7 @@
 namespace peristat {
 namespace {
 
-/// Whether another solver may do better: the outcome is not about the tangent.
+/// True if another solver may do better: the outcome is not about the tangent.
 bool is_the_solvers_own(LinearOutcome outcome) {
   return outcome == LinearOutcome::inaccurate || outcome == LinearOutcome::out_of_memory;
 }
@@ -36,7 +36,7 @@ LinearOutcome SolverLadder::climb_down(LinearOutcome why) {
 LinearOutcome SolverLadder::analyze(const BlockPattern& pattern, const FreeDofs& free) {
   pattern_.emplace(pattern);
   free_ = &free;
-  // Once more means that pieces were pinned: the rung that failed before would fail again.
+  // A second call means that fragments were pinned: a rung that failed before would fail again.
   return climb_down(stand_on(rung_));
 }
 

@@ -10,17 +10,17 @@
 
 namespace peristat {
 
-/// Solvers in the order in which they are tried. One that fails for a reason of its own (too many
-/// iterations, a preconditioner that cannot be built, memory) gives way to the next, for good, and
-/// the system is solved again; what a solver finds out about the tangent (negative curvature) is
-/// passed on.
+/// Chain of solvers in the order in which they are tried. A solver that fails for a reason of its
+/// own (too many iterations, a preconditioner that cannot be built, memory) is replaced by the next
+/// one for good, and the system is solved again. Findings about the tangent (negative curvature)
+/// are passed on to the caller.
 class SolverLadder : public LinearSolver {
  public:
   struct Rung {
     std::string name;
     std::function<std::unique_ptr<LinearSolver>()> make;
   };
-  /// Told of every fall, in words.
+  /// Receives the reason of every change to the next solver, as text.
   using Reporter = std::function<void(const std::string& reason)>;
 
   SolverLadder(std::vector<Rung> rungs, Reporter tell);
@@ -37,7 +37,7 @@ class SolverLadder : public LinearSolver {
   void start_at(int rung) override { rung_ = std::min(std::size_t(rung), rungs_.size() - 1); }
 
  private:
-  /// Takes the next rung that can be analysed.
+  /// Moves to the next rung that can be analysed.
   LinearOutcome climb_down(LinearOutcome why);
   LinearOutcome stand_on(std::size_t rung);
 
@@ -48,7 +48,7 @@ class SolverLadder : public LinearSolver {
   std::optional<BlockPattern> pattern_;
   const FreeDofs* free_ = nullptr;
   const TangentOperator* tangent_ = nullptr;
-  LinearStatistics before_;  // of the rungs above
+  LinearStatistics before_;  // of the earlier rungs
   bool counts_pivots_ = true;
 };
 

@@ -8,15 +8,15 @@
 namespace peristat {
 
 /// Direct solver for unsymmetric tangents: L U of all their rows. Every tangent that differs from
-/// the last one is factorised; where only numbers have changed, the order of elimination stays.
+/// the last one is factorised; if only values have changed, the elimination order is kept.
 class SparseLu : public LinearSolver {
  public:
-  /// @param most_bytes rows and factor may take; factorize ends as out_of_memory where they need
-  ///        more, before they take it
+  /// @param most_bytes limit for rows and factor; factorize returns out_of_memory if they need
+  ///        more, before they are allocated
   explicit SparseLu(double most_bytes = std::numeric_limits<double>::infinity());
 
   LinearOutcome analyze(const BlockPattern& pattern, const FreeDofs& free) override;
-  void count_pivots(bool /*counts*/) override {}  // their signs tell nothing here
+  void count_pivots(bool /*counts*/) override {}  // signs of pivots mean nothing here
   /// @return singular where the condition number leaves no digit
   /// @throws std::logic_error for a symmetric tangent
   LinearOutcome factorize(const TangentOperator& tangent, FactorUse use) override;

@@ -12,11 +12,12 @@
 
 namespace peristat {
 
-/// Sums over the vectors of a body that is whole, or that ranks have parts of: what ghosts have
-/// does not count, nor their images, handles count at rank 0, and all ranks get the same bits.
+/// Sums over vectors of a body, partitioned or not. Ghosts and their images do not count,
+/// generalised degrees of freedom ("handles") count at rank 0, and all ranks get the same bits.
+/// Collective if the body is partitioned.
 class Sums {
  public:
-  /// @param sharing null: the body is whole
+  /// @param sharing partition of the body; null: the body is not partitioned
   Sums(const Sharing* sharing, int dimension)
       : ranks_(sharing ? &sharing->ranks() : nullptr),
         own_(sharing ? std::size_t(sharing->owned()) * std::size_t(dimension) : 0) {
@@ -27,13 +28,13 @@ class Sums {
     handles_ = std::size_t(sharing->count()) * d;
   }
 
-  /// How many of the entries of a vector are of this rank's points: the first ones.
+  /// Returns how many entries of a vector belong to this rank's points: the first ones.
   [[nodiscard]] std::size_t own(std::size_t entries) const {
     return ranks_ ? std::min(own_, entries) : entries;
   }
 
   [[nodiscard]] double of_all(double mine) const { return ranks_ ? ranks_->sum(mine) : mine; }
-  /// Replaces values of which each rank has a share.
+  /// Replaces the shares of the ranks by their sums.
   void add_up(std::span<double> shares) const {
     if (ranks_) peristat::add_up(*ranks_, shares);
   }
@@ -53,8 +54,8 @@ class Sums {
     return ranks_->sum(mine);
   }
 
-  /// See vector_verbs.
-  /// @param count of values that are this rank's
+  /// 2-norm of entry(0), …, entry(count - 1) of all ranks; see norm_of in vector_verbs.hpp.
+  /// @param count number of values of this rank
   template <class Entry>
   [[nodiscard]] double norm_of(std::size_t count, const Entry& entry) const {
     const double mine = peristat::norm_of(count, entry);
@@ -62,7 +63,7 @@ class Sums {
     const std::vector<double> norms = ranks_->all_of({mine});
     return peristat::norm(norms);
   }
-  /// Of what entry(k) is for those of the entries of a vector that count here.
+  /// 2-norm of entry(k) over those entries k of a vector that count, of all ranks.
   template <class Entry>
   [[nodiscard]] double norm_of_entries(std::size_t entries, const Entry& entry) const {
     if (!ranks_) return peristat::norm_of(entries, entry);
@@ -79,7 +80,7 @@ class Sums {
     return norm_of_entries(a.size(), [&](std::size_t k) { return a[k]; });
   }
 
-  /// Calls visit(k) for those of the entries of a vector that count here.
+  /// Calls visit(k) for those entries of a vector that count on this rank.
   template <class Visit>
   void for_each_entry(std::size_t entries, const Visit& visit) const {
     for (const auto& [first, last] : counted(entries)) {
@@ -93,7 +94,7 @@ class Sums {
   };
   using Ranges = std::array<Range, 3>;
 
-  /// Of owned points, of their images, and of handles.
+  /// Ranges of owned points, of their images, and of generalised degrees of freedom.
   [[nodiscard]] Ranges counted(std::size_t entries) const {
     if (!ranks_) return {Range{0, entries}, {}, {}};
     const auto within = [&](std::size_t first, std::size_t last) {

@@ -20,39 +20,39 @@
 namespace peristat {
 namespace {
 
-/// Bonds up to this many distances of the nearest neighbours are short: on a lattice those to the
-/// face diagonals, sqrt(2) spacings long.
+/// Bonds up to this many nearest-neighbour distances are short: on a lattice those to the face
+/// diagonals, sqrt(2) spacings long.
 constexpr double short_in_spacings = 1.5;
 
-/// Springs whose factorisation takes more than this are given to multigrid [flop].
+/// Springs whose factorisation takes more than this are solved by multigrid [flop].
 constexpr double largest_factorisation = 1e11;
 
-/// Share of block Jacobi; anything between 0.3 and 1 gives nearly the same iterations.
+/// Weight of block Jacobi; anything between 0.3 and 1 gives nearly the same iterations.
 constexpr double share_of_jacobi = 0.5;
 
-/// A point whose springs hold less than this share of its own stiffness along an axis, because its
-/// short bonds are broken or it follows others, is held in place by its diagonal block instead.
+/// The diagonal block of a point is added if its springs have less than this fraction of the
+/// point's own stiffness along an axis, because its short bonds are broken or it follows others.
 constexpr double loose = 1e-3;
 
 }  // namespace
 
 struct Surrogate::StandIn {
   const FreeDofs* free = nullptr;
-  const Sharing* sharing = nullptr;  // of a part of a body
+  const Sharing* sharing = nullptr;  // null: the body is not partitioned
   BlockJacobi fine{BlockJacobi::Blocks::points};
   Bonds short_bonds;
   std::vector<char> is_short;        // per bond of the pattern
   std::unique_ptr<Tangent> springs;  // null: before the first tangent
   Cholesky solver{FactorReuse{.max_iterations = 0}};
-  std::optional<MatrixPreconditioner> multigrid;  // instead of the factor, if it holds one
+  std::optional<MatrixPreconditioner> multigrid;  // replaces the factor if set
   std::vector<double> correction;
 
   /// Chooses the short bonds, in the reference configuration.
   LinearOutcome choose_bonds(const TangentOperator& tangent, std::span<const double> position) {
     const BlockPattern& pattern = tangent.pattern;
     const Index points = pattern.points(), of_rank = sharing ? sharing->owned() : points;
-    // Spacing about a point: the mean distance of as many nearest neighbours as a lattice's point
-    // has at one spacing.
+    // Spacing at a point: mean distance of as many nearest neighbours as a lattice point has at one
+    // spacing.
     constexpr std::size_t most = 6;
     const std::size_t nearest = 2 * std::size_t(tangent.dimension);
     std::vector<std::array<double, most>> distances(points);
@@ -97,7 +97,7 @@ struct Surrogate::StandIn {
     springs =
         std::make_unique<Tangent>(BlockPattern(short_bonds), tangent.dimension, tangent.threads());
     multigrid.reset();
-    if (sharing) {  // nobody has the whole of it to factorise
+    if (sharing) {  // no rank has all springs to factorise
       multigrid.emplace(MatrixPreconditionerKind::multigrid);
       return LinearOutcome::solved;
     }
@@ -191,7 +191,7 @@ void Surrogate::analyze(const BlockPattern& pattern, const FreeDofs& free) {
 LinearOutcome Surrogate::build(const TangentOperator& tangent) {
   StandIn& s = *stand_in_;
   const Sharing* const sharing = s.sharing;
-  // No rank has all of the rows of handles.
+  // No rank has complete rows of generalised degrees of freedom.
   if (sharing && tangent.pattern.points() > sharing->count()) return LinearOutcome::inaccurate;
   const LinearOutcome outcome =
       worst_outcome(sharing ? &sharing->ranks() : nullptr, s.fine.build(tangent));
@@ -217,7 +217,7 @@ void Surrogate::apply(std::span<const double> residual, std::span<double> correc
   StandIn& s = *stand_in_;
   if (s.multigrid) {
     s.multigrid->apply(residual.data(), correction.data());
-    // A factor with numbers always solves; how exactly is the outer iteration's matter.
+    // A valid factor always solves; the outer iteration corrects its inaccuracy.
   } else if (s.solver.solve(residual, correction, 1.0) == LinearOutcome::out_of_memory) {
     std::fill(correction.begin(), correction.end(), 0.0);
   }

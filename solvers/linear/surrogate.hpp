@@ -7,30 +7,30 @@
 
 namespace peristat {
 
-/// A stand-in of short horizon: springs along the bonds to the nearest neighbours alone (2 in 1D, 8
-/// on a square lattice, 18 on a cubic one), with the block Jacobi preconditioner beside them,
+/// Approximation with a short horizon: springs along the bonds to the nearest neighbours alone (2
+/// in 1D, 8 on a square lattice, 18 on a cubic one), with the block Jacobi preconditioner added,
 ///
 ///   M^-1 = S^-1 + D^-1 / 2,   S = sum over short bonds of gamma k n n^T,
 ///
 /// k = max(-n.K_ij n, 0) the bond's own stiffness in the tangent and n its current direction, so
-/// that S is positive semidefinite, indifferent to rotations, and cut by the same cracks. The one
-/// number gamma makes its second moment, sum k l^2, that of all bonds: long waves then meet the
-/// body's stiffness. At short waves S is several times stiffer than K, the more the longer the
-/// horizon; there K is about its own diagonal, and D^-1 / 2 fills the gap. The condition
-/// number depends on neither size nor shape: 12 to 16 iterations to 1e-8.
+/// that S is positive semidefinite, invariant under rotations, and cut by the same cracks. The
+/// factor gamma makes its second moment, sum k l^2, equal to that of all bonds: long waves then
+/// meet the body's stiffness. For short waves S is several times stiffer than K, the more the
+/// longer the horizon; there K is close to its own diagonal, and D^-1 / 2 fills the gap. The
+/// condition number depends on neither size nor shape: 12 to 16 iterations to 1e-8.
 ///
-/// S is factorised by Cholesky, some ten times cheaper than K; where that is still more than a few
-/// seconds' work (3D bodies from some 35^3 points), and on several ranks, a cycle of multigrid
-/// stands for S^-1.
+/// S is factorised by Cholesky, some ten times cheaper than K. If that is still more than a few
+/// seconds' work (3D bodies from some 35^3 points), and on several ranks, a multigrid cycle
+/// replaces S^-1.
 class Surrogate : public Preconditioner {
  public:
-  /// @param sharing of a part of a body, which outlives it; null: the body is whole
+  /// @param sharing partition of the body, which outlives this; null: the body is not partitioned
   explicit Surrogate(const Sharing* sharing = nullptr);
   ~Surrogate() override;
 
   void analyze(const BlockPattern& pattern, const FreeDofs& free) override;
-  /// Negative pivots of a diagonal block are the tangent's, too.
-  /// @return inaccurate as well, where S is singular and the tangent need not be: short bonds are
+  /// A negative pivot of a diagonal block shows that the tangent has one, too.
+  /// @return also inaccurate if S is singular, since the tangent need not be: short bonds are
   ///         broken and long ones are not
   [[nodiscard]] LinearOutcome build(const TangentOperator& tangent) override;
   void apply(std::span<const double> residual, std::span<double> correction) override;

@@ -7,7 +7,7 @@
 
 namespace peristat {
 
-/// The few verbs on plain vectors that the solvers speak.
+/// Basic operations on plain vectors, used by the solvers.
 
 [[nodiscard]] inline double dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0.0;

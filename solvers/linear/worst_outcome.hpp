@@ -5,10 +5,10 @@
 
 namespace peristat {
 
-/// The worst that any rank has met, so that all go on alike.
-/// @param ranks null: there is this one alone
+/// Returns the worst outcome of all ranks, so that all go on alike.
+/// @param ranks null: the body is not partitioned
 [[nodiscard]] inline LinearOutcome worst_outcome(const Communicator* ranks, LinearOutcome outcome) {
-  // They stand in the order of what may follow: solved comes first.
+  // The largest enumerator counts: `solved` comes first.
   return ranks ? LinearOutcome(int(ranks->max(double(outcome)))) : outcome;
 }
 

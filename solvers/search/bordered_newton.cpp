@@ -13,10 +13,10 @@
 namespace peristat {
 namespace {
 
-/// Iterations that may pass without halving the least residual so far.
+/// Iterations that may pass without halving the smallest residual so far.
 constexpr int most_without_gain = 10;
 
-/// Below this share of what the border's displacements move by, their sum does not move.
+/// The border does not depend on the unknown if its derivative is below this fraction of its terms.
 constexpr double no_answer = 1e-9;
 
 class BorderedSearch {
@@ -62,7 +62,8 @@ class BorderedSearch {
     return outcome;
   }
 
-  /// Where bonds damage and heal from one iteration to the next, more of them do not help.
+  /// True if the residual no longer falls: where bonds damage and heal from one iteration to the
+  /// next, more iterations do not help.
   bool has_stalled() {
     if (current_.residual_norm < 0.5 * least_residual_ || result_.iterations == 0) {
       least_residual_ = current_.residual_norm;
@@ -78,7 +79,7 @@ class BorderedSearch {
     return interrupts({}) ? Outcome::interrupted : Outcome::converged;
   }
 
-  /// @param damage of the state that is linearised about
+  /// @param damage in the state about which is linearised
   Outcome iterate(int iteration, Damage damage) {
     IterationRecord row;
     row.iteration = iteration;
@@ -91,7 +92,7 @@ class BorderedSearch {
     return interrupts(row) ? Outcome::interrupted : Outcome::converged;
   }
 
-  /// Takes supports and loads to the unknown, and evaluates.
+  /// Moves supports and loads to the present unknown, and evaluates the state.
   void stand_at_unknown() {
     const LoadPoint at = step_.loads(unknown_);
     problem_.conditions.prescribe(at, current_.displacement);
@@ -102,7 +103,7 @@ class BorderedSearch {
   }
 
   Outcome correct(Damage damage, IterationRecord& row) {
-    // Where the search begins at the old state another load parameter may have jumped.
+    // If the search begins at the old state, another load parameter may have jumped.
     std::vector<double> after_jump = current_.displacement;
     problem_.conditions.prescribe(step_.loads(unknown_), after_jump);
     const bool jumps = after_jump != current_.displacement;
@@ -114,7 +115,8 @@ class BorderedSearch {
     result_.inertia = solver_.inertia();
     row.negative_pivots = result_.inertia ? result_.inertia->negative : -1;
     result_.has_negative_pivots = row.negative_pivots > 0;
-    // In a trial state, points may have lost all their bonds: only the old state tells of the body.
+    // In a trial state, points may have lost all their bonds: only the old state shows whether the
+    // body has a singular tangent.
     if (linear == LinearOutcome::singular && row.iteration > 1) return Outcome::degenerate;
     if (linear != LinearOutcome::solved) return outcome_of(linear);
 
@@ -137,7 +139,7 @@ class BorderedSearch {
     return Outcome::converged;
   }
 
-  /// Of the border's left side, and of the sizes of its parts.
+  /// Left side of the border, and the sum of the sizes of all its terms.
   struct BorderSum {
     double value, size;
   };
@@ -153,14 +155,15 @@ class BorderedSearch {
     return sum;
   }
 
-  /// Against its parts in the old state, too: where all of them vanish there is no other scale.
+  /// Measured against the terms in the old state, too: where all of them vanish there is no other
+  /// scale.
   [[nodiscard]] bool fulfils_border() const {
     const BorderSum sum = border_sum();
     const double size = std::max(sum.size, old_border_size_);
     return std::abs(step_.border.value - sum.value) <= options_.relative_tolerance * size;
   }
 
-  /// That fulfils the border; nothing if it does not answer.
+  /// Change that fulfils the border; nothing if the border does not depend on the unknown.
   std::optional<double> change_of_unknown(std::span<const double> rate) {
     const BorderEquation& border = step_.border;
     const std::optional<double> answer = answer_of(border, rate);

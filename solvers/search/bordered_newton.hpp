@@ -9,7 +9,7 @@
 
 namespace peristat {
 
-/// The equation that makes a load an unknown:
+/// Linear equation that makes a load an unknown:
 ///
 ///   weights . u + unknown_weight * unknown = value
 struct BorderEquation {
@@ -18,23 +18,23 @@ struct BorderEquation {
   double value = 0.0;
 };
 
-/// d(weights . u + unknown_weight * unknown) / d unknown for a rate du / d unknown; nothing if that
-/// is no more than round-off.
+/// Derivative d(weights . u + unknown_weight * unknown) / d unknown for a rate du / d unknown;
+/// nothing if it is no more than round-off.
 [[nodiscard]] std::optional<double> answer_of(const BorderEquation& border,
                                               std::span<const double> rate);
 
-/// A state to begin a search with, beside an equilibrium.
+/// Predicted state from which a search begins.
 struct Prediction {
   std::vector<double> displacement;
   double unknown = 0.0;
 };
 
-/// What is searched.
+/// Definition of a bordered search.
 struct BorderedStep {
   LoadPath loads;
   BorderEquation border;
   double unknown = 0.0;  ///< in the old state
-  /// Nothing: the search begins by linearising about the old state.
+  /// Without a prediction the search begins by linearising about the old state.
   std::optional<Prediction> prediction{};
 };
 
@@ -43,29 +43,30 @@ struct BorderedResult {
   double unknown = 0.0;
 };
 
-/// Newton-Raphson for equilibrium together with a linear equation that the load fulfils:
+/// Newton-Raphson for equilibrium together with a linear equation for the load:
 ///
 ///   f_ext(l) - dE/dx_f(u) = 0,   weights . u + w l = value,   u_p = u_p(l).
 ///
 /// Each iteration solves K_ff a = f_ext - dE/dx_f - K_fp jump_p and K_ff b = df_ext/dl - K_fp
 /// du_p/dl by one factor, and goes to u_f + a + dl b with the dl that fulfils the border (Batoz and
-/// Dhatt, Int. J. Numer. Methods Eng. 14, 1979). Full steps: between a limit point and the next
-/// the energy is no merit. Negative pivots are no fault: the solver has to bear them.
+/// Dhatt, Int. J. Numer. Methods Eng. 14, 1979). Steps are always full: between two limit points
+/// the energy is no merit function. The tangent may have negative pivots, which the solver must
+/// accept.
 ///
 /// Rates of supports and loads are central differences over 2^-13, to about 1e-9; for conditions
 /// that are linear in the load they are exact to round-off.
 ///
 /// The residual is measured against the largest of loads and reactions in the old and the present
 /// state.
-/// @return outcome no_answer where the border does not answer to the unknown
+/// @return outcome no_answer if the left side of the border does not depend on the unknown
 [[nodiscard]] BorderedResult bordered_newton(const EquilibriumProblem& problem,
                                              LinearSolver& solver, TangentOperator& tangent,
                                              const State& from, const BorderedStep& step,
                                              const NewtonOptions& options,
                                              const IterationObserver& observer);
 
-/// Rate du / d unknown of the equilibrium, by the exact tangent of a state; the signs of its pivots
-/// are the solver's.
+/// Finds the rate du / d unknown of the equilibrium, by the exact tangent of a state; the solver
+/// then has the signs of its pivots.
 [[nodiscard]] LinearOutcome find_rate(const EquilibriumProblem& problem, LinearSolver& solver,
                                       TangentOperator& tangent, const StateView& at,
                                       const LoadPath& loads, double unknown,

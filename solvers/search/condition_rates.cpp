@@ -11,7 +11,8 @@ namespace {
 /// Step of the differences of conditions; a power of two, so that no digit of the unknown is lost.
 constexpr double difference = 0x1p-13;
 
-/// force -= the difference of dE/dx between two load points, both folded onto what is followed.
+/// force -= the difference of dE/dx between two load points, both transformed to the independent
+/// degrees of freedom.
 void take_off_heating(Assembler& assembler, const Conditions& conditions, const StateView& at,
                       const LoadPoint& low, const LoadPoint& high, std::vector<double>& force) {
   StateView there = at;

@@ -3,15 +3,15 @@
 namespace peristat {
 namespace {
 
-/// An iteration that leaves more than this share of the residual has stagnated.
+/// An iteration that leaves more than this fraction of the residual has stagnated.
 constexpr double stagnation = 0.5;
 
-/// Largest relative residual that counts as converged because round-off leaves no less, unless the
-/// loads are no more than that themselves: of what is torn through, nothing else is left.
+/// Largest relative residual that is accepted at round-off, unless the loads themselves are at
+/// round-off, as in a body that is torn through.
 constexpr double coarsest_round_off = 1e-6;
 
-/// Loads below this multiple of what round-off leaves of a residual are round-off themselves: they
-/// gather that of all points and states before. Measured: 1.6.
+/// Loads below this multiple of the residual's round-off are round-off themselves: they accumulate
+/// that of all points and of earlier states. Measured: 1.6.
 constexpr double round_off_of_loads = 10.0;
 
 }  // namespace

@@ -4,10 +4,10 @@
 
 namespace peristat {
 
-/// Whether a search has come to an equilibrium: the residual is within the tolerance or, where an
-/// iteration hardly lowers it any more, within what round-off leaves. Tells in the result which,
-/// and what counted.
-/// @param tangent       near the state
+/// True if a search has found equilibrium: the residual is within the tolerance or, if an iteration
+/// hardly lowers it any more, within its round-off. Stores in the result which of them applies, and
+/// the largest residual that counts.
+/// @param tangent near the state
 /// @param last_residual norm before the last iteration [N]
 [[nodiscard]] bool note_convergence(const EquilibriumProblem& problem,
                                     const TangentOperator& tangent, const Trial& current,

@@ -14,15 +14,15 @@ namespace {
 
 constexpr double largest_damping = 1.9;
 
-/// Velocity, relative to the mean square of all, below which a component stands still: round-off
-/// would decide its share of c_n.
+/// Velocity, relative to the root mean square of all, below which a component counts as standing
+/// still: round-off would decide its contribution to c_n.
 constexpr double standing = 1e-8;
 constexpr int iterations_per_record = 100;
 
-/// Iterations between two looks at which bonds a state would break.
+/// Iterations between two checks of the bonds that a state would break.
 constexpr int iterations_per_look = 10;
 
-/// Sums over the equations, threads added up in order.
+/// Sums over the equations; those of the threads are added in order.
 using FourSums = std::array<double, 4>;
 
 class Relaxation {
@@ -58,12 +58,12 @@ class Relaxation {
     tangent.absolute_row_sums(sums);
     for (std::size_t e = 0; e < dofs_.size(); ++e) {
       const double density = 0.25 * options_.mass_factor * sums[dofs_[e]];
-      // A point without a whole bond stays where it is.
+      // A point without an unbroken bond stays where it is.
       inverse_density_[e] = density > 0.0 ? 1.0 / density : 0.0;
     }
   }
 
-  /// Forces, residual and damage at the present displacement.
+  /// Computes forces, residual and damage at the present displacement.
   void evaluate() {
     Assembler& assembler = problem_.assembler;
     add_work_on_followers();
@@ -99,7 +99,7 @@ class Relaxation {
     quotient_ = sums[2] > 0.0 ? sums[1] / sums[2] : 0.0;
   }
 
-  /// V^(1/2), from rest.
+  /// Computes V^(1/2), from rest.
   void set_off() {
     const FourSums sums = sum([&](std::size_t e, FourSums& s) {
       velocity_[e] = 0.5 * residual_[e] * inverse_density_[e];
@@ -109,7 +109,7 @@ class Relaxation {
     result_.damped_energy += sums[0];
   }
 
-  /// V^(n+1/2) from V^(n-1/2).
+  /// Computes V^(n+1/2) from V^(n-1/2).
   void accelerate() {
     const double c = damping_coefficient();
     const double keep = (2.0 - c) / (2.0 + c), gain = 2.0 / (2.0 + c);
@@ -124,7 +124,8 @@ class Relaxation {
       s[1] += 0.5 * density * after * after;
     });
     if (options_.damping == Damping::kinetic && sums[1] < kinetic_energy_) {
-      // The peak is passed: the motion before this acceleration stops, and a new one sets off.
+      // The kinetic energy has passed its peak: the motion before this acceleration stops, and a
+      // new one starts from rest.
       for (std::size_t e = 0; e < dofs_.size(); ++e) {
         velocity_[e] -= residual_[e] * inverse_density_[e];
       }
@@ -136,7 +137,7 @@ class Relaxation {
     kinetic_energy_ = sums[1];
   }
 
-  /// What the motion that has led here holds: 1/2 V.lambda V + 1/2 F.V at V^(n-1/2).
+  /// Energy of the motion that has led here: 1/2 V.lambda V + 1/2 F.V at V^(n-1/2).
   double energy_of_motion() {
     return sum([&](std::size_t e, FourSums& s) {
       if (inverse_density_[e] == 0.0) return;
@@ -144,8 +145,8 @@ class Relaxation {
     })[0];
   }
 
-  /// U^(n+1), with supports and loads at a share of their way. The work of the step is complete
-  /// once `complete_work` is called after the next evaluation.
+  /// Computes U^(n+1), with supports and loads at a fraction of their path. The work of the step is
+  /// complete once `complete_work` is called after the next evaluation.
   void move(double share) {
     heat_up(share);
     if (!at_.follower_force.empty()) last_displacement_ = at_.displacement;
@@ -211,8 +212,8 @@ class Relaxation {
   }
 
  private:
-  /// Takes what the energy depends on to a share of the way, with half of the work of that; the
-  /// other half is due in the state that follows.
+  /// Moves the environment to a fraction of the path and adds half of its work; the other half is
+  /// added in the next state.
   void heat_up(double share) {
     last_environment_ = at_.environment;
     if (share == share_ || !way_.end_environment()) return;
@@ -220,7 +221,8 @@ class Relaxation {
     add_work_of_body(0.5 * (energy_under(at_.environment) - at_.stored_energy));
   }
 
-  /// Work that all ranks know; until its end the relaxation's is what each of them adds to it.
+  /// Adds work that all ranks know, at rank 0 alone: contributions of the ranks are summed at the
+  /// end.
   void add_work_of_body(double work) {
     const Sharing* const sharing = problem_.assembler.sharing();
     if (sharing == nullptr || sharing->ranks().rank() == 0) result_.external_work += work;
@@ -231,7 +233,7 @@ class Relaxation {
         .energy;
   }
 
-  /// Over those of all ranks.
+  /// Sums over the equations of all ranks.
   template <class Body>
   FourSums sum(const Body& body) {
     FourSums total = sum_here(body);
@@ -264,7 +266,7 @@ class Relaxation {
     return c > 2.0 ? largest_damping : c;
   }
 
-  /// Moves what follows, and adds what its loads do on the way.
+  /// Moves degrees of freedom that follow others, and adds the work of their loads.
   void add_work_on_followers() {
     const std::vector<Index>& loaded = way_.loaded_followers();
     std::vector<double> before;
@@ -299,7 +301,7 @@ class Relaxation {
   std::vector<FourSums> partial_;                 // per thread
   std::vector<double> inverse_density_;           // 1/lambda; 0 where nothing resists
   std::vector<double> residual_, last_residual_;  // F^n, F^(n-1)
-  std::vector<Index> held_;                       // what is prescribed and counts on this rank
+  std::vector<Index> held_;                       // prescribed ones that count on this rank
   std::vector<double> last_reaction_;             // dE/dx there
   SharedEnvironment last_environment_;
   std::vector<double> last_follower_force_, last_displacement_;  // before the last move

@@ -14,25 +14,25 @@
 namespace peristat {
 namespace {
 
-/// Relative residual of the linear systems: far below what a step may err by.
+/// Relative residual of the linear systems: far below the error that a step may have.
 constexpr double linear_tolerance = 1e-6;
 
-/// A bond that snaps changes the direction at once, however short the step.
+/// Shortest step: a bond that snaps changes the direction at once, however short the step.
 constexpr double shortest_step = 1.0 / 32.0;
 
-/// Steps are no longer: the softest motion ends by Newton's method.
+/// Longest step: Newton's method finishes the softest motion.
 constexpr double longest_step = 256.0;
 
-/// Of the predicted decrease of the energy, as in line_search.
+/// Fraction of the predicted decrease of the energy that is required, as in line_search.
 constexpr double sufficient_decrease = 1e-4;
 
-/// A predictor of the load is too long if the direction after it is more than this share of it.
+/// A predictor of the load is too long if the direction after it is more than this fraction of it.
 constexpr double largest_correction = 0.5;
 constexpr double smallest_share = 1.0 / 64.0;
 
-/// Relative size of the imperfection of every direction. Where a symmetric state is unstable
-/// against an unsymmetric motion something has to decide which way; round-off would not do so twice
-/// in the same way. This is far above what it can be and far below the path's tolerance.
+/// Relative size of the imperfection of every direction. It decides which way a symmetric state
+/// moves that is unstable against an unsymmetric motion; round-off would not always decide in the
+/// same way. It is far above any round-off and far below the path's tolerance.
 constexpr double imperfection = 1e-6;
 
 /// A number from -1 to 1 for every degree of freedom of the whole body, the same in every run.
@@ -43,14 +43,14 @@ double imperfection_of(GlobalIndex dof) {
   return 2.0 * double(bits >> 11) * 0x1p-53 - 1.0;
 }
 
-/// Of theta, for the part of the step that the exponential rule neglects.
+/// Coefficient c of the error that the exponential rule neglects, see flow.hpp.
 double neglected_share(double theta) {
   if (theta >= 1.0) return 1.0;
   const double h = -std::log1p(-theta);
   return (h - theta) / h;
 }
 
-/// Theta after a time that is longer by a factor.
+/// Theta of a time step that is longer by a factor.
 double lengthened(double theta, double factor) {
   constexpr double as_good_as_one = 0.999;
   if (theta > 1.0) return theta * factor;
@@ -137,14 +137,14 @@ class Flow {
     return outcome_of(linear);
   }
 
-  /// Of the points that stand for themselves those that are this rank's.
+  /// Number of points that this rank owns, without images.
   [[nodiscard]] Index own_points() const {
     const Points& points = problem_.assembler.points();
     return points.owned.value_or(points.own());
   }
 
-  /// Number of one of the degrees of freedom here in the whole body: of its points, then of
-  /// handles.
+  /// Number in the whole body of a degree of freedom of this rank: those of points come first, then
+  /// those of handles (generalised degrees of freedom).
   [[nodiscard]] GlobalIndex dof_of_body(Index dof) const {
     const Sharing* const sharing = problem_.assembler.sharing();
     const Points& points = problem_.assembler.points();
@@ -154,14 +154,15 @@ class Flow {
     return sharing->number()[std::size_t(point)] * d + dof % d;
   }
 
-  /// Zero on degrees of freedom that are not free.
+  /// Residual, zero on degrees of freedom that are not free.
   [[nodiscard]] std::vector<double> residual_of(const Trial& at) const {
     std::vector<double> residual(force_.size());
     for (const Index dof : problem_.free.dof) residual[dof] = force_[dof] - at.gradient[dof];
     return residual;
   }
 
-  /// Supports and loads by the share that is left, or by as much of it as the body follows.
+  /// Moves supports and loads by the remaining fraction, or by as much of it as the body can
+  /// follow.
   Outcome follow_load() {
     const std::vector<double> before = working_force(problem_.conditions, current_, force_);
     for (double part = (1.0 - share_);; part *= 0.5) {
@@ -186,7 +187,7 @@ class Flow {
     }
   }
 
-  /// To a share of the load's way by the tangent K0, which is found the first time.
+  /// Moves to a fraction of the load's path by the tangent K0, which is factorised the first time.
   Outcome predict(double share) {
     way_.load(share, force_);
     Trial start = current_;
@@ -218,7 +219,7 @@ class Flow {
     return Outcome::converged;
   }
 
-  /// A step of the flow under loads that stand still.
+  /// Takes a step of the flow under constant loads.
   Outcome advance() {
     const std::vector<double> force = residual_of(current_);
     const double decay = sums_.dot(direction_, force);  // |d|^2 in the norm of K0
@@ -268,8 +269,7 @@ class Flow {
     }
   }
 
-  /// Whether round-off leaves nothing to gain: many steps have brought the residual no further
-  /// down.
+  /// True if round-off leaves nothing to gain: many steps have not lowered the residual.
   [[nodiscard]] bool has_stalled(bool energy_is_round_off) {
     if (current_.residual_norm < least_residual_ || !energy_is_round_off) {
       least_residual_ = current_.residual_norm;
@@ -286,7 +286,7 @@ class Flow {
     evaluate(problem_, force_, next_);
   }
 
-  /// Takes the next state with its direction.
+  /// Accepts the next state with its direction.
   /// @param working force in the state before
   Outcome accept(std::span<const double> working) {
     result_.external_work +=
@@ -331,7 +331,7 @@ class Flow {
   const Sums sums_;
   const GlobalIndex points_of_body_;
   WayOfLoad way_;
-  double share_ = 0.0;  // of the way of supports and loads
+  double share_ = 0.0;  // of the path of supports and loads
   std::vector<double> force_;
   Linearisation linearisation_;
   bool has_metric_ = false;
@@ -339,7 +339,7 @@ class Flow {
   std::vector<double> direction_, next_direction_;
   double theta_ = 1.0;
   double least_residual_ = std::numeric_limits<double>::infinity();
-  int steps_since_ = 0;  // the least residual
+  int steps_since_ = 0;  // since the least residual
   RelaxationResult result_;
 };
 

@@ -15,8 +15,8 @@ double slope_along(const Sums& sums, std::span<const double> direction, const Tr
   return sums.dot(direction, trial.gradient) - sums.dot(direction, external_force);
 }
 
-/// Of forces that follow the deformation, which need not have a potential: by the trapezoidal rule,
-/// which is exact in a plane and errs by the cube of the step elsewhere [J].
+/// Work of follower forces, which need not have a potential, by the trapezoidal rule: exact in a
+/// plane, elsewhere with an error of the cube of the step [J].
 double follower_work(const EquilibriumProblem& problem, const Trial& from, const Trial& to) {
   if (!problem.conditions.has_pressures()) return 0.0;
   double work = 0.0;
@@ -27,9 +27,9 @@ double follower_work(const EquilibriumProblem& problem, const Trial& from, const
   return problem.sums().of_all(work);
 }
 
-/// Where forces are linear in the displacements the whole step leads to where they balance. Without
-/// a potential no energy could judge another, and that of convolutions has more round-off than the
-/// last steps lower it by.
+/// Takes the whole step. Where forces are linear in the displacements it leads to equilibrium.
+/// Without a potential no energy could judge a shorter step, and the energy of convolutions has
+/// more round-off than the last steps gain.
 LineSearchResult take_whole_step(const EquilibriumProblem& problem,
                                  std::span<const double> external_force, const Trial& from,
                                  std::span<const double> direction, Trial& trial, Damage damage) {

@@ -7,8 +7,8 @@
 namespace peristat {
 
 struct LineSearchOptions {
-  double sufficient_decrease = 1e-4;  ///< share of the predicted decrease that must be won (Armijo)
-  double shrink = 0.5;                ///< of the step length after a refused trial
+  double sufficient_decrease = 1e-4;  ///< required fraction of the predicted decrease (Armijo)
+  double shrink = 0.5;                ///< factor on the step length after a rejected trial
   int max_trials = 25;
 };
 
@@ -20,13 +20,13 @@ struct LineSearchResult {
 };
 
 /// Finds the largest step length 1, shrink, shrink^2, … along `direction` (zero on prescribed
-/// degrees of freedom) that lowers the total energy sufficiently; `trial` is left at the accepted
+/// degrees of freedom) that lowers the total energy sufficiently; `trial` becomes the accepted
 /// state.
 ///
-/// Residuals may rise on the way to equilibrium (in bending they always do first), the energy may
-/// not. Near convergence differences of the energy drown in round-off; a trial whose energy is
-/// unchanged within round-off is accepted if the slope along the direction has become smaller in
-/// size.
+/// Residuals may rise on the way to equilibrium (in bending they always do at first), the energy
+/// may not. Near convergence differences of the energy are below round-off. A trial whose energy is
+/// unchanged within round-off is therefore accepted if the slope along the direction has become
+/// smaller in size.
 [[nodiscard]] LineSearchResult line_search(const EquilibriumProblem& problem,
                                            std::span<const double> external_force,
                                            const Trial& from, std::span<const double> direction,

@@ -64,7 +64,7 @@ void Linearisation::assemble(const StateView& at, double projection) {
     projection_ = projection;
     return;
   }
-  // Linear in the share: the projection of every interaction, which is what costs, is done once.
+  // The tangent is linear in the share, so that the costly projection of interactions is done once.
   if (!to_projected_) {
     to_projected_.emplace(stored->diagonal, stored->off_diagonal);
     auto& [diagonal, off_diagonal] = *to_projected_;

@@ -12,13 +12,13 @@
 namespace peristat {
 namespace {
 
-/// Negative pivots for the history.
+/// Negative pivots for the history: -1 if there are some that were not counted.
 std::int64_t told_negative_pivots(LinearOutcome linear, const std::optional<Inertia>& inertia) {
   if (inertia) return inertia->negative;
   return linear == LinearOutcome::not_positive_definite ? -1 : 0;
 }
 
-/// Whether a search along a projected tangent's direction may succeed where the exact one's failed.
+/// True if the direction of a projected tangent may succeed where the exact one's failed.
 bool projection_may_help(Outcome outcome) {
   return outcome == Outcome::not_positive_definite || outcome == Outcome::no_descent ||
          outcome == Outcome::line_search_failed || outcome == Outcome::degenerate;
@@ -47,9 +47,9 @@ class NewtonSearch {
     start_gradient_ = current_.gradient;
     start_curvature_ = current_.curvature;
     current_.environment = problem.environment(at);
-    // Right after the jump bonds beside the supports are stretched as no equilibrium will ask for.
-    // Where they may break, nothing would be left to measure the residual against, and the search
-    // would begin in a torn body: damage is held until the predictor has spread the jump.
+    // Right after the jump, bonds beside the supports are stretched as in no equilibrium. If they
+    // could break, nothing would be left to measure the residual against, and the search would
+    // begin in a torn body. Damage is therefore held until the predictor has spread the jump.
     problem.conditions.prescribe(at, current_.displacement);
     share_out_jump(problem, from.displacement, current_.displacement);
     evaluate(problem, external_force_, current_, damage_);
@@ -84,7 +84,7 @@ class NewtonSearch {
   }
 
  private:
-  /// Where the predictor linearises: the old displacement under the new load's environment.
+  /// State about which the predictor linearises: old displacement, environment of the new load.
   [[nodiscard]] StateView start() const {
     StateView view(from_.displacement, from_.history, damage_, current_.environment);
     view.curvature = start_curvature_;
@@ -92,10 +92,10 @@ class NewtonSearch {
   }
 
   Outcome search() {
-    // A state right after the jump may be degenerate (a support driven onto a neighbour); the
-    // predictor is what moves the neighbours away, so only its result is judged.
+    // The state right after the jump may be degenerate (a support driven onto a neighbour). The
+    // predictor moves the neighbours away, so only its result is judged.
     if (!current_.degenerate && interrupts({})) return Outcome::interrupted;
-    if (has_converged()) {  // all that moves is prescribed
+    if (has_converged()) {  // everything that moves is prescribed
       release_damage();
       if (has_converged()) return Outcome::converged;
     }
@@ -111,14 +111,14 @@ class NewtonSearch {
     return Outcome::iteration_limit;
   }
 
-  /// To the next state, along the direction of the exact tangent or, where that leads nowhere, of
-  /// one that is projected as little as will do.
+  /// Moves to the next state, along the direction of the exact tangent or, if that fails, of the
+  /// least projected tangent that succeeds.
   Outcome advance(IterationRecord& row) {
     const double target = options_.relative_tolerance * result_.scale;
     const double tolerance = std::min(forcing_term(current_.residual_norm, last_residual_, target),
                                       options_.linear_tolerance);
     last_residual_ = current_.residual_norm;
-    // Those of the old state tell whether it is stable; on the way counting would cost more than
+    // The pivots of the old state show whether it is stable; later, counting would cost more than
     // solving.
     solver_.count_pivots(options_.counts_pivots && row.iteration == 1);
     row.projection = options_.projection == Projection::always ? 1.0 : 0.0;
@@ -137,7 +137,7 @@ class NewtonSearch {
     return outcome;
   }
 
-  /// Leaves the state that the direction leads to in next_.
+  /// Stores the state that the direction leads to in next_.
   Outcome try_direction(IterationRecord& row, double tolerance) {
     const bool is_predictor = row.iteration == 1 && options_.predictor == Predictor::consistent;
     const LinearOutcome linear = find_direction(row, is_predictor, tolerance);
@@ -148,9 +148,8 @@ class NewtonSearch {
     row.degenerate_trials += found.degenerate;
     row.step_length = found.step_length;
     if (!is_predictor || found.outcome == Outcome::converged) return found.outcome;
-    // The jump can leave a state in which the energy tells nothing (collapsed or overstretched
-    // bonds beside the supports): the predictor is then taken in full, and the next iteration
-    // judges it.
+    // After the jump the energy may be meaningless (collapsed or overstretched bonds beside the
+    // supports): the predictor is then taken in full, and the next iteration judges it.
     next_.displacement = current_.displacement;
     next_.history = current_.history;
     next_.environment = current_.environment;
@@ -194,7 +193,7 @@ class NewtonSearch {
                             options_.relative_tolerance, result_);
   }
 
-  /// Tells the observer where the search is.
+  /// Reports the state of the search to the observer.
   [[nodiscard]] bool interrupts(IterationRecord row) const {
     row.residual = current_.residual_norm;
     row.relative_residual = result_.scale > 0.0 ? current_.residual_norm / result_.scale : 0.0;

@@ -8,7 +8,7 @@
 namespace peristat {
 namespace {
 
-/// Beside a critical point the other eigenvalues are larger by orders: a few iterations do.
+/// Near a critical point the other eigenvalues are larger by orders: a few iterations suffice.
 constexpr int most_iterations = 50;
 constexpr double direction_tolerance = 1e-8;
 constexpr double tolerance_of_solves = 1e-10;
@@ -33,7 +33,7 @@ LinearOutcome find_softest_mode(const EquilibriumProblem& problem, LinearSolver&
                                 std::vector<double>& mode) {
   tangent.linearise(problem.assembler, at, 0.0);
   LinearOutcome outcome = solver.factorize(tangent, FactorUse::factorize_now);
-  // It oscillates, so that every mode has a part in it.
+  // The start oscillates, so that it has a part in every mode.
   std::vector<double> now(problem.free.dof.size()), next(now.size());
   for (std::size_t e = 0; e < now.size(); ++e) now[e] = std::sin(1.0 + 1e4 * double(e));
   normalise(now);

@@ -8,9 +8,9 @@
 
 namespace peristat {
 
-/// Eigenvector of the exact tangent K_ff whose eigenvalue is nearest to zero, by inverse iteration.
-/// Of the eigenvalues near a critical point it is the vanishing one; of several that vanish
-/// together it is one combination, which the numbering of the points decides.
+/// Finds the eigenvector of the exact tangent K_ff whose eigenvalue is nearest to zero, by inverse
+/// iteration. Near a critical point this eigenvalue is the vanishing one. If several vanish
+/// together, the mode is one combination of theirs, which depends on the numbering of the points.
 /// @param mode per degree of freedom, of norm 1; its first entry of half the largest size or more
 ///        is positive
 [[nodiscard]] LinearOutcome find_softest_mode(const EquilibriumProblem& problem,

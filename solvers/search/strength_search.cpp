@@ -12,20 +12,20 @@
 namespace peristat {
 namespace {
 
-/// The strength is met to this share of it; half of what the state stays below.
+/// Relative tolerance of the strength: half of the state's margin below it.
 constexpr double strength_tolerance = 0.5 * (1.0 - share_at_strength);
 
-/// By how much the first step along the tangent may miss the strength that it was to meet: beyond,
-/// the way is too curved to know which strength is met first.
+/// By how much the first step along the tangent may miss its strength: beyond, the path is too
+/// curved to know which strength is met first.
 constexpr double largest_miss = 0.1;
 
-/// Relative residual of the systems for the rate: an error of it is one of the state.
+/// Relative residual of the systems for the rate: its error is one of the state.
 constexpr double rate_tolerance = 1e-8;
 
-/// Relative residual below which a range without a place in it is no fault of the iteration.
+/// Relative residual below which an empty range is not caused by the iteration.
 constexpr double nearly = 1e-6;
 
-/// An iteration that leaves more than this share of the residual asks for a new tangent.
+/// An iteration that leaves more than this fraction of the residual needs a new tangent.
 constexpr double slow = 0.1;
 
 class StrengthSearch {
@@ -80,7 +80,7 @@ class StrengthSearch {
       if (Outcome found = find_rate(); found != Outcome::converged) return found;
       double change = choose(iteration == 1);
       if (result_.end == StrengthEnd::inadmissible && !is_fresh()) {
-        // Where the body goes an old tangent does not tell well enough to give the way up.
+        // An old tangent does not predict the path well enough to give it up.
         result_.end = StrengthEnd::at_stop;
         if (Outcome found = refresh(); found != Outcome::converged) return found;
         if (Outcome found = find_rate(); found != Outcome::converged) return found;
@@ -105,16 +105,16 @@ class StrengthSearch {
                                         current_.environment, at.preload}));
   }
 
-  /// Whether the tangent is of this search.
+  /// True if the tangent was refreshed by this search.
   [[nodiscard]] bool is_fresh() const { return refreshed_at_ == tangent_.refreshed(); }
 
-  /// Whether the tangent that is there is too far from the state's.
+  /// True if convergence is slow: the present tangent is too far from the state's.
   [[nodiscard]] bool is_slow(int iteration) const {
     return iteration > 2 && current_.residual_norm > slow * last_residual_ &&
            current_.residual_norm > options_.relative_tolerance * scale();
   }
 
-  /// u + a
+  /// Moves to u + a.
   Outcome correct(double earlier) {
     const double target = options_.relative_tolerance * scale();
     if (current_.residual_norm <= target) return Outcome::converged;
@@ -129,7 +129,8 @@ class StrengthSearch {
     return Outcome::converged;
   }
 
-  /// b, with the rates of the eigenstretches: anew where the tangent is, or the load curves it.
+  /// Finds b and the rates of the eigenstretches, anew if the tangent is or if there is an
+  /// environment.
   Outcome find_rate() {
     const bool is_known = rate_of_ == tangent_.refreshed() && !current_.environment;
     if (is_known && !rate_.empty()) return Outcome::converged;
@@ -146,7 +147,7 @@ class StrengthSearch {
     return Outcome::converged;
   }
 
-  /// Change of the stage; sets what is being headed for.
+  /// Returns the change of the stage, and sets the end that the search aims at.
   double choose(bool is_first) {
     const AdmissibleRange range = admissible_range(
         problem_.assembler.points(), problem_.assembler.model(), current_.at(Damage::held),
@@ -160,7 +161,7 @@ class StrengthSearch {
     if (!is_first && is_nearly_balanced && range.low > range.high) return refuse();
     double change = meets_upper_ ? range.high : range.low;
     result_.end = StrengthEnd::at_strength;
-    // Where the present stage is not admissible, the one to stop at need not be.
+    // If the present stage is not admissible, the one to stop at need not be.
     const double stop = meets_upper_ ? step_.stop : step_.range.high;
     if (result_.goes_up && result_.stage + change > stop) {
       if (!meets_upper_) return refuse();
@@ -183,7 +184,7 @@ class StrengthSearch {
     return 0.0;
   }
 
-  /// Whether the state is what the search was heading for; called in equilibrium.
+  /// True if the state is the end that the search aims at; called in equilibrium.
   bool ends_well() {
     if (step_.settles) return true;
     const double most = utilisation();
@@ -191,12 +192,12 @@ class StrengthSearch {
       if (std::abs(most - share_at_strength) <= strength_tolerance) return true;
       return false;
     }
-    // Going down, bonds are above what they bear until the strength is met.
+    // If the stage decreases, bonds are overloaded until the strength is met.
     if (result_.end == StrengthEnd::on_the_way && !result_.goes_up) return true;
     return most <= share_at_strength + strength_tolerance;
   }
 
-  /// Whether one step along the tangent comes to quite another strength than it should.
+  /// True if one step along the tangent ends far from the strength that it aims at.
   [[nodiscard]] bool misses_by_far() const {
     if (step_.settles) return false;
     const double most = utilisation();
@@ -210,7 +211,7 @@ class StrengthSearch {
                                problem_.assembler.threads());
   }
 
-  /// Takes supports and loads to the stage, and evaluates.
+  /// Moves supports and loads to the stage, and evaluates the state.
   void stand() {
     const LoadPoint at = step_.point(result_.stage);
     problem_.conditions.prescribe(at, current_.displacement);
@@ -249,7 +250,7 @@ class StrengthSearch {
   std::vector<double> external_force_;
   Trial current_;
   std::vector<double> rate_, eigenstretch_rate_;
-  int rate_of_ = 0, refreshed_at_ = 0;  // refresh of the tangent
+  int rate_of_ = 0, refreshed_at_ = 0;  // number of refreshes of the tangent
   bool meets_upper_ = true;
   double last_residual_ = 0.0, old_scale_ = 0.0;
   StrengthResult result_;

@@ -12,7 +12,7 @@ namespace {
 /// Relative residual of the columns of Z.
 constexpr double column_tolerance = 1e-10;
 
-/// Below this a pivot of the inner matrix is round-off of the others.
+/// A pivot of the inner matrix below this fraction of the others is round-off.
 constexpr double least_pivot = 1e-12;
 
 }  // namespace
@@ -24,8 +24,8 @@ struct UpdatedTangent::Correction {
   std::vector<BondDirection> directions;
   std::vector<double> stiffness;
   std::vector<std::vector<double>> columns;  // of Z
-  std::vector<std::vector<double>> between;  // columns of G^T Z, its upper half
-  SymmetricFactors inner;                    // of C^-1 - G^T Z
+  std::vector<std::vector<double>> between;  // columns of G^T Z, upper half
+  SymmetricFactors inner;                    // factors of C^-1 - G^T Z
   bool is_current = true;
   std::vector<double> known_side, known_solution;
 
@@ -124,7 +124,7 @@ std::vector<double> UpdatedTangent::right_hand_side(std::span<const double> forc
   std::vector<double> of_supports(jump.size());
   tangent_.multiply(jump, of_supports);
   for (std::size_t e = 0; e < side.size(); ++e) side[e] -= of_supports[problem_.free.dof[e]];
-  // The tangent that was linearised still has what bonds to the supports have lost.
+  // The linearised tangent still has the stiffness that bonds to the supports have lost.
   for (std::size_t k = 0; k < correction_->directions.size(); ++k) {
     const BondDirection& bond = correction_->directions[k];
     const double lost = correction_->stiffness[k] * Correction::along(bond.held, jump);

@@ -6,13 +6,13 @@
 
 namespace peristat {
 
-/// Supports and loads on the straight way from one load point to another.
+/// Supports and loads on the straight path from one load point to another.
 class WayOfLoad {
  public:
   WayOfLoad(const EquilibriumProblem& problem, const State& from, const LoadPoint& to);
 
   [[nodiscard]] const std::vector<Index>& prescribed() const { return prescribed_; }
-  /// Degrees of freedom that are loaded, and follow others.
+  /// Loaded degrees of freedom that follow others.
   [[nodiscard]] const std::vector<Index>& loaded_followers() const { return loaded_followers_; }
   [[nodiscard]] bool has_loads() const { return has_loads_; }
   [[nodiscard]] const std::vector<double>& end_displacement() const { return displacement1_; }

@@ -39,13 +39,13 @@
 namespace peristat {
 namespace {
 
-/// Of an environment of their own, in a step: the old state, the new one, those of differences.
+/// Environments that a step holds: of the old state, of the new one, those of differences.
 constexpr double states_with_environment = 4.0;
 
-/// Share of the bonds above which those on the horizon are a shell of a lattice.
+/// Fraction of the bonds above which those on the horizon are a shell of a lattice.
 constexpr double least_shell = 0.01;
 
-/// Refuses places whose digits don't tell neighbours from points beyond the horizon.
+/// Refuses points so far from the origin that round-off blurs the horizon.
 void require_resolved(const Points& points, double horizon) {
   double farthest = 0.0;
   for (const double at : points.reference) farthest = std::max(farthest, std::abs(at));
@@ -80,8 +80,9 @@ std::vector<DirectedConstant> micromoduli(const BodySpecification& of,
   return constants;
 }
 
-/// Model of a body of model "bond", and what its pre-cracks have cut: corrections near surfaces are
-/// those of the whole body, for a crack is no surface, and neither is an interface.
+/// Makes the model of a body of model "bond"; `cut` receives the bonds that its pre-cracks have
+/// cut. Surface corrections are those of the body without cracks and interfaces, which are no
+/// surfaces.
 Model make_bond_model(const Body& body, const PointMaterials& materials, Bonds bonds,
                       CutBonds& cut) {
   const BodySpecification& of = body.specification;
@@ -97,14 +98,15 @@ Model make_bond_model(const Body& body, const PointMaterials& materials, Bonds b
   return Model(std::move(bonds), std::move(potential), std::move(never_fails));
 }
 
-/// Points that a third one sees are coupled: as many blocks as bonds of twice the horizon.
+/// Sets the counts for a model that couples points with a common neighbour: as many blocks as bonds
+/// of twice the horizon.
 void reach_twice(BodySize& size) {
   size.has_symmetric_blocks = false;
   size.coupling_ratio = 2.0 * size.horizon_ratio;
   size.blocks = expected_bonds(size.points, size.dimension, size.coupling_ratio);
 }
 
-/// Regions and random factors of the points.
+/// Stores regions and random factors of the points.
 void note_materials(Body& body, const PointMaterials& materials, int threads) {
   using Quantity = ScatterSpecification::Quantity;
   body.region = materials.regions();
@@ -112,15 +114,16 @@ void note_materials(Body& body, const PointMaterials& materials, int threads) {
                   materials.factors(body.points, Quantity::strength, threads)};
 }
 
-/// Model of a body, and what its pre-cracks have cut.
-/// @param make_network finds the bonds that a setting makes
+/// Makes the model of a body, and stores the bonds that its pre-cracks have cut.
+/// @param make_network makes the bonds of a setting
 template <class MakeNetwork>
 void make_model(Body& body, const MakeNetwork& make_network, int threads) {
   const BodySpecification& of = body.specification;
   const Stopwatch watch(body.seconds_neighbourhood);
   const bool is_cpd = of.material.model == MaterialModel::cpd;
   BondSetting setting = body.setting;
-  // Effective volumes count every neighbour, and what bonds of lps dissipate goes by their length.
+  // Effective volumes count every neighbour, and the energy that bonds of lps dissipate depends on
+  // their length.
   if (is_cpd || of.is_collocated()) setting.influence = {};
   if (of.has_states()) setting = state_setting(std::move(setting));
   const bool is_linear = of.is_linear() || of.is_convolved();
@@ -150,12 +153,12 @@ void make_model(Body& body, const MakeNetwork& make_network, int threads) {
   body.cut_bonds = std::move(cut.ends);
 }
 
-/// Stores interactions that can be stored if they fit into half of what everything else leaves: on
-/// a machine those of all its ranks, or none.
+/// Stores interactions that can be stored if they fit into half of the memory that everything else
+/// leaves: on a machine those of all its ranks, or none.
 void store_interactions(Body& body, int threads) {
   InteractionStorage& storage = body.interaction_storage;
   for (const auto& term : body.model.terms()) storage.needed += term->bytes_to_store();
-  // A rank may have no point, which no estimate is made for.
+  // A rank may have no points; there is no estimate for this case.
   double others = body.points.count() == 0 ? 0.0 : estimate_memory(body).least_bytes();
   if (body.part) {
     storage.needed = sum_on_machine(body.part->ranks(), storage.needed);
@@ -166,7 +169,8 @@ void store_interactions(Body& body, int threads) {
   for (const auto& term : body.model.terms()) term->store(body.points, threads);
 }
 
-/// A partial volume reaches half a cell's diagonal beyond the horizon [m].
+/// Distance up to which images are needed [m]: a partial volume reaches half a cell's diagonal
+/// beyond the horizon.
 double reach_of_images(const BodySpecification& of, const Points& points) {
   const bool is_whole = of.volume_correction == VolumeCorrection::none;
   return of.horizon * farthest_of(of.horizon_shape, points.dimension) +
@@ -177,9 +181,9 @@ std::vector<double> at_rest(const Body& body) {
   return std::vector<double>(body.conditions->constraints().dofs(), 0.0);
 }
 
-/// A quantity of the points' materials; empty if none has it.
-/// @param needed what asks for it; empty: nothing does
-/// @throws InputError if some have it and others not, and it is needed
+/// A quantity of the points' materials; empty if no material has it.
+/// @param needed feature that needs it; empty: none does
+/// @throws InputError if some materials have it and others not, and it is needed
 std::vector<double> of_materials(const PointMaterials& materials, const Points& points,
                                  std::optional<double> MaterialSpecification::*quantity,
                                  const std::string& key, const std::string& needed) {
@@ -198,7 +202,7 @@ std::vector<double> of_materials(const PointMaterials& materials, const Points& 
   return values;
 }
 
-/// What tractions of a body by collocation act on.
+/// Finds the surface sites on which tractions of a body by collocation act.
 void take_surface(Body& body, LoadSetting& loads, int threads) {
   const BodySpecification& of = body.specification;
   if (!of.is_collocated()) return;
@@ -311,7 +315,7 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   expected.bonds = expected_bonds(expected.points, body.points.dimension, expected.horizon_ratio);
   const bool stores_states = of.has_states() && !of.is_convolved();
   if (stores_states) reach_twice(expected);
-  // States have no product without a stored tangent.
+  // State-based bodies need a stored tangent for products.
   require_memory(estimate_memory(expected).bytes(false, stores_states, {}),
                  fmt::format("the body with {} points", body.points.count()));
   make_model(
@@ -336,7 +340,8 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
 
 namespace {
 
-/// What the assembler of a part is made for; tables of cases are refused before.
+/// Refuses features that the assembler of a part does not support; tables of case files are refused
+/// before.
 void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
     throw InputError(
@@ -360,7 +365,7 @@ void refuse_without_ranks(const BodySpecification& of) {
 }
 
 double bytes_of_part(const Points& points, const BodySpecification& of) {
-  if (points.count() == 0) return 0.0;  // which no estimate is made for
+  if (points.count() == 0) return 0.0;  // there is no estimate for this case
   BodySize expected = size_of(points);
   expected.horizon_ratio = reach_ratio(of.volume_correction, of.horizon_shape, points.dimension,
                                        of.horizon / points.spacing);
@@ -369,7 +374,7 @@ double bytes_of_part(const Points& points, const BodySpecification& of) {
   return estimate_memory(expected).bytes(false, of.has_states(), {});
 }
 
-/// @throws MemoryError for parts that can't fit into the machine that they share
+/// @throws MemoryError if the parts on one machine can't fit into it
 void require_memory_for(const Part& part, const BodySpecification& of, const Communicator& ranks) {
   require_memory(sum_on_machine(ranks, bytes_of_part(part.points, of)),
                  fmt::format("what a machine has of the body with {} points", part.whole));
@@ -483,7 +488,7 @@ MemoryEstimate estimate_memory(const Body& body) {
 std::vector<std::string> describe_interactions(const Body& body) {
   std::vector<std::string> lines;
   for (const auto& term : body.model.terms()) {
-    if (term.get() == body.model.bond_term().get()) continue;  // told apart
+    if (term.get() == body.model.bond_term().get()) continue;  // reported separately
     for (const InteractionCount& kind : term->counts()) {
       const auto [least, most] = std::minmax_element(kind.per_point.begin(), kind.per_point.end());
       lines.push_back(
@@ -550,7 +555,7 @@ std::vector<std::string> describe_constraints(const Body& body) {
 
 namespace {
 
-/// Sentence that tells which parts of the body may move freely; empty if none.
+/// Describes the parts of the body that may move freely; empty if there are none.
 std::string describe_free_motions(const Body& body, const Bonds& bonds) {
   const std::vector<FreeMotion> parts =
       free_motions(body.points, bonds, body.conditions->holding(at_rest(body)), body.part.get());
@@ -580,7 +585,7 @@ std::string describe_free_motions(const Body& body, const Bonds& bonds) {
   return text;
 }
 
-/// Places of loose points of all ranks, with their numbers in front; the lowest first.
+/// Positions of the loose points of all ranks, each with its number; the lowest number first.
 std::vector<std::pair<double, Coordinates>> places_of_loose(const Body& body,
                                                             const std::vector<Index>& loose) {
   std::vector<double> flat;
@@ -598,7 +603,7 @@ std::vector<std::pair<double, Coordinates>> places_of_loose(const Body& body,
   return places;
 }
 
-/// Sentence that tells points that swing on too few bonds from the start; empty if none.
+/// Describes points that have too few bonds from the start; empty if there are none.
 std::string describe_loose_points(const Body& body, const Bonds& bonds) {
   const std::vector<double> rest = at_rest(body);
   const Fragments fragments = find_fragments(body.points, bonds, {}, body.conditions->prescribed(),
@@ -611,10 +616,10 @@ std::string describe_loose_points(const Body& body, const Bonds& bonds) {
                      place_text(places.front().second, body.points.dimension));
 }
 
-/// Sentence about points that all lie in one plane across an axis, so that no bond resists their
-/// motion along it; empty if they do not.
+/// Describes a body whose points all lie in one plane across an axis, so that no bond resists their
+/// motion along it; empty for other bodies.
 std::string describe_flatness(const Body& body) {
-  constexpr double flat = 1e-9;  // of the largest extent: what round-off leaves
+  constexpr double flat = 1e-9;  // round-off, relative to the largest extent
   const int dimension = body.points.dimension;
   std::array<double, 3> extent{};
   for (int c = 0; c < dimension; ++c) {

@@ -15,8 +15,8 @@
 
 namespace peristat {
 
-/// What storing all triangles and tetrahedra takes, and what may be taken [bytes]. They are stored
-/// if it fits, and found anew in every pass otherwise.
+/// Memory that storing all triangles and tetrahedra needs, and memory that it may take [bytes].
+/// They are stored if they fit, and computed anew in every pass otherwise.
 struct InteractionStorage {
   double needed = 0.0, room = 0.0;
   [[nodiscard]] bool fits() const { return needed <= room; }
@@ -26,7 +26,7 @@ struct InteractionStorage {
 /// from then on.
 struct Body {
   Body() = default;
-  Body(const Body&) = delete;  // its members refer to its points: it stays where it is made
+  Body(const Body&) = delete;  // its members refer to its points, so it can't be moved
   Body& operator=(const Body&) = delete;
 
   BodySpecification specification;
@@ -35,18 +35,19 @@ struct Body {
   Model model;
   std::unique_ptr<Conditions> conditions;  // refers to points
   InteractionStorage interaction_storage;
-  std::vector<std::int32_t> region;  ///< per point, from 0; -1: of none; empty without regions
-  PointFactors factors;              ///< by random fields
-  std::vector<double> cut_weight;    ///< per point, of the bonds that pre-cracks have cut [m6]
+  std::vector<std::int32_t> region;  ///< per point, from 0; -1: in no region; empty without regions
+  PointFactors factors;              ///< of random fields
+  std::vector<double> cut_weight;    ///< per point, sum over the bonds that pre-cracks have cut
+                                     ///< [m6]
   std::vector<BondEnds> cut_bonds;   ///< by pre-cracks
   CollocationSummary collocation;    ///< of model lps
   double seconds_neighbourhood = 0.0;
-  std::unique_ptr<const PartOfBody> part;  ///< null: the body is whole
+  std::unique_ptr<const PartOfBody> part;  ///< null: the body is not partitioned
 
   [[nodiscard]] double horizon_ratio() const { return setting.horizon / points.spacing; }
 };
 
-/// A body of points. It may still move freely: that is refused where it is solved.
+/// Makes a body of points. It may still move freely: that is refused where it is solved.
 /// @param points with the sets that supports and loads name
 /// @param threads 0: as many as OpenMP takes by itself
 /// @throws InputError with the member that is wrong ("horizon", "material.youngs_modulus",
@@ -55,30 +56,31 @@ struct Body {
 [[nodiscard]] std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of,
                                                     int threads = 0);
 
-/// The setting of a body's bonds, as far as it does not depend on which points are here.
+/// Returns the setting of a body's bonds, as far as it does not depend on the points of this rank.
 [[nodiscard]] BondSetting bond_setting(const BodySpecification& of, const Points& points);
 
-/// The kinds of images that points of a body have beyond its planes of symmetry and periods.
-/// @param points of the body, or of this rank without ghosts, in a call that all make
+/// Returns the kinds of images that points of a body have beyond its planes of symmetry and
+/// periods. Collective.
+/// @param points of the body, or of this rank without ghosts
 /// @throws InputError as image_kinds does
 [[nodiscard]] std::vector<ImageKind> kinds_of_images(const BodySpecification& of,
                                                      const Points& points,
                                                      const Communicator& ranks);
 
-/// This rank's part of a body. A call that all ranks make.
+/// Makes this rank's part of a partitioned body. Collective.
 /// @param part with ghosts as far as reach_of_bonds, of kinds_of_images too, and with all sets that
 ///        are named
-/// @throws InputError, MemoryError as the other does, perhaps on one rank alone; and for what has
-///         no ranks yet
+/// @throws InputError, MemoryError as the other make_body does, perhaps on one rank alone; also for
+///         features that are for one rank only
 [[nodiscard]] std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
                                                     const Communicator& ranks, int threads);
 
-/// Elastic bonds between the points of a body of model "bond" with another horizon.
+/// Makes elastic bonds between the points of a body of model "bond" with another horizon.
 /// @throws InputError as make_body does
 [[nodiscard]] Model make_elastic_bonds(const Body& body, Bonds bonds, const BondSetting& setting);
 
-/// Adds the pressures and foundations that the body's conditions have, and its inertia, to a model
-/// of its points: its own has them.
+/// Adds the pressures and foundations of the body's conditions, and its inertia, to a model of its
+/// points. The body's own model has them already.
 void add_terms_of_conditions(Model& model, const Body& body);
 
 /// Number of threads to run on.
@@ -90,28 +92,29 @@ void add_terms_of_conditions(Model& model, const Body& body);
 /// Body size for the memory estimate.
 [[nodiscard]] BodySize size_of(const Points& points);
 
-/// Radius, in spacings, of a ball of the volume of all cells that a point sees parts of: the
-/// horizon ratio itself unless shares of cells are exact. By Steiner's formula cells of edge 1 that
-/// meet a ball of radius m are 2m + 1, pi m^2 + 4m + 1 and 4/3 pi m^3 + 3 pi m^2 + 6m + 1 in the
-/// mean.
+/// Radius, in spacings, of a ball with the volume of all cells that a point sees parts of: the
+/// horizon ratio itself unless partial volumes are exact. By Steiner's formula the mean number of
+/// cells of edge 1 that meet a ball of radius m is 2m + 1, pi m^2 + 4m + 1 and 4/3 pi m^3 + 3 pi
+/// m^2 + 6m + 1.
 [[nodiscard]] double reach_ratio(VolumeCorrection correction, HorizonShape shape, int dimension,
                                  double horizon_ratio);
 
-/// Bonds of so many points, as far as horizon and dimension tell.
+/// Expected number of bonds of so many points, from horizon and dimension alone.
 [[nodiscard]] double expected_bonds(double points, int dimension, double horizon_ratio);
 
-/// The estimate from the counts that the body has.
+/// Memory estimate from the counts of the body.
 [[nodiscard]] MemoryEstimate estimate_memory(const Body& body);
 
-/// Lines that tell the triangles and tetrahedra, whether they are stored, and whether neighbours
-/// are such by round-off; empty for bonds whose horizon lies between distances of their points.
+/// Lines that describe the triangles and tetrahedra, their storage, and neighbours that are such
+/// only by round-off; empty for bonds whose horizon lies between distances of their points.
 [[nodiscard]] std::vector<std::string> describe_interactions(const Body& body);
 
-/// Lines that tell rigid sets, rollers, linear constraints, planes of symmetry and periods.
+/// Lines that describe foundations, rigid sets, rollers, linear constraints, planes of symmetry and
+/// periods.
 [[nodiscard]] std::vector<std::string> describe_constraints(const Body& body);
 
 /// @throws InputError ("supports", "cracks" or "points") if a part of the body may move freely, or
-///         points swing
+///         points have too few bonds
 void refuse_unheld_bodies(const Body& body);
 
 }  // namespace peristat

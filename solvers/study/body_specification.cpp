@@ -34,7 +34,7 @@ void require_within(double value, double least, double most, const std::string& 
           "must be from " + number_text(least) + " to " + number_text(most));
 }
 
-/// Refuses a law with too little or too much to find its stretches from.
+/// Refuses a law with too little or too much data to find its stretches.
 void check_data(const DamageSpecification& damage, const std::string& table) {
   const auto is_given = [](double stretch) { return stretch != 0.0; };
   require_positive(damage.fracture_energy, table + "fracture_energy");
@@ -129,7 +129,7 @@ void check_cpd_material(const MaterialSpecification& material, const std::string
                  has_moduli ? "follows from youngs_modulus and poisson_ratio" : "must be 0 in 2D");
 }
 
-/// Of model lps or correspondence.
+/// Checks a material of model lps or correspondence.
 void check_solid_material(const MaterialSpecification& material, const std::string& key,
                           int dimension) {
   const std::string name = material.model == MaterialModel::lps ? "lps" : "correspondence";
@@ -139,7 +139,7 @@ void check_solid_material(const MaterialSpecification& material, const std::stri
   const double nu = *material.poisson_ratio;
   require(nu > -1.0 && nu < 0.5, key + ".poisson_ratio", number_text(nu),
           "must be above -1 and below 0.5");
-  // In plane stress nothing is incompressible at 1/2.
+  // In plane stress 1/2 is no incompressible limit.
   const bool is_plane_stress = dimension == 2 && material.plane == PlaneState::stress;
   require(1.0 + nu >= least_distance_of_poisson_ratio &&
               (is_plane_stress || 1.0 - 2.0 * nu >= least_distance_of_poisson_ratio),
@@ -166,7 +166,7 @@ void check_solid_material(const MaterialSpecification& material, const std::stri
                  "is not for the model " + name);
 }
 
-/// What convolutions sum alone has one potential and one way to fail.
+/// Checks that a model for convolutions alone has its one potential and its one damage law.
 void check_polynomial_material(const MaterialSpecification& material, const std::string& key) {
   const MaterialSpecification defaults;
   const bool is_stabilised = material.model == MaterialModel::correspondence;
@@ -291,7 +291,7 @@ void check_material(const MaterialSpecification& material, const std::string& ke
 
 namespace {
 
-/// Materials of regions and interfaces are of the body's model.
+/// Requires that materials of regions and interfaces have the body's model.
 void require_of_body(const MaterialSpecification& material, const std::string& key,
                      const BodySpecification& of) {
   const std::string same = "must be the same for all materials of a body";
@@ -355,7 +355,7 @@ void check_regions(const BodySpecification& of, int dimension) {
   }
 }
 
-/// Refuses what the quadrature of model lps does not take in its form.
+/// Refuses settings that model lps does not support in its form.
 void check_solid(const BodySpecification& of) {
   require_absent(of.weights != InteractionWeights::mean, "weights", "is for the model cpd");
   require_absent(of.eigenstrains.are_there(), "eigenstrains", "are not for the model lps");
@@ -381,7 +381,7 @@ void check_solid(const BodySpecification& of) {
                  "material.influence", "of the model lps by collocation is \"inverse\"");
 }
 
-/// Refuses what belongs to the other model's weights.
+/// Refuses weights and corrections that belong to another model.
 void check_weights(const BodySpecification& of, const Points& points) {
   require_absent(of.form != SolidForm::collocation && !of.has_states(), "form",
                  "is for the model lps");
@@ -432,7 +432,7 @@ void check_horizon_shape(const BodySpecification& of, const Points& points) {
   if (!points.neighbours.empty()) refuse("is for neighbours that are found");
 }
 
-/// Refuses what would come on top of given shares, or has nothing to do with them.
+/// Refuses settings that would come on top of given partial volumes, or have no effect on them.
 void check_neighbours(const BodySpecification& of, const Points& points) {
   if (points.neighbours.empty()) return;
   require(of.material.model == MaterialModel::bond, "material.model", "cpd",
@@ -445,14 +445,14 @@ void check_neighbours(const BodySpecification& of, const Points& points) {
       "add up to inside a body; give \"energy\" or \"none\"");
 }
 
-/// Volumes, spacing and cross-section are not independent of each other.
+/// Checks the cross-section, which follows from volumes and spacing.
 void check_cross_section(const BodySpecification& of, const Points& points) {
   const double has = points.cross_section();
   const double given = points.dimension == 3 ? 1.0 : of.cross_section;
   if (of.cross_section != 0.0) require_positive(of.cross_section, "cross_section");
   require(points.dimension < 3 || of.cross_section == 0.0 || of.cross_section == 1.0,
           "cross_section", number_text(of.cross_section), "must be 1 in 3D");
-  // What a part has of a cloud has a mean of its own.
+  // The points of a part of a cloud have a mean volume of their own.
   const bool is_known = !points.owned || points.cell_volume > 0.0;
   if (given == 0.0 || !is_known) return;
   // The volumes' sum has round-off; a wrong thickness or spacing is off by far more.
@@ -513,7 +513,8 @@ void require_whole_square_cells(const Points& points) {
 
 namespace {
 
-/// A plane of symmetry mirrors the fibres, too: beyond it they run otherwise, unless along an axis.
+/// Requires fibres along an axis beside planes of symmetry, which mirror them: beyond the plane
+/// they would have another direction.
 void check_mirrored_fibres(const BodySpecification& of, int dimension) {
   if (of.constraints.symmetries.empty()) return;
   const auto check = [&](const MaterialSpecification& material, const std::string& key) {
@@ -539,7 +540,7 @@ void check_mirrored_fibres(const BodySpecification& of, int dimension) {
 
 namespace {
 
-/// Bonds of a cloud have no lattice that they could be calibrated on.
+/// Refuses a calibration on the lattice for bonds of a cloud, which has none.
 void require_lattice_to_calibrate_on(const BodySpecification& of, const Points& points) {
   const auto check = [&](const MaterialSpecification& material, const std::string& key) {
     require(material.model != MaterialModel::bond || material.calibration != Calibration::lattice ||
@@ -560,7 +561,7 @@ void require_lattice_to_calibrate_on(const BodySpecification& of, const Points& 
 
 namespace {
 
-/// What nothing but convolutions sums.
+/// Checks a model that only convolutions can sum.
 void check_convolved_body(const BodySpecification& of) {
   if (of.needs_convolutions()) {
     require(of.is_convolved(), "force_operator", "bonds",

@@ -24,38 +24,39 @@
 
 namespace peristat {
 
-/// Bonds alone, continuum-kinematics-inspired peridynamics, or the linear peridynamic solid; and by
-/// convolutions alone bonds by the difference of squared lengths, and a correspondence material.
+/// Bond-based, continuum-kinematics-inspired peridynamics, or the linear peridynamic solid; by
+/// convolutions alone also bonds with the difference of squared lengths, and a correspondence
+/// material.
 enum class MaterialModel { bond, cpd, lps, green_bond, correspondence };
 
-/// Whether a model's constants are those of bonds.
+/// True if a model's constants are those of bonds.
 constexpr bool has_bonds(MaterialModel model) {
   return model == MaterialModel::bond || model == MaterialModel::green_bond;
 }
 
-/// Whether they are those of an isotropic continuum.
+/// True if they are those of an isotropic continuum.
 constexpr bool has_lame_constants(MaterialModel model) {
   return model == MaterialModel::lps || model == MaterialModel::correspondence;
 }
 
-/// Whether forces are polynomials of displacements, which convolutions sum and nothing else does.
+/// True if forces are polynomials of displacements, which only convolutions can sum.
 constexpr bool is_polynomial(MaterialModel model) {
   return model == MaterialModel::green_bond || model == MaterialModel::correspondence;
 }
 
-/// What constants from E and nu are to be right on.
+/// Where constants from E and nu are exact.
 enum class Calibration { lattice, continuum };
 
-/// Whether bonds stretch by their lengths, or by the displacements along them at rest.
+/// Do bonds stretch by their lengths, or by the displacements along them at rest?
 enum class Kinematics { finite, linear };
 
 /// How forces of linear kinematics are summed: bond by bond, or by convolutions on a lattice.
 enum class ForceOperator { automatic, bonds, fft };
 
-/// How bonds fail, or points.
+/// Law by which bonds, or points, fail.
 enum class DamageLaw {
   none,
-  energy_density,  ///< of points whose energy density exceeds fracture_energy / (2 horizon)
+  energy_density,  ///< points fail if their energy density exceeds fracture_energy / (2 horizon)
   critical_stretch,
   tanh,
   tanh_continuous,
@@ -72,36 +73,37 @@ struct DamageSpecification {
   std::vector<std::string> no_fail{};  ///< sets whose points' bonds never fail
   double peak = 0.0;                   ///< s_p, of the blended law
   double hardening = 0.5;              ///< h, of the blended law
-  /// In the place of `critical`: of a plane crack, the mean over its directions [J/m2].
+  /// In the place of `critical`: fracture energy of a plane crack, the mean over its directions
+  /// [J/m2].
   std::optional<double> fracture_energy{};
-  /// In the place of `onset` (of `critical`, of the law critical_stretch): E times the largest
-  /// force of a bond over c [Pa].
+  /// In the place of `onset` (of `critical` for the law critical_stretch): largest stress of the
+  /// bulk under a pull, see with_stretches [Pa].
   std::optional<double> strength{};
 
-  /// Whether some stretches are still to be found.
+  /// True if some stretches are still to be computed from these data.
   [[nodiscard]] bool is_by_data() const {
     return law != DamageLaw::energy_density && (fracture_energy || strength);
   }
 
-  /// Whether bonds break one by one, by their stretches.
+  /// True if bonds break one by one, by their stretches.
   [[nodiscard]] bool breaks_bonds() const {
     return law != DamageLaw::none && law != DamageLaw::energy_density;
   }
-  /// Whether stiffness is lost over a range of stretches.
+  /// True if stiffness is lost over a range of stretches.
   [[nodiscard]] bool softens() const {
     return breaks_bonds() && law != DamageLaw::critical_stretch;
   }
-  /// Whether a rate is part of the law.
+  /// True if the law has a rate.
   [[nodiscard]] bool has_rate() const {
     return softens() && law != DamageLaw::linear && law != DamageLaw::blended;
   }
-  /// Share of the range from onset to critical over which the force rises.
+  /// Fraction of the range from onset to critical over which the force rises.
   [[nodiscard]] double rise() const {
     return law == DamageLaw::blended ? (peak - onset) / (critical - onset) : 0.0;
   }
 };
 
-/// Fibres, along which the moduli and stretches of the material hold; bonds across them have these.
+/// Fibres. The moduli and stretches of the material hold along them, the members here across them.
 struct FibreSpecification {
   double angle = 0.0;                           ///< 2D: against the x axis [degrees]
   Coordinates direction{};                      ///< 3D, of any length
@@ -110,22 +112,22 @@ struct FibreSpecification {
   std::optional<double> transverse_critical{};  ///< s_c of bonds across; none: as along
 };
 
-/// A random factor of the bonds, the mean of those of their two points.
+/// Random factor of the bonds, the mean of the factors of their two points.
 struct ScatterSpecification {
   enum class Quantity { stiffness, strength };
   enum class Distribution { weibull };
-  Quantity of = Quantity::stiffness;  ///< of their constants, or of all stretches of their law
+  Quantity of = Quantity::stiffness;  ///< scales their constants, or all stretches of their law
   Distribution distribution = Distribution::weibull;
   WeibullField field{};
 };
 
 struct MaterialSpecification {
   MaterialModel model = MaterialModel::bond;
-  std::string potential = Harmonic::name;  ///< of whole bonds, see WholeBondPotentials
+  std::string potential = Harmonic::name;  ///< of undamaged bonds, see WholeBondPotentials
   PlaneState plane = PlaneState::stress;
-  Kinematics kinematics = Kinematics::finite;  ///< of bonds; lps is linear whatever stands here
-  /// omega of bonds, see Influences; of lps with the form `energy` its kernel K, which in its other
-  /// form is the inverse one whatever stands here
+  Kinematics kinematics = Kinematics::finite;  ///< of bonds; lps is always linear
+  /// omega of bonds, see Influences. For lps with the form `energy` it is its kernel K; the form
+  /// collocation always has the inverse one.
   std::string influence = ConstantInfluence::name;
   std::optional<double>
       youngs_modulus{};                   ///< [Pa]; exactly one of this, micromodulus and c1 is set
@@ -143,23 +145,24 @@ struct MaterialSpecification {
   std::vector<ScatterSpecification> scatter{};
 
   [[nodiscard]] bool has_constants() const { return youngs_modulus || micromodulus || c1; }
-  /// Bonds alone have the published constants of the continuum unless told otherwise.
+  /// By default cpd is calibrated on the lattice; others have the published constants of the
+  /// continuum.
   [[nodiscard]] Calibration calibrated_on() const {
     const bool is_cpd = model == MaterialModel::cpd;
     return calibration.value_or(is_cpd ? Calibration::lattice : Calibration::continuum);
   }
 };
 
-/// The points of a set are of a material of their own.
+/// Set whose points have a material of their own.
 struct RegionSpecification {
   std::string set{};
   MaterialSpecification
       material{};  ///< model, potential, plane and influence are those of the body
 };
 
-/// What holds between points of two materials: their constants by a rule, or constants of its own.
+/// Law between points of two materials: their constants by a rule, or constants of its own.
 struct InterfaceSpecification {
-  /// Sets of regions, or `rest_name` for the points of none; both empty: all other pairs.
+  /// Sets of regions, or `rest_name` for the points in none; both empty: all other pairs.
   std::array<std::string, 2> between{};
   InterfaceRule rule = InterfaceRule::harmonic;
   std::optional<MaterialSpecification> material{};
@@ -167,32 +170,32 @@ struct InterfaceSpecification {
   [[nodiscard]] bool is_of_all() const { return between[0].empty(); }
 };
 
-/// Regions and interfaces of a body at most: points and bonds keep a byte of which they are.
+/// Largest number of regions and interfaces of a body: points and bonds store theirs in a byte.
 inline constexpr std::size_t most_materials = 200;
 
 /// Name of the material of the points in no region.
 inline constexpr const char* rest_name = "material";
 
-/// Whether forces of model lps are those of [LPS] at points, exact for linear displacements, or the
-/// derivative of an energy.
+/// Forces of model lps: those of [LPS] at points, exact for linear displacements, or the derivative
+/// of an energy.
 /// `printed`: as [FCBM] has them, without a potential where neighbourhoods differ.
 enum class SolidForm { collocation, energy, printed };
 
-/// Normals of model lps where balls are cut: those of the neighbourhoods, or, at points below one
-/// face, that have lost no bond, the face's.
+/// Normals of model lps where a face cuts the balls: those of the neighbourhoods or, at points
+/// below a single face that have lost no bond, the face's.
 enum class NormalSource { numerical, exact };
 
-/// How the operator of model lps is summed in the form of collocation.
+/// Options of model lps in the form of collocation.
 struct CollocationSpecification {
   int degree = 5;  ///< of the polynomials that the quadrature is exact for
   TractionForm traction_form = TractionForm::full;
   NormalSource normals = NormalSource::numerical;
 };
 
-/// What makes a body of points.
+/// Specification of a body of points.
 struct BodySpecification {
   double horizon = 0.0;  ///< [m]
-  /// 1D: area [m2]; 2D: thickness [m]; 3D: 1. 0: as the points have it.
+  /// 1D: area [m2]; 2D: thickness [m]; 3D: 1. 0: that of the points.
   double cross_section = 0.0;
   VolumeCorrection volume_correction = VolumeCorrection::none;
   HorizonShape horizon_shape = HorizonShape::ball;  ///< along the lattice's axes
@@ -200,14 +203,14 @@ struct BodySpecification {
   InteractionWeights weights = InteractionWeights::mean;  ///< of cpd
   SolidForm form = SolidForm::collocation;                ///< of lps
   CollocationSpecification collocation{};                 ///< of lps in that form
-  /// Faces of the body and names of their shapes, for tractions of model lps; null: nobody knows
-  /// them. A body does not keep them.
+  /// Faces of the body and names of their shapes, for tractions of model lps; null: not known. A
+  /// body does not keep them.
   std::shared_ptr<const BodyBoundary> boundary{};
   std::vector<std::string> boundary_names{};
   ForceOperator force_operator =
       ForceOperator::bonds;  ///< of linear kinematics; see faster_operator
   std::vector<Crack> cracks{};
-  /// Of the points in no region. Without constants every point has to be in one.
+  /// Material of the points in no region. Without constants every point must be in a region.
   MaterialSpecification material{};
   std::vector<RegionSpecification> regions{};
   std::vector<InterfaceSpecification> interfaces{};
@@ -216,34 +219,35 @@ struct BodySpecification {
   std::vector<FoundationSpecification> foundations{};
   ConstraintSpecification constraints{};
   Eigenstrains eigenstrains{};
-  /// In the place of `load`, see DisplacementControl; none: the programme's own.
+  /// Terms of the displacement that is controlled in the place of `load`, see DisplacementControl;
+  /// none: `load` is the programme's own.
   std::vector<ControlTerm> controls{};
   /// Tables of the load parameters `load`, `load2`, …, see LoadingProgramme; none: `load` from 0 to
-  /// 1. With controls the first table is of the controlled displacement [m].
+  /// 1. With controls the first table is that of the controlled displacement [m].
   std::vector<std::vector<double>> programme{};
-  /// In their place the time `t`, up to this [s]: of a body in motion.
+  /// In the place of the tables the time `t`, up to this [s]: for a body in motion.
   std::optional<double> end_time{};
   std::vector<InitialSpecification> initial{};      ///< of a body in motion
   std::vector<AbsorbingSpecification> absorbing{};  ///< likewise
-  bool has_inertia = false;                         ///< of one whose motion implicit steps follow
-  /// Most teeth of the saw-tooth in the place of each law of damage whose force falls smoothly; 0:
-  /// the laws as they are.
+  bool has_inertia = false;                         ///< for a motion by implicit steps
+  /// Largest number of teeth of the saw-tooth that replaces each law of damage with a smoothly
+  /// falling force; 0: the laws as they are.
   int teeth = 0;
-  /// Memory that is to be left for what is found of a state beside the search for it [bytes].
+  /// Memory per point to leave for the evaluation of a state beside the search for it [bytes].
   double evaluation_bytes_per_point = 0.0;
 
-  /// Whether it is of model lps, in the one form or the other.
+  /// True for model lps with the form collocation, and (has_states) with another form.
   [[nodiscard]] bool is_collocated() const {
     return material.model == MaterialModel::lps && form == SolidForm::collocation;
   }
   [[nodiscard]] bool has_states() const {
     return material.model == MaterialModel::lps && form != SolidForm::collocation;
   }
-  /// Whether its bonds are linearised at rest.
+  /// True if its bonds are linearised at rest.
   [[nodiscard]] bool is_linear() const {
     return material.model == MaterialModel::bond && material.kinematics == Kinematics::linear;
   }
-  /// Whether nothing but convolutions sums its forces.
+  /// True if only convolutions can sum its forces.
   [[nodiscard]] bool needs_convolutions() const {
     return is_polynomial(material.model) || (has_states() && form == SolidForm::printed);
   }
@@ -254,7 +258,7 @@ struct BodySpecification {
       return load.kind == LoadSpecification::Kind::pressure;
     });
   }
-  /// Whether all bonds follow from one micromodulus and one law.
+  /// True if all bonds follow from one micromodulus and one law.
   [[nodiscard]] bool is_uniform() const {
     return regions.empty() && !material.fibre && material.scatter.empty();
   }
@@ -265,22 +269,22 @@ struct BodySpecification {
 /// @throws InputError ("points.…")
 void check_points(const Points& points);
 
-/// Refuses a material that contradicts itself or lacks something.
+/// Refuses a material that contradicts itself or is incomplete.
 /// @param key of the material, for errors
 /// @throws InputError
 void check_material(const MaterialSpecification& material, const std::string& key, int dimension);
 
-/// Refuses what contradicts itself, lacks something or would be overlooked, like a Poisson ratio
-/// given to bonds alone.
+/// Refuses a specification that contradicts itself, is incomplete or would be ignored in part, like
+/// a Poisson ratio given to bonds alone.
 /// @throws InputError ("horizon", "cross_section", "material.…", "cracks[0].…", …)
 void check_specification(const BodySpecification& of, const Points& points);
 
-/// Refuses a lattice that model "cpd" is not made for.
+/// Refuses a lattice that model "cpd" does not support.
 /// @throws InputError ("material.model")
 void require_whole_square_cells(const Points& points);
 
 /// Refuses a horizon whose neighbourhood in the bulk takes minutes to sum, however small the body.
-/// @param key   what holds the horizon, for the error
+/// @param key   key of the horizon, for the error
 /// @param ratio horizon / spacing
 /// @throws InputError
 void require_summable(MaterialModel model, int dimension, const std::string& key,

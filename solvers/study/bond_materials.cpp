@@ -44,8 +44,8 @@ Coordinates direction_of(const FibreSpecification& fibre, int dimension) {
                        : "no shear_modulus does with the first two"));
 }
 
-/// Whether laws are the same but for the stretches that they begin and end at; the blended one
-/// also has its relative peak.
+/// True if laws differ at most in their onset and critical stretch; blended ones must also have the
+/// same relative peak.
 bool same_law(const DamageSpecification& one, const DamageSpecification& other) {
   if (one.law != other.law) return false;
   switch (one.law) {
@@ -54,7 +54,7 @@ bool same_law(const DamageSpecification& one, const DamageSpecification& other) 
     case DamageLaw::exponential:
       return one.rate == other.rate;
     case DamageLaw::blended:
-      // What is found from data has round-off, and the tolerance of a strength.
+      // Values found from data have round-off, and the tolerance of a strength.
       return one.hardening == other.hardening && std::abs(one.rise() - other.rise()) < 1e-6;
     case DamageLaw::critical_stretch:
     case DamageLaw::linear:
@@ -86,7 +86,7 @@ DirectedConstant micromodulus_of(const MaterialSpecification& material, const st
                            fibre.shear_modulus.value_or(natural_shear(along, across, setting))};
   const DirectedConstant constant =
       directed_micromodulus(moduli, direction_of(fibre, setting.dimension), setting);
-  // A bond of no stiffness would hold together what it can't hold.
+  // A bond without stiffness would connect points that it can't hold.
   if (!(constant.least() > 1e-6 * constant.at(1.0))) refuse_negative(moduli, key, setting);
   return constant;
 }
@@ -155,7 +155,7 @@ std::optional<BondMaterials::Strength> BondMaterials::strength(std::size_t kind,
   const auto& [constant, material] = kinds_[kind];
   const DamageSpecification& damage = material->damage;
   if (damage.law == DamageLaw::none) return {};
-  double share = 1.0;  // of the stretches along the fibres
+  double share = 1.0;  // relative to the stretches along the fibres
   if (material->fibre && material->fibre->transverse_critical) {
     const double t = constant.alignment(n);
     share = t + (1.0 - t) * *material->fibre->transverse_critical / damage.critical;
@@ -164,8 +164,8 @@ std::optional<BondMaterials::Strength> BondMaterials::strength(std::size_t kind,
   return Strength{kind, share * onset, share * damage.critical};
 }
 
-/// Like laws have the mean of their stretches; of unlike ones the weaker decides, and a bond is as
-/// strong as a material that does not fail lets it be.
+/// Bonds between equal laws have the mean of their stretches; between different ones the weaker law
+/// decides. If one of the materials does not fail, the bond has the law of the other.
 std::optional<BondMaterials::Strength> BondMaterials::strength(std::size_t a, std::size_t b,
                                                                const Coordinates& n) const {
   if (a == b) return strength(a, n);

@@ -27,28 +27,27 @@ struct PointFactors {
   }
 };
 
-/// Constants and laws of damage of the bonds of a body that has more than one of either: of several
-/// regions, with fibres or with random fields.
+/// Constants and laws of damage of the bonds of a body that has several of them: a body with
+/// regions, fibres or random fields.
 ///
-/// The stiffness of a bond is part of its weight, relative to that of the first material: kernels
-/// have one modulus. The law of damage is the potential's, the same for all bonds or one for each
-/// (DegradedByBond).
+/// The stiffness of a bond is part of its weight, relative to that of the first material, because
+/// kernels have one modulus. The law of damage is the potential's, the same for all bonds or one
+/// for each (DegradedByBond).
 class BondMaterials {
  public:
-  /// @param constants per material, and of each interface with constants of its own (see
-  ///        constants_of)
+  /// @param constants per material, and per interface with constants of its own (see all_materials)
   BondMaterials(const BodySpecification& from, const PointMaterials& materials,
                 const PointFactors& factors, const Points& points,
                 std::vector<DirectedConstant> constants);
 
-  /// What the potential of all bonds has as modulus [N/m6].
+  /// Modulus of the potential of all bonds [N/m6].
   [[nodiscard]] double modulus() const { return modulus_; }
 
   /// Multiplies the weights of bonds by their stiffness over the modulus.
   void weigh(Bonds& bonds) const;
 
-  /// The potential of bonds, and which of them never fail: those without a law, and those of the
-  /// sets of no_fail.
+  /// The potential of bonds, and flags of those that never fail: bonds without a law, and those of
+  /// the sets of no_fail.
   struct Failing {
     BondPotential potential;
     std::vector<char> never_fails;
@@ -56,7 +55,7 @@ class BondMaterials {
   [[nodiscard]] Failing potential(const Bonds& bonds) const;
 
  private:
-  /// With laws whose force falls as it does.
+  /// The potential with smoothly falling laws, without a saw-tooth.
   [[nodiscard]] Failing smooth_potential(const Bonds& bonds) const;
 
   /// Constants and law of one kind of bond.
@@ -95,7 +94,7 @@ class BondMaterials {
 [[nodiscard]] std::vector<PointMaterials::Material> all_materials(const BodySpecification& from,
                                                                   const PointMaterials& materials);
 
-/// Refuses an interface that no bond crosses: a name or a set is not what it was taken for.
+/// Refuses an interface that no bond crosses: a name or a set must be wrong.
 /// @throws InputError ("interfaces[0].between")
 void refuse_idle_interfaces(const BodySpecification& from, const PointMaterials& materials,
                             const Bonds& bonds);

@@ -11,7 +11,7 @@
 
 namespace peristat {
 
-/// The law of damage by its numbers; without one, that of a bond that is broken from the start.
+/// Law of damage with its numbers; for `none`, the law of a bond that is broken from the start.
 [[nodiscard]] AnyLaw law_of(const DamageSpecification& damage);
 
 /// Potential of the bonds of a body.
@@ -20,11 +20,11 @@ namespace peristat {
                                            double micromodulus);
 
 /// The same potential with a law of damage for each bond.
-/// @throws std::logic_error if it is none of bonds that fail
+/// @throws std::logic_error if its bonds never fail
 [[nodiscard]] BondPotential with_laws(const BondPotential& failing,
                                       std::shared_ptr<const BondLaws> laws);
 
-/// Flags of the bonds of the points of the sets that never fail, by any of the materials; empty
+/// Flags of bonds with a point in one of the no_fail sets of any material, which never fail; empty
 /// without such sets.
 /// @throws InputError if there is no such set
 [[nodiscard]] std::vector<char> never_failing_bonds(

@@ -15,7 +15,7 @@
 namespace peristat {
 namespace {
 
-/// Micromodulus of bonds that dissipate what a crack of the solid does.
+/// Micromodulus of bonds that dissipate as much as a crack of the solid.
 double modulus_of_crack(const MaterialSpecification& material, const BondSetting& setting) {
   const double energy = crack_energy_of_dilation(lame_constants(material, setting.dimension),
                                                  setting.horizon, setting.dimension);
@@ -38,10 +38,11 @@ void require_lattice(const Points& points) {
   }
 }
 
-/// A square corner has a whole ball two bonds away, an angle of 30 degrees one that is four away.
+/// Number of bonds within which each point finds a whole ball: a square corner needs two, an angle
+/// of 30 degrees four.
 constexpr int farthest_whole_ball = 4;
 
-/// Place of the first point of the whole body that has none of something.
+/// Position of the first point of the whole body whose entry is 0; nothing if there is none.
 std::optional<Coordinates> first_without(const std::vector<double>& has, const Points& points,
                                          const PartOfBody* part) {
   constexpr double nowhere = 1e300;
@@ -57,9 +58,9 @@ std::optional<Coordinates> first_without(const std::vector<double>& has, const P
   return place;
 }
 
-/// Between faces less than two horizons apart no ball is whole, and what surfaces there lack is
-/// made up from points that lack as much: the operator has eigenvalues of the other sign, so that
-/// a strip bends against its load.
+/// Refuses bodies thinner than two horizons. Between such faces no ball is whole, and deficits of
+/// surfaces are made up from points with the same deficit: the operator has eigenvalues of the
+/// other sign, so that a strip bends against its load.
 void refuse_thin_bodies(const Points& points, const CollocationNetwork& network,
                         const PartOfBody* part) {
   const Index own = points.owned.value_or(points.count());
@@ -84,7 +85,7 @@ void refuse_thin_bodies(const Points& points, const CollocationNetwork& network,
                        "quadrature.form = \"energy\"");
 }
 
-/// Normals of the face above a point, where there is one alone and nothing is cut.
+/// Normals of the face above a point that has a single face and no cut bonds; zero elsewhere.
 std::vector<double> normals_of_faces(const BodySpecification& from, const Points& points,
                                      double horizon, const CollocationNetwork& network,
                                      const CutBonds& cut) {

@@ -8,7 +8,7 @@
 
 namespace peristat {
 
-/// What to tell of the quadrature of a body of model "lps".
+/// Summary of the quadrature of a body of model "lps", for reports.
 struct CollocationSummary {
   Index negative = 0, lowered = 0, solves = 0;
   double lowest = 0.0;  ///< weight over the volume of a cell
@@ -17,14 +17,14 @@ struct CollocationSummary {
 /// Constants of a material of model "lps" [Pa].
 [[nodiscard]] LamePair lame_constants(const MaterialSpecification& material, int dimension);
 
-/// Stretch at which its bonds break so that a plane crack takes the fracture energy under a uniform
+/// Critical stretch with which a plane crack takes the fracture energy under a uniform
 /// dilation, see crack_energy_of_dilation.
 [[nodiscard]] double lps_critical_stretch(const MaterialSpecification& material,
                                           const BondSetting& setting, double fracture_energy);
 
-/// Model of a body of model "lps", and what its pre-cracks have cut. Its bonds are those of a bond
-/// model that dissipates as much.
-/// @param part of a body that these are; null: it is whole
+/// Makes the model of a body of model "lps"; `cut` receives the bonds that its pre-cracks have cut.
+/// Its bonds are those of a bond model that dissipates as much.
+/// @param part null: the body is not partitioned
 /// @throws InputError ("material.model") for points on no lattice of squares or cubes, and as
 ///         optimised_weights does
 [[nodiscard]] Model make_collocation_model(const BodySpecification& from,

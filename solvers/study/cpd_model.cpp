@@ -17,22 +17,22 @@
 namespace peristat {
 namespace {
 
-/// Triangles or tetrahedra of a body, with their constant.
+/// Constant of the triangles or tetrahedra of a body.
 struct HigherConstant {
-  double constant = 0.0;     ///< C2 or C3 that factors multiply; 0: there are none
-  FactorsOfKinds factors{};  ///< over the kinds of points of several materials
+  double constant = 0.0;     ///< C2 or C3, multiplied by the factors; 0: there are none
+  FactorsOfKinds factors{};  ///< by the kinds of points of several materials
 };
 
-/// Gives ghosts what their owners have, one value per point.
+/// Gives ghosts the values of their owners, one per point.
 void update_ghosts(const PartOfBody& part, int dimension, std::vector<double>& values) {
   const auto d = std::size_t(dimension);
-  std::vector<double> first(values.size() * d, 0.0);  // of as many as an exchange is made for
+  std::vector<double> first(values.size() * d, 0.0);  // an exchange has d values per point
   for (std::size_t i = 0; i < values.size(); ++i) first[i * d] = values[i];
   part.update_ghosts(first);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = first[i * d];
 }
 
-/// Of the points of a part in the whole body, images behind them as they are there.
+/// Numbers in the whole body of the points of a part, followed by images as they are there.
 PointNumbers numbers_of(const PartOfBody& part, const Points& points) {
   PointNumbers numbers;
   for (Index point = 0; point < points.count(); ++point) {
@@ -42,10 +42,12 @@ PointNumbers numbers_of(const PartOfBody& part, const Points& points) {
   return numbers;
 }
 
-/// @param bonds of the whole body, which the effective volumes belong to: a crack is no surface
-/// @param left those that have an influence and that pre-cracks have not cut; an interaction with
-///        another one is lost
-/// @param part null: the body is whole. Otherwise a ghost's interactions are its owner's to count
+/// @param bonds of the body without cracks, to which the effective volumes belong: a crack is no
+///        surface
+/// @param left bonds that have an influence and that pre-cracks have not cut; interactions with
+///        other bonds are lost
+/// @param part null: the body is not partitioned. Otherwise a ghost's interactions are counted by
+///        its owner
 template <class Measure>
 Simplices<Measure> make_simplices(const BodySpecification& from, const Points& points,
                                   const Bonds& bonds, const Bonds& left,
@@ -83,10 +85,10 @@ CpdStiffness stiffness_of(const MaterialSpecification& material, const BondSetti
              : continuum_stiffness(setting.dimension, setting.horizon, setting.cross_section);
 }
 
-/// Value of a constant that interactions of points of several materials have.
+/// Value of a constant for interactions between points of several materials.
 class MixedConstant {
  public:
-  /// @param of_kind per material, and of each interface with constants of its own
+  /// @param of_kind value per material, and per interface with constants of its own
   MixedConstant(const PointMaterials& materials, const std::vector<PointMaterials::Material>& kinds,
                 std::vector<double> of_kind, const std::string& name)
       : materials_(materials), kinds_(kinds), of_kind_(std::move(of_kind)) {
@@ -96,7 +98,7 @@ class MixedConstant {
     }
   }
 
-  /// With factors for interactions of so many points.
+  /// Returns the constant with factors for interactions of so many points.
   [[nodiscard]] HigherConstant over(std::size_t points) const {
     const std::size_t count = materials_.all().size();
     HigherConstant result{*std::ranges::max_element(of_kind_), {}};
@@ -129,7 +131,7 @@ class MixedConstant {
                          "rule = \"arithmetic\" or constants of its own");
   }
 
-  /// Of points of two materials.
+  /// Value for points of two materials.
   [[nodiscard]] double value(std::size_t a, std::size_t b,
                              const std::vector<double>& of_points) const {
     const InterfaceSpecification& interface = materials_.between(a, b);
@@ -139,8 +141,8 @@ class MixedConstant {
     return of_kind_[std::size_t(own - kinds_.begin())];
   }
 
-  /// Of points of one material its constant, of two their mean by the rule; of more the mean of
-  /// what each two of them have.
+  /// Value for points of one material: its constant; of two: their mean by the rule; of more: the
+  /// mean over all pairs of materials.
   [[nodiscard]] double value(const std::vector<std::size_t>& ascending) const {
     std::vector<std::size_t> present = ascending;
     present.erase(std::unique(present.begin(), present.end()), present.end());
@@ -208,7 +210,7 @@ CpdConstants cpd_constants_of(const MaterialSpecification& material, const std::
 Model make_cpd_model(const BodySpecification& from, const PointMaterials& materials,
                      const PointFactors& factors, const Points& points, const BondSetting& setting,
                      Bonds bonds, CutBonds& cut, const PartOfBody* part, int threads) {
-  // Tables over the materials of four points.
+  // Tables have entries for the materials of four points.
   constexpr std::size_t most = 24;
   if (materials.all().size() > most) {
     throw InputError("regions", "",

@@ -14,7 +14,7 @@
 
 namespace peristat {
 
-/// Constants of a material of model "cpd": as given, or from E and nu on the lattice's bulk sums or
+/// Constants of a material of model "cpd": as given, or from E and nu by the lattice's bulk sums or
 /// in the continuum.
 /// @param key of the material, for errors
 /// @throws InputError
@@ -26,18 +26,18 @@ namespace peristat {
 /// there is none.
 [[nodiscard]] std::string negative_constant(const CpdConstants& constants);
 
-/// @throws InputError ("….damage.law") for a negative constant: the triangles and tetrahedra that a
-///         broken bond takes along would release energy that nobody has put in
+/// @throws InputError ("….damage.law") for a negative constant: the triangles and tetrahedra that
+///         are lost with a broken bond would release energy that was never supplied
 void refuse_damage_of_negative_constants(const MaterialSpecification& material,
                                          const std::string& key, const CpdConstants& constants,
                                          const BondSetting& setting, double spacing);
 
-/// Model of a body of model "cpd".
+/// Makes the model of a body of model "cpd". Collective for a part.
 /// @throws InputError for damage together with a negative constant
-/// @param bonds whose weights are to be set
-/// @param cut gets the bonds that pre-cracks have cut
-/// @param part null: the body is whole. Otherwise of a part, with the bonds among_neighbours; a
-///        call that all ranks make
+/// @param bonds without weights yet
+/// @param cut receives the bonds that pre-cracks have cut
+/// @param part null: the body is not partitioned. Otherwise the part, with the bonds
+///        among_neighbours
 [[nodiscard]] Model make_cpd_model(const BodySpecification& from, const PointMaterials& materials,
                                    const PointFactors& factors, const Points& points,
                                    const BondSetting& setting, Bonds bonds, CutBonds& cut,

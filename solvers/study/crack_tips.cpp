@@ -20,7 +20,8 @@ TipElasticity elasticity_of(const PointMaterials::Material& material, const Body
   const int dimension = body.points.dimension;
   const bool is_bond = has_bonds(material.of->model);
   if (is_bond) {
-    // As given, be it on the lattice's sums or in the continuum; a micromodulus has the latter's.
+    // The given modulus, calibrated on the lattice or in the continuum; a micromodulus by the
+    // continuum.
     const double of_continuum = youngs_modulus_of(
         micromodulus_of(*material.of, material.key, body.setting).at(1.0), body.setting);
     const double modulus = material.of->youngs_modulus.value_or(of_continuum);
@@ -45,12 +46,12 @@ TipElasticity elasticity_of(const PointMaterials::Material& material, const Body
   const LameModuli moduli = stiffness.moduli(constants);
   const double modulus = youngs_modulus_of(moduli, dimension),
                nu = poisson_ratio_of(moduli, dimension);
-  // In 2D nothing exists outside the plane: the moduli are those that plane stress would have.
+  // In 2D nothing exists outside the plane: the moduli are those of plane stress.
   return dimension == 2 ? TipElasticity::plane_stress(modulus, nu)
                         : TipElasticity::plane_strain(modulus, nu);
 }
 
-/// The material of the points about a tip.
+/// Returns the material of the points about a tip; refuses a ring with two.
 std::size_t material_about(const Body& body, const PointMaterials& materials,
                            const CrackTipIntegrals& tip, const std::string& key) {
   const Sums of_body(body.part.get(), body.points.dimension);
@@ -69,7 +70,7 @@ std::size_t material_about(const Body& body, const PointMaterials& materials,
   return std::size_t(first);
 }
 
-/// What of a tip has no sum over ranks.
+/// Refuses evaluations of a tip that have no sum over ranks.
 void refuse_without_ranks(const CrackTipSpecification& tip, const std::string& key) {
   if (tip.cut > 0.0) {
     throw InputError(key + ".cut", number_text(tip.cut),
@@ -77,7 +78,7 @@ void refuse_without_ranks(const CrackTipSpecification& tip, const std::string& k
   }
 }
 
-/// What a support does to a point within the ring would count as the tip's.
+/// Refuses rings with supports, whose effect would count as the tip's.
 void refuse_held_rings(const Body& body, const CrackTipIntegrals& tip, const std::string& key) {
   const Conditions& conditions = *body.conditions;
   const auto d = std::size_t(body.points.dimension);

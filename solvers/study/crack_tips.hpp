@@ -9,18 +9,19 @@
 
 namespace peristat {
 
-/// Whether stress intensity factors have a meaning: no fibres, no random stiffness, and
-/// balls for neighbourhoods.
+/// True if stress intensity factors have a meaning: no fibres, no random stiffness, and balls for
+/// neighbourhoods.
 [[nodiscard]] bool has_isotropic_materials(const BodySpecification& of);
 
-/// What is told of a crack's tip.
+/// Evaluations at a crack tip.
 struct CrackTip {
   CrackTipIntegrals integrals;
-  std::unique_ptr<CutRelease> release;  ///< null: not asked for
+  std::unique_ptr<CutRelease> release;  ///< null: not requested
 };
 
 /// @throws InputError ("crack_tips[0].…") as CrackTipIntegrals and CutRelease do, for a ring that
-///         holds two materials, and for a body with eigenstrains, whose energy flows by itself
+///         contains two materials, and for a body with eigenstrains, whose energy has a flux of its
+///         own
 [[nodiscard]] std::vector<CrackTip> make_crack_tips(const Body& body,
                                                     const std::vector<CrackTipSpecification>& tips,
                                                     const StudyOptions& options);

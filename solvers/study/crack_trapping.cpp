@@ -9,15 +9,15 @@
 namespace peristat {
 namespace {
 
-/// docs/trustworthy-peaks.md: bonds with the kernel 1/r in plane stress, 0 to 45 degrees at ratio
-/// 3, along the lattice at ratio 4.
+/// Measured values of docs/trustworthy-peaks.md: bonds with the kernel 1/r in plane stress, 0 to 45
+/// degrees at ratio 3, along the lattice at ratio 4.
 struct Measured {
   int dimension;
   double horizon_ratio, low, high;
 };
 constexpr std::array<Measured, 2> measured{{{2, 3.015, 1.14, 1.19}, {2, 4.015, 1.15, 1.15}}};
 
-/// Ratios nearer than this have the same neighbours, or nearly so.
+/// Ratios nearer than this have nearly the same neighbours.
 constexpr double same_ratio = 0.1;
 
 bool is_brittle(const MaterialSpecification& material) {

@@ -15,7 +15,7 @@
 namespace peristat {
 namespace {
 
-/// The segment, in 3D a strip along the whole front.
+/// The cutting segment, in 3D a strip along the whole front.
 Crack segment_ahead(const CrackTipSpecification& tip, const Points& points) {
   const double size = std::sqrt(dot<3>(tip.direction, tip.direction));
   const Coordinates end = plus<3>(tip.at, scaled<3>(tip.cut / size, tip.direction));
@@ -74,7 +74,7 @@ CutRelease::CutRelease(const Body& body, const CrackTipSpecification& tip, doubl
 
 History CutRelease::history_of(const History& before) const {
   const std::span<const double> stretches = bond_stretches(body_.model, before);
-  if (stretches.empty()) return before;  // of points, which are the same
+  if (stretches.empty()) return before;  // histories of points, which are the same
   const Bonds &whole = body_.model.bonds(), &left = cut_->model.bonds();
   std::vector<double> kept;
   for (Index i = 0; i < left.points(); ++i) {

@@ -9,29 +9,29 @@
 
 namespace peristat {
 
-/// Energy release rates [J/m2] of a crack that grows at once by a length l, of linear elasticity:
+/// Energy release rates [J/m2] of a crack that grows at once by a length l, in linear elasticity:
 ///
 ///   at fixed displacement  (E_0 - E_1)/(B l)
 ///   at fixed load          E_0 (E_0/E_1 - 1)/(B l)
 ///
 /// with the stored energies E_0 before and E_1 after it at the same displacement of the supports.
-/// Of loads alone, with E_0 and E_1 at the same load, E_0 (1 - E_0/E_1)/(B l) and (E_1 - E_0)/(B
-/// l). They embrace the rate at the middle of the length.
+/// Under loads alone, with E_0 and E_1 at the same load, the rates are E_0 (1 - E_0/E_1)/(B l) and
+/// (E_1 - E_0)/(B l). They bracket the rate at the middle of the length.
 struct ReleaseRates {
   double at_displacement = 0.0, at_load = 0.0;
 };
 
-/// A body like another, but for the bonds that a segment ahead of a crack's tip cuts.
+/// Copy of a body in which a segment ahead of a crack's tip cuts further bonds.
 class CutRelease {
  public:
   /// @param share J per joule of the body: 1/B, twice as much for half a body
   /// @throws InputError (key) for a length below the horizon or beyond the body, for loads beside
-  ///         supports that move, and for what the load makes of the energy itself
+  ///         supports that move, and for an energy that depends on the load itself
   /// @throws what make_body and Study throw
   CutRelease(const Body& body, const CrackTipSpecification& tip, double share,
              const StudyOptions& options, const std::string& key);
 
-  /// Of a state in equilibrium, with damage held; nothing if the cut body has no equilibrium there.
+  /// Rates of a state in equilibrium, with damage held; nothing if the cut body has no equilibrium.
   [[nodiscard]] std::optional<ReleaseRates> rates(const Trial& before, double stage);
 
  private:

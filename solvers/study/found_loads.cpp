@@ -10,7 +10,7 @@ namespace peristat {
 
 namespace {
 
-/// Whether supports or loads are others at the load 1.
+/// True if supports or loads differ between load 0 and load 1.
 bool depend_on_load(const Conditions& conditions, const LoadPath& loads) {
   const auto values_at = [&](double load) {
     std::vector<double> values(conditions.prescribed().size()), force(values.size());
@@ -40,7 +40,7 @@ void refuse_unanswered_loads(const Body& body, const FreeDofs& free, Assembler& 
   std::vector<double> rate;
   const LinearOutcome outcome =
       find_rate(problem, solver, tangent, {rest, assembler.initial_history()}, loads, 0.0, rate);
-  if (outcome != LinearOutcome::solved) return;  // the search names it
+  if (outcome != LinearOutcome::solved) return;  // the search reports it
   if (norm(rate) == 0.0 && depend_on_load(conditions, loads)) {
     throw InputError("supports", "",
                      "supports and loads must begin in proportion to load where the load is found; "

@@ -5,13 +5,12 @@
 
 namespace peristat {
 
-/// Whether loads are found with the states, not given: under a control, and along the arc length.
+/// True if loads are found with the states, not given: under a control, and in mode arc_length.
 [[nodiscard]] bool finds_loads(const StudyOptions& options, const Conditions& conditions);
 
 /// Refuses loads that can't be found, by the tangent at rest.
-/// @param solver analyzed for the body's pattern and `free`
-/// @throws InputError ("controls") for a control that does not answer to the load, ("supports")
-/// where
+/// @param solver analysed for the body's pattern and `free`
+/// @throws InputError ("controls") for a control that does not depend on the load, ("supports") if
 ///         nothing depends on it
 void refuse_unanswered_loads(const Body& body, const FreeDofs& free, Assembler& assembler,
                              LinearSolver& solver, TangentOperator& tangent);

@@ -22,7 +22,8 @@ namespace {
 /// "2.35e-05": enough for a message.
 std::string short_text(double value) { return fmt::format("{:.4g}", value); }
 
-/// Where an increasing function has a value, to the last bits; least or most if it has not.
+/// Argument at which an increasing function has a value, to the last bits; least or most if there
+/// is none.
 template <class Function>
 double inverse(const Function& of, double value, double least, double most) {
   for (int k = 0; k < 200; ++k) {
@@ -40,7 +41,7 @@ DamageSpecification shape(DamageSpecification damage, double onset) {
   return damage;
 }
 
-/// Onset over critical stretch of laws that soften, but for the blended one.
+/// Limits of onset over critical stretch for laws that soften, except the blended one.
 constexpr double smallest_ratio = 1e-6, largest_ratio = 1.0 - 1e-9;
 
 template <class Function>
@@ -58,7 +59,7 @@ DamageSpecification brittle_law(double critical) {
 /// Finds the stretches of one law.
 class Search {
  public:
-  /// @param peak f_p of a law with a strength; 0: of one without
+  /// @param peak f_p of a law with a strength; 0: without one
   Search(const DamageSpecification& damage, std::string key, const FractureScale& scale,
          double peak)
       : result_(damage), key_(std::move(key)), scale_(scale), peak_(peak) {
@@ -95,7 +96,7 @@ class Search {
     }
   }
 
-  /// By the strength.
+  /// Finds the stretches from the strength.
   void strong() {
     const auto force = [this](double ratio) { return peak_force(shape(result_, ratio)); };
     if (work_ > 0.0) {
@@ -120,7 +121,7 @@ class Search {
     result_.onset = ratio_at(force, wanted) * result_.critical;
   }
 
-  /// By the onset.
+  /// Finds the critical stretch from the onset.
   void begun() {
     if (work_ == 0.0) return;
     const double onset = result_.onset, wanted = work_ / (onset * onset);
@@ -131,7 +132,7 @@ class Search {
     result_.critical = onset / ratio_at(work, -wanted);
   }
 
-  /// Onset, peak and critical stretch one after the other.
+  /// Finds onset, peak and critical stretch one after the other.
   void blended() {
     if (peak_ == 0.0 && result_.peak == 0.0) peak_ = 0.5 * std::sqrt(2.0 * work_);
     if (result_.onset == 0.0) result_.onset = 0.5 * peak_;
@@ -169,7 +170,7 @@ class Search {
                          remark_on_units(work_ / least));
   }
 
-  /// A spacing that is far below the one given tells of other units, not of a coarse lattice.
+  /// A spacing far below the given one indicates other units, not a coarse lattice.
   [[nodiscard]] std::string remark_on_units(double refinement) const {
     constexpr double far = 1e-3;
     if (refinement > far) return "";
@@ -196,22 +197,21 @@ class Search {
   std::string key_;
   const FractureScale& scale_;
   double strength_ = 0.0;  // [Pa], for messages
-  double work_ = 0.0;      // W that is asked for; 0: it isn't
-  double peak_;            // f_p that is asked for; 0: it isn't
+  double work_ = 0.0;      // required W; 0: none
+  double peak_;            // required f_p; 0: none
 };
 
-/// Finds the stretches with which a tear of cpd takes the fracture energy. Bonds of which each took
-/// G/W per area, whatever the law, would be those of a Search; the tear's G/W is that of the law
-/// that it gives.
+/// Finds the stretches with which a tear of cpd takes the fracture energy. A Search finds them if
+/// the G/W per area is the same for every law; the G/W of a tear depends on the law itself.
 class TearSearch {
  public:
-  /// @param peak f_p of a law with a strength; 0: of one without
+  /// @param peak f_p of a law with a strength; 0: without one
   TearSearch(const DamageSpecification& damage, std::string key, const FractureScale& scale,
              double peak)
       : damage_(damage), key_(std::move(key)), scale_(scale), peak_(peak) {}
 
-  /// Between a G/W that is too small, from that of the bonds alone on, and one that is too large or
-  /// leaves no law, by secants.
+  /// Iterates by secants between a G/W that is too small, at first that of the bonds alone, and one
+  /// that is too large or has no law.
   [[nodiscard]] DamageSpecification found() {
     double small = std::log(scale_.micromodulus * scale_.crossing), large = INFINITY;
     double last = small, last_excess = excess_at(small);
@@ -244,7 +244,8 @@ class TearSearch {
     return scale;
   }
 
-  /// How much too much the tear takes with the law of this G/W, as a logarithm; NaN without a law.
+  /// Logarithm of the tear's energy with the law of this G/W over the required one; NaN without a
+  /// law.
   double excess_at(double log_ratio) {
     try {
       law_ = Search(damage_, key_, with_ratio(log_ratio), peak_).found();
@@ -254,7 +255,7 @@ class TearSearch {
     return std::log(scale_.energy(*law_) / *damage_.fracture_energy);
   }
 
-  /// With what is told of bonds that have the G/W of brittle ones with this strength.
+  /// Refuses with the message for bonds that have the G/W of brittle ones with this strength.
   [[noreturn]] void refuse() const {
     const double work = *damage_.fracture_energy / (scale_.micromodulus * scale_.crossing);
     const DamageSpecification brittle = brittle_law(peak_ > 0.0           ? peak_
@@ -273,15 +274,15 @@ class TearSearch {
   std::optional<DamageSpecification> law_;
 };
 
-/// The law whose bonds have this largest force; 0: that none is asked of.
+/// The law whose bonds have this largest force; 0: no force is required.
 DamageSpecification law_of_peak(const DamageSpecification& damage, const std::string& key,
                                 const FractureScale& scale, double peak) {
   return scale.tear && damage.fracture_energy ? TearSearch(damage, key, scale, peak).found()
                                               : Search(damage, key, scale, peak).found();
 }
 
-/// Finds the largest force of the bonds of a body that bears its strength under a pull: mostly
-/// below that of a brittle one, as bonds oblique to the pull soften later.
+/// Finds the largest bond force with which a body has its strength under a pull: mostly below that
+/// of a brittle bond, as bonds oblique to the pull soften later.
 class StrengthSearch {
  public:
   StrengthSearch(const DamageSpecification& damage, std::string key, const FractureScale& scale)
@@ -306,11 +307,11 @@ class StrengthSearch {
   static constexpr double tolerance = 1e-9;
   static constexpr int most_trials = 60;
 
-  /// By secants of the logarithm between a force that is too small or too small for the law, and
+  /// Iterates by secants of the logarithm between a force that is too small, also for the law, and
   /// one that is too large.
   [[nodiscard]] DamageSpecification below(double brittle) {
     double small = -INFINITY, large = INFINITY, last = std::log(brittle);
-    // Refused here, the law is refused.
+    // A refusal here refuses the law.
     law_ = law_of_peak(damage_, key_, scale_, brittle);
     double last_excess = excess(), next = last - last_excess;
     if (std::abs(last_excess) <= tolerance) return *law_;
@@ -339,7 +340,7 @@ class StrengthSearch {
     return std::log(scale_.strength(*law_) / *damage_.strength);
   }
 
-  /// NaN without a law.
+  /// Excess for this largest force; NaN without a law.
   double excess_at(double log_peak) {
     try {
       law_ = law_of_peak(damage_, key_, scale_, std::exp(log_peak));
@@ -349,7 +350,7 @@ class StrengthSearch {
     return excess();
   }
 
-  /// The strength of laws that jump does, too.
+  /// Accepts a nearby strength, because the strength of laws that jump also jumps.
   [[nodiscard]] DamageSpecification accepted(double excess) const {
     constexpr double allowed = 0.01;
     if (std::abs(excess) <= allowed) return *law_;
@@ -490,7 +491,7 @@ double peak_force(const DamageSpecification& damage) {
   if (!damage.softens()) return damage.critical;
   const AnyLaw law = law_of(damage);
   if (const auto* envelope = std::get_if<ForceEnvelope>(&law.law)) return envelope->peak_force();
-  // The force of a tanh law rises to one peak and falls: by golden sections.
+  // The force of a tanh law rises to one peak and falls; the peak is found by golden sections.
   const auto force = [&](double s) { return s * law.integrity(s); };
   double a = damage.onset, b = damage.critical;
   constexpr double section = 0.6180339887498949;

@@ -5,8 +5,8 @@
 
 namespace peristat {
 
-/// refuse_idle_interfaces of a part of a body; a call that all ranks make.
-/// @param ranks null: the body is whole
+/// refuse_idle_interfaces for a part of a body. Collective.
+/// @param ranks null: the body is not partitioned
 void refuse_idle_interfaces(const BodySpecification& from, const PointMaterials& materials,
                             const Bonds& bonds, const Communicator* ranks);
 

@@ -24,7 +24,8 @@
 namespace peristat {
 namespace {
 
-/// Of a spacing: what a point may stand off its place, and of a volume.
+/// Tolerance of a point's distance from its lattice site, in spacings, and relative one of a
+/// volume.
 constexpr double lattice_tolerance = 1e-9;
 
 /// Horizon over spacing from which convolutions are faster than sums over bonds: measured in 2D and
@@ -49,7 +50,7 @@ bool stand_in_place(const Points& points) {
   return true;
 }
 
-/// Refuses what is no convolution over a lattice.
+/// Returns the lattice box of a body; refuses forces that are no convolution over a lattice.
 LatticeBox box_of(const BodySpecification& from, const Points& points) {
   if (!from.is_uniform()) {
     refuse_convolution(
@@ -104,7 +105,7 @@ void add_vertices(const Crack& crack, std::vector<Coordinates>& vertices) {
       crack);
 }
 
-/// Ascending: those whose bonds of that reach may meet a crack.
+/// Points whose bonds of that reach may meet a crack, ascending.
 std::vector<Index> points_near(const Points& points, const std::vector<Crack>& cracks,
                                double reach) {
   std::vector<bool> is_near(std::size_t(points.count()), false);
@@ -134,7 +135,7 @@ std::vector<Index> points_near(const Points& points, const std::vector<Crack>& c
   return near;
 }
 
-/// The bonds that cracks cut, with their weights, found among the points near to them.
+/// The bonds that cracks cut, with their weights, found among the points near the cracks.
 Bonds cut_of_lattice(const Points& points, const BondSetting& setting,
                      const std::vector<Crack>& cracks, int threads) {
   const std::vector<Index> near =
@@ -183,7 +184,7 @@ CutBonds told(const Bonds& bonds) {
   return cut;
 }
 
-/// W_c of a point's material, times its volume.
+/// Energy that each point bears: W_c of its material, times its volume.
 BearableEnergies bearable_energies(const PointMaterials& materials, const Points& points,
                                    double horizon) {
   const auto& all = materials.all();
@@ -229,7 +230,7 @@ ForceOperator faster_operator(const BodySpecification& from, const Points& point
   try {
     check_specification(convolved, points);
     static_cast<void>(box_of(convolved, points));
-  } catch (const InputError&) {  // no convolution; what else is wrong is told of bonds, too
+  } catch (const InputError&) {  // no convolution; other errors are reported for bonds, too
     return ForceOperator::bonds;
   }
   return ForceOperator::fft;
@@ -241,7 +242,7 @@ BondSetting network_setting(const BodySpecification& from, const Points& points,
   std::array<double, 3> edge{};
   for (int c = 0; c < points.dimension; ++c) edge[std::size_t(c)] = points.spacing.along(c);
   std::ranges::sort(edge, std::greater<>());
-  constexpr double beyond = 1.01;  // the diagonal itself
+  constexpr double beyond = 1.01;  // includes the diagonal itself
   setting.horizon = std::min(setting.horizon, beyond * std::hypot(edge[0], edge[1]));
   setting.shape = HorizonShape::ball;
   setting.volume_correction = VolumeCorrection::none;
@@ -250,8 +251,8 @@ BondSetting network_setting(const BodySpecification& from, const Points& points,
 
 namespace {
 
-/// What convolutions have in common.
-/// @param cut gets what pre-cracks have cut
+/// Data that all models by convolutions have.
+/// @param cut receives the bonds that pre-cracks have cut
 ConvolvedLattice lattice_of(const BodySpecification& from, const Points& points,
                             const BondSetting& of_springs, double modulus, CutBonds& cut,
                             int threads) {
@@ -278,7 +279,7 @@ LamePair constants_of(const MaterialSpecification& material, int dimension) {
                         material.plane);
 }
 
-/// Its springs have the solid's Young's modulus and influence.
+/// Makes a solid by convolutions. Its springs have the solid's Young's modulus and influence.
 Model make_convolved_solid(const BodySpecification& from, const PointMaterials& materials,
                            const Points& points, const BondSetting& setting, Bonds bonds,
                            CutBonds& cut, int threads) {
@@ -316,7 +317,8 @@ double modulus_of_bulk(const LamePair& constants, const BondSetting& setting) {
   return micromodulus(bulk(constants) / bulk(of_bonds), setting);
 }
 
-/// A gradient is told by neighbours that do not all lie along a line or in a plane.
+/// Refuses points without a deformation gradient, whose neighbours all lie along a line or in a
+/// plane.
 void require_gradients(const Correspondence& material) {
   const std::size_t without = material.points_without_gradient();
   if (without == 0) return;
@@ -326,8 +328,9 @@ void require_gradients(const Correspondence& material) {
       "deformation gradient; resolve thin parts by more points, or take another model");
 }
 
-/// Its springs have the material's Young's modulus; beta is stabilisation times the micromodulus of
-/// bonds of its bulk modulus, over the horizon ([FCBM] A-12, as a material of its own unit).
+/// Makes a correspondence material. Its springs have the material's Young's modulus; beta is
+/// stabilisation times the micromodulus of bonds of its bulk modulus, over the horizon ([FCBM]
+/// A-12, as a material of its own unit).
 Model make_correspondence(const BodySpecification& from, const PointMaterials& materials,
                           const Points& points, const BondSetting& setting, Bonds bonds,
                           CutBonds& cut, int threads) {

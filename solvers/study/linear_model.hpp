@@ -7,24 +7,25 @@
 
 namespace peristat {
 
-/// The setting that the bonds of a body are made with: of a lattice that is convolved short bonds
-/// alone, to the next neighbours along the axes and diagonals of planes.
+/// Setting with which the bonds of a body are made: for a convolved lattice short bonds alone, to
+/// the next neighbours along the axes and diagonals of planes.
 [[nodiscard]] BondSetting network_setting(const BodySpecification& from, const Points& points,
                                           BondSetting setting);
 
-/// Model of a body of model "bond" with linear kinematics, and what its pre-cracks have cut; or of
-/// model "lps" as an energy or as it was printed, "green_bond" or "correspondence" by convolutions.
+/// Makes the model of a body of model "bond" with linear kinematics, or, by convolutions, of model
+/// "lps" as an energy or as it was printed, "green_bond" or "correspondence". `cut` receives the
+/// bonds that its pre-cracks have cut.
 /// @param setting of all its bonds
 /// @param bonds those of network_setting
-/// @param part of a body that these are, of bonds alone; null: it is whole
-/// @throws InputError ("solver.operator") for what is no convolution
+/// @param part of a partitioned body, of bonds alone; null: the body is not partitioned
+/// @throws InputError ("force_operator") for forces that are no convolution
 [[nodiscard]] Model make_linear_model(const BodySpecification& from,
                                       const PointMaterials& materials, const PointFactors& factors,
                                       const Points& points, const BondSetting& setting, Bonds bonds,
                                       CutBonds& cut, const PartOfBody* part, int threads);
 
-/// The operator that sums a body's forces sooner, for a motion by explicit steps; of others, which
-/// have more than forces to find, bonds. What convolutions alone sum is theirs.
+/// Returns the operator that sums a body's forces faster in a motion by explicit steps. Other runs,
+/// which need more than forces, get bonds; models that only convolutions can sum get these.
 [[nodiscard]] ForceOperator faster_operator(const BodySpecification& from, const Points& points,
                                             bool is_explicit);
 

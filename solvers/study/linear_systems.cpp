@@ -20,7 +20,7 @@
 namespace peristat {
 namespace {
 
-/// Where loads are found the tangent may have negative pivots: other solvers give up.
+/// Requires LDL^T if loads are found: other solvers fail if the tangent has negative pivots.
 void require_ldlt(const StudyOptions& options) {
   const std::string why =
       "a control and mode arc_length need the direct solver that bears negative pivots, which is "
@@ -44,7 +44,7 @@ void require_agreement(const LinearSolverOptions& linear, bool is_symmetric) {
   if (!preconditioner.empty()) throw InputError("linear.preconditioner", "", preconditioner);
 }
 
-/// Forces by convolutions have no rows to factorise or to make pieces of.
+/// Options for forces by convolutions, which have no rows to factorise or to aggregate.
 LinearSolverOptions options_of_convolutions(const StudyOptions& options, bool has_box) {
   LinearSolverOptions linear = options.linear;
   const auto is_one_of = [](auto value, auto... known) { return ((value == known) || ...); };
@@ -72,17 +72,18 @@ LinearSolverOptions options_of_convolutions(const StudyOptions& options, bool ha
   return linear;
 }
 
-/// Vectors of the flow beside those of Newton's search: a state, two directions, works, the way.
+/// Vectors of the flow beside those of Newton's search: state, two directions, working forces, load
+/// path.
 constexpr double vectors_of_flow = 9.0;
 
-/// Of mode path: vectors beside those of Newton's search, and numbers per bond: histories of three
-/// states, what is borne in two.
+/// Mode path: vectors beside those of Newton's search, and numbers per bond: histories of three
+/// states, resistances in two.
 constexpr double vectors_of_events = 12.0, numbers_of_events_per_bond = 6.0;
 
-/// Of mode dynamics: mass, its inverse, velocities before and after, and those of Lanczos' method.
+/// Mode dynamics: vectors of mass, its inverse, velocities before and after, and Lanczos' method.
 constexpr double vectors_of_motion = 9.0;
 
-/// A rank may have no point, which no estimate is made for.
+/// A rank may have no points; there is no estimate for this case.
 MemoryEstimate estimate_memory_of_part(const Body& body) {
   if (body.points.count() > 0) return estimate_memory(body);
   MemoryEstimate nothing;
@@ -91,19 +92,20 @@ MemoryEstimate estimate_memory_of_part(const Body& body) {
   return nothing;
 }
 
-/// Whether whatever follows a rank's points is there, or follows handles: what images are of is,
-/// and rigid sets follow handles alone.
+/// True if degrees of freedom and those that they follow are on the same rank, or they follow
+/// generalised ones: images are on the rank of their sources, and rigid sets follow generalised
+/// ones alone.
 bool has_rows_of_part(const Body& body) {
   const ConstraintSpecification& constraints = body.specification.constraints;
   return constraints.rollers.empty() && constraints.linear.empty();
 }
 
-/// Whether a preconditioner takes the diagonal blocks of a tangent alone.
+/// True if a preconditioner uses only the diagonal blocks of a tangent.
 bool is_of_points(PreconditionerKind kind) {
   return kind == PreconditionerKind::block_jacobi || kind == PreconditionerKind::jacobi;
 }
 
-/// Explicit steps solve nothing; they need products of the tangent now and then.
+/// Systems for explicit steps, which solve nothing but need products of the tangent now and then.
 LinearSystems systems_of_motion(const Body& body) {
   const MemoryEstimate estimate = estimate_memory_of_part(body);
   LinearSystems systems;
@@ -118,7 +120,7 @@ LinearSystems systems_of_motion(const Body& body) {
   return systems;
 }
 
-/// No rank has the whole of a tangent, or of the box of a lattice.
+/// Refuses solvers for one rank: no rank has the whole tangent, or the whole box of a lattice.
 void refuse_solvers_without_ranks(const StudyOptions& options, const Body& body) {
   const auto refuse = [](const std::string& key, const std::string& what) {
     throw InputError(key, "", "is for one rank; on several take " + what);
@@ -159,7 +161,8 @@ void refuse_products_with_constraints(const StudyOptions& options, const Body& b
                    "symmetry and periods");
 }
 
-/// Convolutions without a potential have neither rows to solve with nor an energy to search by.
+/// Refuses modes that solve equations for convolutions without a potential: these have neither rows
+/// to solve with nor an energy to minimise.
 void refuse_to_solve_for(const Body& body, const LoadSteppingOptions& loading) {
   if (body.model.has_rows() || body.model.balances().potential) return;
   const std::string why =
@@ -173,7 +176,8 @@ void refuse_to_solve_for(const Body& body, const LoadSteppingOptions& loading) {
   throw InputError("loading.mode", std::string(loading.mode.name), why);
 }
 
-/// The box of a body that sines are estimated to be the best choice for, if `automatic` is asked.
+/// Lattice box of a body for which sines are estimated to be the best choice, if `automatic` is
+/// requested; null otherwise.
 std::shared_ptr<const LatticeBox> box_for_choice(const StudyOptions& options, const Body& body) {
   const BodySpecification& of = body.specification;
   const bool is_free = options.linear.method == LinearMethod::automatic &&
@@ -189,7 +193,7 @@ std::shared_ptr<const LatticeBox> box_for_choice(const StudyOptions& options, co
   return std::make_shared<LatticeBox>(std::move(*box));
 }
 
-/// Sines are the first choice where the sides of the box are the body's.
+/// Lattice box for convolutions: sines are the first choice if the sides of the box are the body's.
 std::shared_ptr<const LatticeBox> box_of_convolutions(const StudyOptions& options,
                                                       const Body& body) {
   const PreconditionerKind asked = options.linear.preconditioner;
@@ -250,7 +254,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
       model.has_rows() ? options.linear : options_of_convolutions(options, box != nullptr);
   const bool is_symmetric = model.balances().potential;
   require_agreement(linear, is_symmetric);
-  // Who names a preconditioner wants it used.
+  // A named preconditioner must be used.
   if (is_symmetric && linear.method == LinearMethod::automatic &&
       linear.preconditioner != PreconditionerKind::automatic)
     linear.method = LinearMethod::conjugate_gradients;
@@ -266,7 +270,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   problem.factor_flops = estimate.factor_flops;
   problem.factor_bytes = estimate.direct_bytes(linear.method);
   problem.available_bytes = available_memory() - estimate.body_bytes - estimate.tangent_bytes;
-  // Elsewhere damage grows in relaxation, which finds stable states alone.
+  // In other modes damage grows in relaxation, which finds stable states only.
   problem.may_soften = model.has_history() && options.loading.mode == Mode::newton;
   const bool goes_by_events = options.loading.mode == Mode::path;
   problem.solves_often = flows(options, model) || goes_by_events;
@@ -274,7 +278,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   problem.is_stored = model.has_rows() && options.tangent != TangentStorage::matrix_free;
   LinearSystems systems;
   systems.chosen = make_linear_solver(linear, problem, tell);
-  // Products computed anew take less memory; in 3D they are faster than stored ones, in 2D a sixth
+  // Matrix-free products take less memory; in 3D they are faster than stored ones, in 2D a sixth
   // slower.
   if (options.tangent == TangentStorage::automatic && !systems.chosen.is_direct &&
       model.visits_rows() && can_be_matrix_free(linear)) {
@@ -342,7 +346,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
 
 namespace {
 
-/// Of the points that are here.
+/// Operator of the points of this rank.
 std::unique_ptr<TangentOperator> make_plain(Assembler& assembler, bool is_stored) {
   if (!is_stored) return std::make_unique<MatrixFreeTangent>(assembler);
   return std::make_unique<Tangent>(assembler);

@@ -9,11 +9,11 @@
 
 namespace peristat {
 
-/// How the linear systems of a body are solved.
+/// Solution method for the linear systems of a body.
 struct LinearSystems {
   ChosenSolver chosen;
-  bool is_stored = true;  ///< the tangent
-  /// Of a part of a body: its tangent has rows for preconditioners to look at, as well as products.
+  bool is_stored = true;  ///< the tangent is stored
+  /// For a part of a body: its tangent has rows that preconditioners can read, as well as products.
   bool has_rows = true;
   double bytes = 0.0;  ///< estimated for the whole run
 
@@ -21,25 +21,25 @@ struct LinearSystems {
                                                               const Constraints& constraints) const;
 };
 
-/// Where the points of a body stand that sines are asked for, or may be chosen for by `automatic`;
-/// nothing for others.
-/// @throws InputError ("linear.preconditioner") where sines are asked for and can't be taken
+/// Lattice box of a body for which sines are requested, or may be chosen by `automatic`; null for
+/// others.
+/// @throws InputError ("linear.preconditioner") if sines are requested and can't be used
 [[nodiscard]] std::shared_ptr<const LatticeBox> box_for_sines(const StudyOptions& options,
                                                               const Body& body);
 
-/// Of a body under its conditions.
+/// Chooses the method for a body under its conditions.
 /// @param tell see make_linear_solver
-/// @throws InputError ("tangent", "linear.method", "linear.preconditioner") for what does not go
-///         with its model or its conditions
+/// @throws InputError ("tangent", "linear.method", "linear.preconditioner") for options that do not
+///         go with its model or its conditions
 [[nodiscard]] LinearSystems choose_linear_systems(const StudyOptions& options, const Body& body,
                                                   SolverLadder::Reporter tell);
 
-/// Of a model whose loads are given.
-/// @param estimate what the body is estimated to need
+/// Chooses the method for a model whose loads are given.
+/// @param estimate memory estimate of the body
 /// @param box see box_for_sines
 /// @param tell see make_linear_solver
-/// @param sharing of a part of a body; null: it is whole
-/// @throws InputError ("tangent") if the model's can't do without being stored
+/// @param sharing partition of the body; null: the body is not partitioned
+/// @throws InputError ("tangent") if the model needs a stored tangent
 [[nodiscard]] LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
                                                   const MemoryEstimate& estimate,
                                                   std::shared_ptr<const LatticeBox> box,

@@ -34,8 +34,8 @@ void refuse_constraints(const ConstraintSpecification& constraints, int dimensio
   }
 }
 
-/// Of a bond in the initial state, over its length: more than that is a slip of the pen, and so
-/// much energy that nothing else can be seen beside it.
+/// Largest length of a bond in the initial state, over its own length: a longer one is a typing
+/// error, with so much energy that nothing else can be seen beside it.
 constexpr double longest_bond = 100.0;
 
 void refuse_wild_start(const Body& body, const std::vector<double>& displacement) {
@@ -46,7 +46,7 @@ void refuse_wild_start(const Body& body, const std::vector<double>& displacement
   for (Index i = 0; i < body.points.own(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       const Index j = bonds.partner[bond];
-      if (j >= body.points.own()) continue;  // images go where their sources do
+      if (j >= body.points.own()) continue;  // images follow their sources
       const double times = std::sqrt(squared_distance(places, d, i, j)) / bonds.length(bond);
       if (times <= longest_bond) continue;
       throw InputError("initial", "",
@@ -57,7 +57,7 @@ void refuse_wild_start(const Body& body, const std::vector<double>& displacement
   }
 }
 
-/// See MotionSetting::most_points, of the states of the whole body.
+/// MotionSetting::most_points for the states of the whole body.
 int most_points_of_states(const StateTerm& states, const Body& body) {
   StateRatios ratios = state_ratios(states.shares().constants, body.points.dimension);
   if (body.part) {

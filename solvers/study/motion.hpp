@@ -5,15 +5,14 @@
 
 namespace peristat {
 
-/// Per point but images [kg/m3].
+/// Density per point, without images [kg/m3].
 /// @throws InputError ("material.density", …) for a material without one
 [[nodiscard]] std::vector<double> densities_of(const Body& body);
 
-/// Masses of a body's points, density times volume, and what its motion begins with.
-/// @throws InputError as densities_of and make_initial_state do; ("initial") for one that stretches
-/// a bond to a hundred times its length; ("rigid_sets", "rollers",
-/// "linear", "periods")
-///         for constraints whose masses are not those of points
+/// Masses of a body's points, density times volume, and the initial state of its motion.
+/// @throws InputError as densities_of and make_initial_state do; ("initial") for a state that
+///         stretches a bond to more than a hundred times its length; ("rigid_sets", "rollers",
+///         "linear", "periods") for constraints whose masses are not those of points
 [[nodiscard]] MotionSetting make_motion_setting(const Body& body);
 
 }  // namespace peristat

@@ -9,10 +9,10 @@
 
 namespace peristat {
 
-/// The materials of a body, and which point is of which.
+/// The materials of a body, and the material of each point.
 class PointMaterials {
  public:
-  /// A material with its key for errors and its name for people.
+  /// A material with its key for errors and its name for messages.
   struct Material {
     const MaterialSpecification* of;
     std::string key, name;
@@ -22,22 +22,22 @@ class PointMaterials {
   /// @throws InputError ("regions…") for regions that overlap, and for points of no material
   PointMaterials(const BodySpecification& from, const Points& points);
 
-  /// The body's own, if it has constants, and those of its regions in their order.
+  /// The body's own material, if it has constants, and those of its regions in their order.
   [[nodiscard]] const std::vector<Material>& all() const { return all_; }
   [[nodiscard]] std::size_t of(Index point) const {
     return of_point_.empty() ? 0 : of_point_[std::size_t(point)];
   }
-  /// Per point; empty: all of the first.
+  /// Material per point; empty: the first one for all.
   [[nodiscard]] const std::vector<std::uint8_t>& of_points() const { return of_point_; }
-  /// Number of each point's region, from 0; -1: of none.
+  /// Number of each point's region, from 0; -1: in no region.
   [[nodiscard]] std::vector<std::int32_t> regions() const;
 
-  /// What holds between two of the materials.
+  /// Interface between two of the materials.
   [[nodiscard]] const InterfaceSpecification& between(std::size_t a, std::size_t b) const;
   /// Its key for errors.
   [[nodiscard]] std::string key_between(std::size_t a, std::size_t b) const;
 
-  /// Factors of the points by the materials' random fields; empty: all 1.
+  /// Random factors of the points by the materials' fields; empty: all 1.
   [[nodiscard]] std::vector<double> factors(const Points& points,
                                             ScatterSpecification::Quantity quantity,
                                             int threads) const;

@@ -4,8 +4,9 @@
 
 namespace peristat {
 
-/// Of a body on ranks a call that all make.
-/// @throws MemoryError unless so many bytes are free, with what other ranks of the machine need
+/// Collective for a partitioned body.
+/// @throws MemoryError unless so many bytes are free, beside the needs of other ranks of the
+///         machine
 void require_memory_for(const Body& body, double bytes);
 
 }  // namespace peristat

@@ -25,8 +25,8 @@ namespace peristat {
 namespace {
 
 /// Iterations and relative residual of the search for negative curvature. A residual this small
-/// leaves no room for a direction of negative curvature that the start has a part in, and a start
-/// that oscillates like this has a part in all of them.
+/// leaves no direction of negative curvature in which the start has a component, and a start that
+/// oscillates like this has one in all of them.
 constexpr int most_iterations = 5'000;
 constexpr double search_tolerance = 1e-8;
 
@@ -35,7 +35,7 @@ struct Stability {
   std::optional<Inertia> inertia;
 };
 
-/// @param before equations of the ranks before this one
+/// @param before number of equations of earlier ranks
 Stability at_rest(LinearSolver& solver, const TangentOperator& tangent, const FreeDofs& free,
                   std::int64_t before) {
   LinearOutcome outcome = solver.analyze(tangent.pattern, free);
@@ -52,7 +52,8 @@ Stability at_rest(LinearSolver& solver, const TangentOperator& tangent, const Fr
   return {outcome, solver.inertia()};
 }
 
-/// A material with a negative constant, and the key of that; without a key if there is none.
+/// A material with a negative constant, and the key of that constant; the key is empty if there is
+/// none.
 std::pair<PointMaterials::Material, std::string> negative_material(const Body& body) {
   const PointMaterials materials(body.specification, body.points);
   for (const auto& material : all_materials(body.specification, materials)) {

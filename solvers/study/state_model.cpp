@@ -18,7 +18,7 @@ LamePair constants_of(const MaterialSpecification& material, int dimension) {
                         material.plane);
 }
 
-/// Micromodulus of bonds that dissipate what a crack of the solid does.
+/// Micromodulus of bonds that dissipate as much as a crack of the solid.
 double modulus_of_crack(const MaterialSpecification& material, const BondSetting& setting) {
   const double energy =
       crack_energy_of_dilation(constants_of(material, setting.dimension), setting);
@@ -70,7 +70,7 @@ Model make_state_model(const BodySpecification& from, const PointMaterials& mate
   shares.moment = moments_of(points, bonds, kernel_of_weights(bonds));
   const BondMaterials mixed(from, materials, factors, points, std::move(moduli));
   if (!from.is_uniform()) {
-    // The states' kernel knows no materials, what bonds dissipate does.
+    // The kernel of the states does not depend on materials; the energy that bonds dissipate does.
     refuse_idle_interfaces(from, materials, bonds, part ? &part->ranks() : nullptr);
     Bonds plain = bonds;
     static_cast<void>(cut_bonds(plain, points, from.cracks));

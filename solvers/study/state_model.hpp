@@ -7,21 +7,21 @@
 
 namespace peristat {
 
-/// What the bonds of a body of model "lps" with the form "energy" count with: their influence is
-/// K(r) r / delta, so that a bond stores as much in a dilation as one of the bond model.
+/// Bond setting of a body of model "lps" with the form "energy": the influence is K(r) r / delta,
+/// so that a bond stores as much in a dilation as one of the bond model.
 /// @param setting with the influence K
 [[nodiscard]] BondSetting state_setting(BondSetting setting);
 
-/// Stretch at which its bonds break so that a plane crack takes the fracture energy under a uniform
+/// Critical stretch with which a plane crack takes the fracture energy under a uniform
 /// dilation, see crack_energy_of_dilation.
 /// @param setting with the influence K
 [[nodiscard]] double state_critical_stretch(const MaterialSpecification& material,
                                             const BondSetting& setting, double fracture_energy);
 
-/// Model of a body of model "lps" with the form "energy", and what its pre-cracks have cut.
+/// Makes the model of a body of model "lps" with the form "energy"; `cut` receives the bonds that
+/// its pre-cracks have cut. Collective for a part.
 /// @param setting see state_setting, with which the bonds were made
-/// @param part null: the body is whole. Otherwise of a part, with the bonds of_neighbours; a call
-///        that all ranks make
+/// @param part null: the body is not partitioned. Otherwise the part, with the bonds of_neighbours
 /// @throws InputError ("material.model") for planes of symmetry, periods and given neighbours
 [[nodiscard]] Model make_state_model(const BodySpecification& from, const PointMaterials& materials,
                                      const PointFactors& factors, const Points& points,

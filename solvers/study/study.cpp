@@ -15,17 +15,19 @@
 namespace peristat {
 namespace {
 
-/// Of the stable explicit step: the inertia of shorter implicit ones is so many times as stiff as
-/// the body, squared, and its round-off as large as what a search is to leave.
+/// Shortest implicit step, relative to the stable explicit one. The inertia of shorter ones is
+/// stiffer than the body by the inverse square of this, and its round-off as large as the residual
+/// that a search must reach.
 constexpr double shortest_implicit_step = 1e-3;
 
-/// Forces without a potential are balanced in one step: there is no energy that could tell a
-/// stability, a direction of descent or what a crack releases.
+/// Refuses modes that need a potential. Forces without one are balanced in one step: there is no
+/// energy from which stability, a direction of descent or the energy release of a crack could
+/// follow.
 void refuse_modes_without_potential(const Body& body, const StudyOptions& options) {
   if (body.model.balances().potential) return;
   const bool is_explicit = options.loading.mode == Mode::dynamics &&
                            options.loading.dynamics.scheme == MotionScheme::verlet;
-  if (body.specification.is_convolved()) return;  // choose_linear_systems knows what moves them
+  if (body.specification.is_convolved()) return;  // choose_linear_systems refuses their modes
   if (is_explicit) {
     throw InputError("dynamics.scheme", "verlet",
                      "is for models with an energy; \"lps\" moves by \"newmark\"");
@@ -43,7 +45,7 @@ void refuse_modes_without_potential(const Body& body, const StudyOptions& option
   }
 }
 
-/// Mode path takes what a bond loses for what the body does.
+/// Refuses mode path for state-based bodies: it assumes that a body loses just what its bonds lose.
 void refuse_events_of_states(const Body& body, const StudyOptions& options) {
   const bool has_bonds = !body.specification.has_states() || body.specification.is_convolved();
   if (has_bonds || options.loading.mode != Mode::path) return;
@@ -74,7 +76,7 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
                    "\"fft\" take newton, relaxation or dynamics");
 }
 
-/// A motion that begins in equilibrium finds its displacements.
+/// Refuses initial displacements for a motion that begins in equilibrium, which determines them.
 void refuse_initial_displacements(const Body& body) {
   const auto& initial = body.specification.initial;
   for (std::size_t k = 0; k < initial.size(); ++k) {
@@ -86,7 +88,7 @@ void refuse_initial_displacements(const Body& body) {
   }
 }
 
-/// Of the modes some sum over ranks.
+/// Refuses modes that have no sums over ranks.
 void refuse_modes_without_ranks(const Body& body, const StudyOptions& options) {
   const Mode mode = options.loading.mode;
   const ConstraintSpecification& constraints = body.specification.constraints;

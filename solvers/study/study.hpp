@@ -12,11 +12,11 @@
 
 namespace peristat {
 
-/// A model's equations with what solves them; owns what a SolvedBody refers to.
+/// A model's equations with their solver; owns what a SolvedBody refers to.
 class SolvedModel {
  public:
   /// All references must outlive it.
-  /// @param sharing null: the body is whole
+  /// @param sharing null: the body is not partitioned
   SolvedModel(const Points& points, const Model& model, const Constraints& constraints,
               const FreeDofs& free, LinearSystems systems, int threads,
               const Sharing* sharing = nullptr);
@@ -24,7 +24,7 @@ class SolvedModel {
   /// Prepares the solver.
   [[nodiscard]] LinearOutcome analyze();
 
-  /// For a driver; after `analyze`.
+  /// For a driver; call after `analyze`.
   [[nodiscard]] SolvedBody solved() { return {assembler_, solver(), *tangent_, free_}; }
 
   [[nodiscard]] Assembler& assembler() { return assembler_; }
@@ -42,26 +42,26 @@ class SolvedModel {
 ///         supports do not hold, loose points, and a body that is unstable at rest
 void check_study(const Body& body, const StudyOptions& options);
 
-/// A body that is held, and everything that follows it along its load path.
+/// A body that has been checked, with everything that follows it along its load path.
 class Study {
  public:
   /// The body must outlive the study.
-  /// @param tell of linear solvers that give way to others; may be empty
+  /// @param tell receives every change to another linear solver; may be empty
   /// @throws InputError as `check_study` does
   /// @throws MemoryError if it would not fit
   Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell = {});
 
-  /// Along the loading programme; once. What was not enough memory is outcome out_of_memory.
-  /// @param from a state that has been told as `reached`, to go on from; null: from rest
+  /// Follows the loading programme; once. A lack of memory is outcome out_of_memory.
+  /// @param from a state that `reached` has received, to go on from; null: from rest
   [[nodiscard]] LoadSteppingResult follow(const LoadSteppingObserver& observer,
                                           const SolvedBody* stand_in = nullptr,
                                           const PathState* from = nullptr);
 
-  /// Prepares the solver; `follow` does if nobody has.
+  /// Prepares the solver; `follow` does so if it has not been done.
   /// @throws InputError for loads that are to be found and can't be
   LinearOutcome analyze();
 
-  /// Of mode dynamics: the stiffness that the motion begins with.
+  /// Mode dynamics: the stiffness at the start of the motion.
   /// @throws InputError ("dynamics.time_step") for an explicit step above the stable one, and an
   ///         implicit one below a thousandth of that
   const Stiffness& find_initial_stiffness();
@@ -80,7 +80,7 @@ class Study {
   std::optional<LinearOutcome> analysis_;
 };
 
-/// What has become of a study.
+/// Result of a study.
 struct StudyResult {
   Outcome outcome = Outcome::converged;
   State state;                            ///< last accepted: displacement [m], stage, …
@@ -89,9 +89,9 @@ struct StudyResult {
   Attempt last_attempt;                   ///< that failed
 };
 
-/// Follows a body along its loading programme, without one from load factor 0 to 1.
+/// Follows a body along its loading programme; without one, from load factor 0 to 1.
 ///
-/// @param observer told of everything on the way; may interrupt
+/// @param observer receives everything on the way; may interrupt
 /// @throws InputError, MemoryError as Study does. Not converging is an outcome.
 [[nodiscard]] StudyResult solve(const Body& body, const StudyOptions& options = {},
                                 const LoadSteppingObserver& observer = {});

@@ -6,11 +6,11 @@
 
 namespace peristat {
 
-/// How a body is followed along its load path.
+/// Options for following a body along its load path.
 struct StudyOptions {
   LoadSteppingOptions loading{};
   NewtonOptions newton{};
-  /// A preconditioner that is named is used: `automatic` then means conjugate gradients.
+  /// A named preconditioner is used: `automatic` then means conjugate gradients.
   LinearSolverOptions linear{};
   TangentStorage tangent = TangentStorage::automatic;
   int threads = 0;  ///< 0: as many as OpenMP takes by itself

@@ -16,7 +16,7 @@ namespace {
 /// Depth below a face, in spacings, of points that stand on it.
 constexpr double on_face = 1e-6;
 
-/// a_f of least squares, of all the one of least norm.
+/// Shares a_f by least squares; the solution of least norm.
 std::vector<double> shares_of(const std::vector<Foot>& feet, const Coordinates& normal) {
   if (feet.size() == 1) return {1.0};
   std::vector<double> normals;

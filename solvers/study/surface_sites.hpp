@@ -8,10 +8,10 @@
 
 namespace peristat {
 
-/// The faces over which the balls around the points of a body of model "lps" reach, where these
-/// have a normal. Of a point at several faces the shares a_f of sum_f a_f e_f = n are those of
-/// least squares. Of a part of a body those of the points that its rank owns.
-/// @param boundary null: nobody knows the faces
+/// Finds the faces over which the balls around points of a body of model "lps" reach, for points
+/// that have a normal. At a point with several faces the shares a_f of sum_f a_f e_f = n are those
+/// of least squares. In a part of a body only points that its rank owns have sites.
+/// @param boundary null: the faces are not known
 /// @param names of the boundary's shapes; may be empty
 [[nodiscard]] std::vector<SurfaceSite> surface_sites(const Points& points, const Model& model,
                                                      const BodyBoundary* boundary,

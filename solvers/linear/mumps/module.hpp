@@ -5,8 +5,9 @@
 
 #include "solvers/linear/mumps/symmetric_factor.hpp"
 
-// MUMPS for one process brings its own stand-in for MPI, whose functions must not meet those of the
-// MPI that Trilinos is linked with. So it is a module of its own (solvers/linear/load_module.hpp).
+// Sequential MUMPS brings its own replacement of MPI, whose functions must not clash with the MPI
+// that Trilinos is linked with. It is therefore a module of its own
+// (solvers/linear/load_module.hpp).
 
 namespace peristat::mumps {
 

@@ -10,20 +10,20 @@
 namespace peristat::mumps {
 namespace {
 
-/// MUMPS numbers its controls and its answers from 1.
+/// MUMPS numbers its control and result arrays from 1.
 template <class Array>
 auto& at(Array& array, int number) {
   return array[number - 1];
 }
 
-/// What a call of MUMPS does.
+/// Jobs of a call of MUMPS.
 enum Job { start = -1, end = -2, analysis = 1, factorisation = 2, solution = 3 };
 
 class Factor final : public SymmetricFactor {
  public:
   Factor() {
     std::memset(&data_, 0, sizeof data_);
-    constexpr int all_processes = -987654;  // of which there is one
+    constexpr int all_processes = -987654;  // MUMPS' code for all; there is one
     data_.comm_fortran = all_processes;
     data_.par = 1;
     constexpr int symmetric_indefinite = 2;
@@ -55,7 +55,7 @@ class Factor final : public SymmetricFactor {
 
   FactorOutcome factorize(std::vector<double>& values) override {
     data_.a = values.data();
-    // Room beside what was expected, in per cent: pivoting may put off rows.
+    // Workspace beyond the estimate, in per cent: pivoting may delay rows.
     for (const int room : {30, 100, 400}) {
       at(data_.icntl, 14) = room;
       const FactorOutcome outcome = call(factorisation);

@@ -6,7 +6,7 @@
 
 namespace peristat::mumps {
 
-/// Lower triangle of a symmetric matrix by its entries, numbered from 1. Places may not repeat.
+/// Entries of the lower triangle of a symmetric matrix, numbered from 1. Each place occurs once.
 struct LowerEntries {
   int rows = 0;
   std::vector<int> row, column;
@@ -15,21 +15,21 @@ struct LowerEntries {
 enum class FactorOutcome {
   done,
   singular,
-  put_off,  ///< pivots put off so many rows that no room for them was enough: far from definite
+  put_off,  ///< pivoting delayed more rows than there was room for: far from definite
   out_of_memory
 };
 
 /// L D L^T of a symmetric matrix that need not be definite, with pivots of one and two rows: MUMPS
 /// (Amestoy, Duff, L'Excellent and Koster, SIAM J. Matrix Anal. Appl. 23, 2001), on one process.
 ///
-/// Its members throw std::runtime_error for what MUMPS gives as an error of the call.
+/// Its members throw std::runtime_error for errors that MUMPS reports of the call itself.
 class SymmetricFactor {
  public:
   virtual ~SymmetricFactor() = default;
 
-  /// Once per pattern; the entries outlive the factor.
+  /// Analyses a pattern, once; the entries outlive the factor.
   [[nodiscard]] virtual FactorOutcome analyze(const LowerEntries& entries) = 0;
-  /// What analyzing has found: entries and flops of a factorisation without further pivoting.
+  /// Estimates of the analysis: entries and flops of a factorisation without further pivoting.
   [[nodiscard]] virtual double expected_entries() const = 0;
   [[nodiscard]] virtual double expected_flops() const = 0;
 

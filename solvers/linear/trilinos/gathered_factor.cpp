@@ -24,7 +24,7 @@ std::vector<T> unpacked(const std::string& bytes) {
   return values;
 }
 
-/// Of all ranks, one after the other, at rank 0.
+/// Concatenates the values of all ranks, at rank 0.
 template <class T>
 std::vector<T> gathered(const Communicator& ranks, const T* mine, std::size_t count) {
   std::vector<T> all;

@@ -46,7 +46,7 @@ double norm(const std::vector<double>& v, const Communicator* ranks) {
   return std::sqrt(ranks ? ranks->sum(squared) : squared);
 }
 
-/// One of our maps as Tpetra sees it.
+/// Adapter of a VectorMap to Tpetra's operators.
 class MapOperator : public Operator {
  public:
   MapOperator(RCP<const Map> rows, const VectorMap& map) : rows_(std::move(rows)), map_(map) {}
@@ -54,7 +54,7 @@ class MapOperator : public Operator {
   RCP<const Map> getDomainMap() const override { return rows_; }
   RCP<const Map> getRangeMap() const override { return rows_; }
 
-  /// y = A x. Belos asks for nothing else.
+  /// y = A x, the only form that Belos uses.
   void apply(const Vector& x, Vector& y, Teuchos::ETransp mode, double alpha,
              double beta) const override {
     if (mode != Teuchos::NO_TRANS || alpha != 1.0 || beta != 0.0) {
@@ -70,7 +70,7 @@ class MapOperator : public Operator {
   const VectorMap& map_;
 };
 
-/// b - A x, without Trilinos.
+/// b - A x, computed without Trilinos.
 class TrueResidual {
  public:
   TrueResidual(const VectorMap& matrix, const double* b, int size, const Communicator* ranks)
@@ -95,7 +95,7 @@ class TrueResidual {
   const Communicator* ranks_;
 
  public:
-  std::vector<double> values;  ///< may be taken away until the next update
+  std::vector<double> values;  ///< may be moved out until the next update
   double norm;
 };
 
@@ -103,7 +103,7 @@ class TrueResidual {
 /// the true residual no longer follows the iteration's own.
 class StoppingRule : public Belos::StatusTest<double, Vector, Operator> {
  public:
-  /// @param target of the 2-norm of the residual
+  /// @param target 2-norm of the residual
   StoppingRule(double target, int max_iterations)
       : target_(target), max_iterations_(max_iterations) {}
 
@@ -119,7 +119,7 @@ class StoppingRule : public Belos::StatusTest<double, Vector, Operator> {
   [[nodiscard]] bool not_finite() const { return not_finite_; }
 
  protected:
-  /// Whether the present state is good enough, or will never be.
+  /// True if the present state is good enough, or can't become so.
   [[nodiscard]] virtual bool satisfied(const Iteration&, double residual) {
     return residual <= target_;
   }
@@ -142,8 +142,9 @@ class StoppingRule : public Belos::StatusTest<double, Vector, Operator> {
   bool stops_ = false, at_limit_ = false, not_finite_ = false;
 };
 
-/// MINRES knows its residual in the norm of the preconditioner only, sqrt(r.M r). Once that has
-/// fallen as far as the 2-norm should, the true residual decides, and says how far there is to go.
+/// MINRES computes its residual only in the norm of the preconditioner, sqrt(r.M r). Once that has
+/// fallen as far as the 2-norm should, the true residual is computed; it decides, and sets the next
+/// threshold.
 class MinresStoppingRule : public StoppingRule {
  public:
   MinresStoppingRule(double start, double target, int max_iterations)
@@ -159,19 +160,20 @@ class MinresStoppingRule : public StoppingRule {
     std::vector<double> norms(1);
     difference.norm2(norms);
     if (norms[0] <= target_) return true;
-    // Between two looks the recursive residual halves at least. A true one that doesn't is at its
-    // end; refinement goes on from there.
+    // Between two checks the recursive residual at least halves. If the true one does not fall, it
+    // is at its limit; refinement goes on from there.
     if (!(norms[0] < 0.9 * last_norm_)) return true;
     last_norm_ = norms[0];
     threshold_ = residual * std::clamp(target_ / norms[0], 0.1, 0.5);
     return false;
   }
 
-  double threshold_ = -1.0;  ///< of sqrt(r.M r), where to look at the true residual
-  double last_norm_;         ///< the true one, where it was looked at last
+  double threshold_ = -1.0;  ///< of sqrt(r.M r), at which to check the true residual
+  double last_norm_;         ///< true residual at the last check
 };
 
-/// In a handler: an exception that one rank may have met alone leaves, since the others wait.
+/// Rethrows within a handler if there are several ranks: one rank may have met the exception alone,
+/// and the others wait.
 void leave_if_several(const Problem& problem) {
   if (problem.getRHS()->getMap()->getComm()->getSize() > 1) throw;
 }
@@ -203,8 +205,8 @@ Run run_conjugate_gradients(const RCP<Problem>& problem, double target, int max_
     iteration.initializeCG(start);
     iteration.iterate();
   } catch (const Belos::CGIterateFailure&) {
-    // Either p.A p <= 0 or r.M r < 0; the latter at the start, too, before there is an A p. A
-    // direction of zero is M's fault as well: M r = 0.
+    // Either p.A p <= 0 or r.M r < 0; the latter also at the start, before A p exists. A zero
+    // direction is M's fault as well: M r = 0.
     Run run{KrylovOutcome::breakdown, iteration.getNumIters()};
     if (run.iterations == 0) return run;
     const auto state = iteration.getState();
@@ -237,7 +239,7 @@ Run run_minres(const RCP<Problem>& problem, double start_norm, double target, in
   return outcome_of(*rule, iteration.getNumIters());
 }
 
-/// Where it breaks down, it ends as converged and refinement starts it anew from what it has.
+/// If the method breaks down, the run ends as converged, and refinement restarts it from there.
 Run run_bicgstab(const RCP<Problem>& problem, double target, int max_iterations) {
   const RCP<StoppingRule> rule = rcp(new StoppingRule(target, max_iterations));
   Teuchos::ParameterList parameters;
@@ -267,7 +269,7 @@ Run run_gmres(const RCP<Problem>& problem, double relative_target, int max_itera
   Belos::BlockGmresSolMgr<double, Vector, Operator> solver(problem, parameters);
   try {
     const bool converged = solver.solve() == Belos::Converged;
-    // Where its own residual and the true one part, Belos gives up; refinement goes on.
+    // If its own residual and the true one differ, Belos stops; refinement goes on.
     if (converged || solver.isLOADetected()) {
       return {KrylovOutcome::converged, solver.getNumIters()};
     }
@@ -280,8 +282,8 @@ Run run_gmres(const RCP<Problem>& problem, double relative_target, int max_itera
   }
 }
 
-/// Solves for the correction of a solution with that residual.
-/// @return correction; the residual's memory is given back while Belos has its own
+/// Solves for the correction of a solution with the given residual.
+/// @param residual freed before Belos allocates its own memory
 Run run_belos(const RCP<const Map>& rows, const VectorMap& matrix, const VectorMap& preconditioner,
               std::vector<double> residual, double residual_norm, double target, int max_iterations,
               const KrylovOptions& options, RCP<Vector>& correction) {
@@ -295,10 +297,10 @@ Run run_belos(const RCP<const Map>& rows, const VectorMap& matrix, const VectorM
       options.method == KrylovMethod::minres) {
     problem->setHermitian();
   }
-  // From the right, also where the method makes no difference: from the left, Belos would
-  // precondition the start's residual once for nothing.
+  // Preconditions from the right, even if the method makes no difference: from the left, Belos
+  // would precondition the initial residual once for nothing.
   if (preconditioner) problem->setRightPrec(rcp(new MapOperator(rows, preconditioner)));
-  problem->setInitResVec(r);  // of the start at zero
+  problem->setInitResVec(r);  // for the start at zero
   problem->setProblem();
 
   Run run;
@@ -317,7 +319,7 @@ Run run_belos(const RCP<const Map>& rows, const VectorMap& matrix, const VectorM
   return run;
 }
 
-/// Runs until the true residual is small enough, or until another run doesn't help.
+/// Runs Belos until the true residual is small enough, or until another run doesn't help.
 KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& preconditioner,
                     const double* b, double* x, const KrylovOptions& options) {
   TrueResidual residual(matrix, b, size, options.ranks);
@@ -352,7 +354,7 @@ KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& precondi
     correction = Teuchos::null;
     residual.update(candidate.data());
 
-    // A failed run may leave something worse than it started from, or not finite.
+    // A failed run may end with a worse solution than it started from, or one that is not finite.
     const bool improved = residual.norm < before;
     result.outcome = run.outcome;
     if (improved) {

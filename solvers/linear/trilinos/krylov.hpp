@@ -4,7 +4,7 @@
 
 #include "src/core/communicator.hpp"
 
-// Stands between C++20 and Trilinos, which is compiled as C++17: this header is read by both.
+// Interface between C++20 and Trilinos, which is compiled as C++17: both include this header.
 
 namespace peristat {
 
@@ -12,7 +12,7 @@ enum class KrylovMethod {
   conjugate_gradients,  ///< matrix and preconditioner symmetric positive definite
   minres,               ///< matrix symmetric, preconditioner symmetric positive definite
   gmres,                ///< any matrix, any linear preconditioner, from the right
-  bicgstab,  ///< the same without vectors to keep; for matrices near their preconditioner
+  bicgstab,  ///< as gmres, without stored vectors; for matrices near their preconditioner
 };
 
 /// How an iterative solve ended.
@@ -29,7 +29,7 @@ struct KrylovOptions {
   double tolerance = 1e-10;   ///< of ||b - A x|| / ||b||
   int max_iterations = 1000;  ///< all restarts together
   int restart = 50;           ///< vectors that GMRES keeps; the other methods keep a fixed number
-  /// Ranks that have a part of the equations each, perhaps none; null: this one has all of them.
+  /// Ranks that each have a part of the equations, perhaps none; null: this rank has all of them.
   const Communicator* ranks = nullptr;
 };
 
@@ -45,19 +45,19 @@ using VectorMap = std::function<void(const double* v, double* result)>;
 
 /// Solves A x = b from x = 0 by Belos, until ||b - A x|| <= tolerance ||b|| (2-norm).
 ///
-/// Recursive residuals drift away from the true one. Where Belos has converged and b - A x has not,
+/// Recursive residuals drift away from the true one. If Belos has converged and b - A x has not,
 /// the correction is solved for from there (iterative refinement), as long as that helps.
 ///
-/// Of several ranks each gives its part of the vectors, and the maps get and give it; all norms are
-/// those of the whole, so that all ranks end alike.
+/// On several ranks each passes its part of the vectors, and the maps take and return that part.
+/// All norms are those of the whole vector, so that all ranks end alike. Collective.
 ///
-/// Prints nothing. What the maps throw is a breakdown; the one exception that leaves is
-/// std::runtime_error where Trilinos can't be loaded. With several ranks all exceptions leave,
-/// since others then wait in vain: Communicator::abort is for them.
+/// Prints nothing. Exceptions of the maps count as breakdown; the only exception thrown is
+/// std::runtime_error if Trilinos can't be loaded. With several ranks all exceptions are passed on,
+/// since the other ranks would wait in vain: the caller should use Communicator::abort.
 ///
-/// @param size of this rank's part
+/// @param size number of equations of this rank
 /// @param preconditioner an approximate inverse of A, or empty
-/// @param solution the best that was reached, whatever the outcome
+/// @param solution the best one reached, whatever the outcome
 [[nodiscard]] KrylovResult solve_krylov(int size, const VectorMap& matrix,
                                         const VectorMap& preconditioner,
                                         const double* right_hand_side, double* solution,

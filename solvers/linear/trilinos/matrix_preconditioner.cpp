@@ -44,21 +44,21 @@ using Matrix = Tpetra::CrsMatrix<double, int, long long>;
 using RowMatrix = Tpetra::RowMatrix<double, int, long long>;
 using Cycle = MueLu::TpetraOperator<double, int, long long>;
 
-/// MueLu ends by describing what it has built, by a call of MPI and even if it prints nothing. On
-/// one rank MPI is not running.
+/// Hierarchy without descriptions: MueLu describes what it has built with a call of MPI, even if it
+/// prints nothing. On one rank MPI is not running.
 class Hierarchy : public MueLu::Hierarchy<double, int, long long> {
  public:
   using MueLu::Hierarchy<double, int, long long>::describe;
   void describe(Teuchos::FancyOStream&, MueLu::VerbLevel) const override {}
 };
 
-/// Where the equations go in a matrix of whole points.
+/// Rows of the equations in a matrix of whole points.
 struct Embedding {
   int rows = 0;
   std::vector<int> row_of_equation;
 };
 
-/// Points without any equation have no rows.
+/// Embeds the equations into whole points; points without any equation have no rows.
 Embedding embed(int equations, const EquationBlocks& blocks) {
   Embedding embedding;
   embedding.row_of_equation.reserve(static_cast<std::size_t>(equations));
@@ -84,12 +84,12 @@ double sum(const CompressedRows& matrix, double mine) {
   return matrix.ranks ? matrix.ranks->sum(mine) : mine;
 }
 
-/// @throws NoPreconditioner on all ranks where one of them has met it
+/// @throws NoPreconditioner on all ranks if the condition is met on any of them
 void refuse(const CompressedRows& matrix, bool has_met, const char* what) {
   if (sum(matrix, has_met ? 1.0 : 0.0) > 0.0) throw NoPreconditioner(what);
 }
 
-/// Trilinos would go on with anything.
+/// Refuses a matrix that is not suitable, with which Trilinos would go on.
 void check(const CompressedRows& matrix) {
   if (sum(matrix, matrix.rows) == 0.0) throw NoPreconditioner("no equations");
   refuse(matrix,
@@ -108,13 +108,13 @@ RCP<const Teuchos::Comm<int>> communicator_of(const CompressedRows& matrix) {
   return teuchos_communicator(matrix.ranks ? *matrix.ranks : sole);
 }
 
-/// As many rows as each rank has.
+/// Map with `rows` rows on this rank.
 RCP<const Map> map_of_rows(const CompressedRows& matrix, int rows) {
   const auto any = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
   return rcp(new Map(any, std::size_t(rows), 0, communicator_of(matrix)));
 }
 
-/// What other ranks have in the rows that have columns here.
+/// Exchange of the values of other ranks' rows that have columns here.
 class GhostColumns {
  public:
   explicit GhostColumns(const CompressedRows& matrix) : own_(std::size_t(matrix.rows)) {
@@ -127,7 +127,7 @@ class GhostColumns {
     received_ = rcp(new Vector(ghosts, 1));
   }
 
-  /// @param values of the rows here, then of these
+  /// @param values of the rows here, then of the ghost columns
   void update(std::vector<double>& values) const {
     if (import_.is_null()) return;
     std::copy_n(values.begin(), own_, sent_->getDataNonConst(0).begin());
@@ -143,7 +143,7 @@ class GhostColumns {
   RCP<Vector> sent_, received_;
 };
 
-/// Of Tpetra's copy: its own rows, and where ghosts are in the whole of it.
+/// Column map of Tpetra's copy: its own rows, then the ghosts by their numbers in the whole copy.
 RCP<const Map> map_of_columns(const CompressedRows& from, const Embedding& to,
                               const GhostColumns& ghosts, const RCP<const Map>& rows) {
   if (!from.ranks) return rows;
@@ -160,8 +160,8 @@ RCP<const Map> map_of_columns(const CompressedRows& from, const Embedding& to,
   return rcp(new Map(any, columns, 0, rows->getComm()));
 }
 
-/// Tpetra's copy of a matrix, with rows of its own for the prescribed degrees of freedom of points
-/// that have others: nothing but a diagonal, so that they couple with nothing.
+/// Returns Tpetra's copy of a matrix. Prescribed degrees of freedom get rows if their point has
+/// free ones; such a row has only a diagonal entry, so that it couples with nothing.
 RCP<Matrix> tpetra_matrix(const CompressedRows& from, const Embedding& to,
                           const GhostColumns& ghosts) {
   const auto rows = static_cast<std::size_t>(to.rows);
@@ -170,7 +170,7 @@ RCP<Matrix> tpetra_matrix(const CompressedRows& from, const Embedding& to,
   for (int row = 0; row < from.rows; ++row) trace += diagonal_entry(from, row);
 
   using Local = Matrix::local_matrix_device_type;
-  // Before the arrays: this starts Kokkos.
+  // Comes before the arrays, because it starts Kokkos.
   const RCP<const Map> map = map_of_rows(from, to.rows);
   const RCP<const Map> columns = map_of_columns(from, to, ghosts, map);
   const Local::row_map_type::non_const_type begin("begin", rows + 1);
@@ -199,8 +199,8 @@ RCP<Matrix> tpetra_matrix(const CompressedRows& from, const Embedding& to,
   return matrix;
 }
 
-/// Largest eigenvalue of the symmetric tridiagonal matrix with that diagonal and, squared, those
-/// entries beside it; by bisection on the number of eigenvalues above a value (Sturm).
+/// Largest eigenvalue of the symmetric tridiagonal matrix with the given diagonal and squared
+/// off-diagonal entries, by bisection on the number of eigenvalues above a value (Sturm).
 double largest_eigenvalue(const std::vector<double>& diagonal, const std::vector<double>& squares) {
   const std::size_t size = diagonal.size();
   double below = diagonal[0], above = diagonal[0];
@@ -226,8 +226,8 @@ double largest_eigenvalue(const std::vector<double>& diagonal, const std::vector
 }
 
 /// Largest eigenvalue of D^-1 A, D the diagonal of A, by Lanczos' method on D^-1/2 A D^-1/2. A few
-/// dozen steps reach what takes hundreds of the power method, and from a start that is always the
-/// same: Ifpack2's is random, and no two preconditioners would agree.
+/// dozen steps reach what takes hundreds of the power method. The start is always the same:
+/// Ifpack2's is random, and no two preconditioners would agree.
 double largest_eigenvalue(const CompressedRows& matrix, const GhostColumns& ghosts, int steps) {
   const auto rows = static_cast<std::size_t>(matrix.rows);
   const auto count =
@@ -267,7 +267,7 @@ double largest_eigenvalue(const CompressedRows& matrix, const GhostColumns& ghos
     }
     squared = sum(matrix, squared);
     beside = std::sqrt(squared);
-    // The start spans an invariant space: there is nothing more to find in it.
+    // The start spans an invariant space, in which there is nothing more to find.
     if (beside <= 1e-10 * projection) break;
     squares.push_back(squared);
     for (double& entry : next) entry /= beside;
@@ -286,7 +286,7 @@ RCP<Operator> make_riluk(const CompressedRows& from, const RCP<Matrix>& matrix,
   riluk->setParameters(parameters);
   riluk->initialize();
   riluk->compute();
-  // Ifpack2 goes on after any pivot; what it keeps are their inverses.
+  // Ifpack2 goes on after any pivot; it stores their inverses.
   const Teuchos::ArrayRCP<const double> pivots = riluk->getD().getData(0);
   refuse(from,
          std::any_of(pivots.begin(), pivots.end(),
@@ -309,8 +309,8 @@ RCP<Operator> make_chebyshev(const RCP<Matrix>& matrix, double eigenvalue,
   return chebyshev;
 }
 
-/// Solves the coarsest level of multigrid on several ranks. KLU2 of Amesos2 13.2 has wrong
-/// solutions of what is not on one.
+/// Solves the coarsest level of multigrid on several ranks. KLU2 of Amesos2 13.2 gives wrong
+/// solutions for matrices that are distributed over ranks.
 class CoarsestLevel : public MueLu::SmootherBase<double, int, long long> {
  public:
   using Level = Xpetra::Matrix<double, int, long long>;
@@ -354,13 +354,13 @@ RCP<Operator> make_multigrid(const CompressedRows& from, const RCP<Matrix>& matr
   parameters.set("verbosity", "none");
   parameters.set("number of equations", block_size);
   parameters.set("multigrid algorithm", "sa");
-  // On the coarse levels; ten, the default, give 1.35 for 1.60.
+  // For the coarse levels; ten iterations, the default, estimate 1.35 instead of 1.60.
   parameters.set("sa: eigenvalue estimate num iterations", 80);
   parameters.set("coarse: max size", options.largest_coarse_system);
   parameters.set("coarse: type", from.ranks ? "none" : "KLU2");
-  // The same before and after the coarse correction, and symmetric in itself: so is the cycle.
+  // The same smoother before and after the coarse correction, symmetric in itself: so is the cycle.
   Teuchos::ParameterList& smoother = parameters.sublist("smoother: params");
-  if (from.ranks) {  // whose number makes no difference to a polynomial
+  if (from.ranks) {  // a polynomial does not depend on the number of ranks
     parameters.set("smoother: type", "CHEBYSHEV");
     smoother.set("chebyshev: degree", 5);
     smoother.set("chebyshev: ratio eigenvalue", 20.0);
@@ -385,8 +385,8 @@ RCP<Operator> make_multigrid(const CompressedRows& from, const RCP<Matrix>& matr
     for (int motion = 0; motion < near_null_space.count; ++motion) {
       const Teuchos::ArrayRCP<double> column = motions->getDataNonConst(std::size_t(motion));
       // MueLu refuses aggregates in which a motion vanishes, such as those of points that may only
-      // move along one axis. In rows that stand for prescribed components motions are noise, too
-      // small to matter beside a free one.
+      // move along one axis. Rows of prescribed components therefore get noise, too small to matter
+      // beside a free one.
       for (int row = 0; row < embedding.rows; ++row) {
         column[row] = 1e-6 * std::cos(double(row) * double(2 * motion + 1) + double(motion));
       }
@@ -418,7 +418,7 @@ class TrilinosPreconditioner : public Preconditioner {
 
   void build(const CompressedRows& from, const EquationBlocks& blocks,
              const NearNullSpace& near_null_space) override {
-    inverse_ = Teuchos::null;  // first, to have room for the next
+    inverse_ = Teuchos::null;  // frees the old one before the next is built
     check(from);
     const bool by_points = kind_ == MatrixPreconditionerKind::multigrid;
     embedding_ = embed(from.rows, by_points ? blocks : EquationBlocks{});

@@ -7,18 +7,18 @@
 #include "solvers/linear/trilinos/krylov.hpp"
 #include "solvers/linear/trilinos/matrix_preconditioner.hpp"
 
-// Trilinos brings a hundred shared libraries, which cost every start of the program 60 ms and
-// 40 MB. So what uses it is a module that is loaded at the first call (load_trilinos.cpp), and this
-// is all that the two know of each other.
+// Trilinos brings a hundred shared libraries, which cost every start of the program 60 ms and 40
+// MB. The code that uses it is therefore a module that is loaded on the first call
+// (load_trilinos.cpp), and this header is the interface between program and module.
 
 namespace peristat::trilinos {
 
-/// That there is no preconditioner, which all ranks find at the same place.
+/// Thrown if there is no preconditioner, by all ranks at the same place.
 struct NoPreconditioner : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A MatrixPreconditioner, from the inside. build() throws where there is none.
+/// Implementation of MatrixPreconditioner inside the module. build() throws if there is none.
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;

@@ -11,7 +11,7 @@ class Comm;
 
 namespace peristat::trilinos {
 
-/// The ranks as Trilinos sees them; they must outlive it.
+/// Returns the ranks as a communicator of Trilinos; they must outlive it.
 [[nodiscard]] Teuchos::RCP<const Teuchos::Comm<int>> teuchos_communicator(
     const Communicator& ranks);
 
