@@ -29,7 +29,7 @@ class TomlTable {
  public:
   /// @param path dotted name of the table ("support[1]"), empty for the document
   /// @throws InputError if the value is no table or if one of its keys is unknown (see
-  ///        case_keys.hpp)
+  ///         case_keys.hpp)
   TomlTable(const TomlValue& value, std::string path, const std::string& file);
 
   [[nodiscard]] const std::string& path() const { return path_; }
