@@ -359,7 +359,7 @@ inline void expect_outline(LatticeForces& forces, const HoledBody& body, double 
     EXPECT_LE(distance(diagonal, blocks), 1e-12 * norm(blocks));
   }
   for (std::size_t row = 0; row < size; ++row) {
-    // Columns have the round-off of as many convolutions.
+    // Sums over columns have the round-off of as many convolutions as there are columns.
     EXPECT_GE(bounds[row], sums[row] - 1e-11 * largest(sums));
   }
   EXPECT_LE(largest(bounds), most_slack * largest(sums));

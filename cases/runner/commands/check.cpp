@@ -71,7 +71,7 @@ std::string heading(const std::string& what, const std::string& of) {
   return of.empty() ? fmt::format("{:<11}", what) : fmt::format("{} of {}:", what, of);
 }
 
-/// Constants of bonds and their moduli.
+/// Prints constants of bonds and their moduli.
 void print_bond_constants(const PointMaterials::Material& of, const std::string& name,
                           const BondSetting& setting) {
   const DirectedConstant constant = micromodulus_of(*of.of, of.key, setting);
@@ -199,7 +199,7 @@ void print_quadrature(const Case& from, const Body& body, int threads) {
       confined_energy_error(body.points, bonds, body.setting));
 }
 
-/// Lame's constants of models lps and correspondence.
+/// Prints Lame's constants of models lps and correspondence.
 void print_lame_constants(const PointMaterials::Material& of, const std::string& name,
                           int dimension) {
   const LamePair constants = lame_constants(*of.of, dimension);

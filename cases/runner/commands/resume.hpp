@@ -11,8 +11,8 @@ namespace peristat {
 /// Collective.
 /// @param settings changes from here on; extending_keys only
 /// @param ranks   that continue it; the run may have begun on another number of ranks
-/// @throws InputError if there is nothing to go on from, if the case file has changed since, or for
-///         a setting that would make it another case; before anything is written
+/// @throws InputError if there is nothing to resume, if the case file has changed since, or for a
+///         setting that would make it another case; before anything is written
 [[nodiscard]] Exit resume(const std::filesystem::path& directory, const Settings& settings,
                           const RunOptions& options, const Communicator& ranks);
 

@@ -108,7 +108,7 @@ namespace {
 /// A run of a case, step by step.
 class CaseRun {
  public:
-  /// @param earlier run to go on from; null: from rest
+  /// @param earlier run to resume; null: start from rest
   /// @param results is made as soon as the case has been checked
   CaseRun(const Case& from, const RunOptions& options, const Communicator& ranks,
           EarlierRun* earlier, Progress& progress, Summary& summary,

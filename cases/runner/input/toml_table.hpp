@@ -36,7 +36,7 @@ class TomlTable {
   [[nodiscard]] std::string path(const std::string& key) const;
   [[nodiscard]] bool has(const std::string& key) const { return find(key) != nullptr; }
 
-  /// Stops reading: the value of the key (or the table, if it lacks the key) is wrong.
+  /// Throws InputError: the value of the key (or the table, if it lacks the key) is wrong.
   [[noreturn]] void refuse(const std::string& key, const std::string& why) const;
   /// Like `refuse` for one element of the key's array.
   [[noreturn]] void refuse(const std::string& key, std::size_t element,

@@ -47,9 +47,9 @@ struct CrackState {
 ///   neighbours, the crack's area by its projections on the axes of the lattice.
 /// - work_of_fracture [J/m2]: work that is not stored any more over the area that has grown since
 ///   the start.
-/// - crack_resistance [J/m2]: energy dissipated since the area last grew over its present growth, R
-///   = dD/dA of an R-curve; 0 while it does not grow. The sum of R dA over the steps is D when the
-///   area last grew.
+/// - crack_resistance [J/m2]: R = dD/dA of an R-curve, the energy dissipated since the area last
+///   grew over its present growth; 0 while it does not grow. The sum of R dA over the steps is D
+///   when the area last grew.
 ///
 /// All are 0 without such a bond, work_of_fracture without an area that has grown.
 struct CrackMeasure {

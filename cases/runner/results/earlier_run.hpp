@@ -87,7 +87,7 @@ class EarlierRun {
   ResultsFolder folder_;
   std::string program_;
   const Communicator& ranks_;
-  std::optional<ResultsMarker> marker_;  // of the first rank
+  std::optional<ResultsMarker> marker_;  // on rank 0 only
   Generation generation_ = Generation::newest;
   std::filesystem::path checkpoint_file_;  // of a run that has parts
   std::filesystem::path results_;          // the file to resume from

@@ -31,9 +31,9 @@ struct LoadValues {
 /// points of its set, or its value at the point nearest to a place (of points equally near, the one
 /// with the lowest number). For "poisson_ratio" that of the homogeneous deformation that fits the
 /// set best, for "opening" the mean displacement of the set minus that of the other, for a
-/// CrackMeasure its value. For an error, one value: the root mean square or the largest of |v -
-/// v_expected|. Collective; all ranks get the same.
-/// that all ranks make, and get the same from.
+/// CrackMeasure its value.
+/// For an error, one value: the root mean square or the largest of |v - v_expected|.
+/// Collective; all ranks get the same.
 /// @param fields of the points that are recorded here
 /// @throws InputError ("expected[c]") if an expected value is not finite
 [[nodiscard]] std::vector<double> probe_values(const ProbeSpecification& probe,

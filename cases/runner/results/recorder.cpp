@@ -192,8 +192,7 @@ void Recorder::find_growth(const EarlierResults& earlier,
   if (!last_) return;
   for (const ProbeSpecification& probe : case_.probes) {
     if (probe.field != "crack_resistance") continue;
-    // A step that grew without dissipation has the value 0, too, but does not change what is looked
-    // for.
+    // A step that grew without dissipation has the value 0, too, but does not change the result.
     double dissipated = 0.0;
     for (const Row& row : earlier.history) {
       const StepRecord record = read_step(row, support_sets, probes);

@@ -112,7 +112,7 @@ class Results {
   void close(Summary summary);
 
   /// Ends a run that failed: writes summary.json, if it can be, with status "failed" and the
-  /// reason, into room that was set aside at the start. What was published stays where it is.
+  /// reason, into room that was set aside at the start. Published files stay where they are.
   void fail(Summary summary, const std::string& reason) noexcept;
 
   /// Sentence on what is left of the run.

@@ -14,7 +14,7 @@ namespace peristat {
 struct StressFields {
   Stress found;
   std::vector<double> strain, stress;  ///< upper halves: xx, yy, zz, xy, yz, xz
-  /// Share of a neighbourhood inside the lattice that a point lacks; 1 where its bonds give no F.
+  /// Share of an interior point's neighbourhood that a point lacks; 1 where its bonds give no F.
   std::vector<double> missing_neighbourhood;
 
   void show_in(StepFields& fields) const;
