@@ -66,8 +66,8 @@ struct Quadrature {
   SurfaceCorrection surface = SurfaceCorrection::none;
 };
 
-/// What a box of lattice points with its bonds is made of; the defaults of each dimension give a
-/// few hundred bonds.
+/// Parameters of a box of lattice points with bonds. small_box() gives a few hundred bonds in each
+/// dimension.
 struct BoxSetting {
   int dimension = 2;
   std::array<int, 3> extent{0, 0, 0};  ///< points per direction
@@ -80,8 +80,8 @@ struct BoxSetting {
   PlaneState plane = PlaneState::stress;
   /// Stiffness of triangles and tetrahedra relative to that of the bonds, roughly; 0: none.
   double triangles = 0.0, tetrahedra = 0.0;
-  bool stored = false;  ///< store them
-  /// Of the bonds, from their micromodulus; empty: Harmonic.
+  bool stored = false;  ///< store the triangles and tetrahedra
+  /// Potential of the bonds as a function of their micromodulus; empty: Harmonic.
   std::function<BondPotential(double micromodulus)> potential{};
 };
 
@@ -221,8 +221,8 @@ void for_each_bond(const Bonds& bonds, const Visit& visit) {
   return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
 }
 
-/// Whether a point keeps at least `margin` [m] from the faces of a box from the origin to `extent`
-/// times the spacing.
+/// True if a point is at least `margin` [m] away from the faces of the box from the origin to
+/// `extent` times the spacing.
 [[nodiscard]] inline bool is_inside(const Points& points, Index i, const BoxSetting& box,
                                     double margin) {
   const Coordinates at = points.position(i);

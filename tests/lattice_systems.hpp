@@ -18,10 +18,10 @@
 #include "src/geometry/lattice_box.hpp"
 #include "tests/bodies.hpp"
 
-/// What every operator of a lattice's points is asked, and bodies to ask it on.
+/// Checks that every operator on lattice points must pass, and bodies to run them on.
 namespace peristat::tests {
 
-/// Points along the axes of a body with a hole, and the ratio of horizon and spacing.
+/// Number of points along the axes of a body with a hole, and ratio of horizon to spacing.
 struct HoledSetting {
   std::vector<int> counts;
   double ratio = 2.015;
@@ -44,10 +44,10 @@ inline std::vector<HoledSetting> holed_settings() {
           {{6, 8, 7}, 2.015, VolumeCorrection::none, 0.0, 0.1, true}};
 }
 
-/// Places along the axes of one body of each dimension.
+/// Numbers of lattice sites along the axes: one body in 2D, one in 3D.
 inline std::vector<std::vector<int>> both_dimensions() { return {{13, 10}, {7, 6, 9}}; }
 
-/// No axis along which a lattice goes on.
+/// No axis is periodic.
 inline constexpr std::array<bool, 3> open{};
 
 /// A lattice's body with a hole.
@@ -103,7 +103,7 @@ struct HoledBody {
     }
   }
 
-  /// But for cuts.
+  /// True if i and j are neighbours on the lattice, even if their bond is cut.
   [[nodiscard]] bool are_neighbours(Index i, Index j) const {
     const std::array<Index, 3> a = box.numbers(box.place[std::size_t(i)]),
                                b = box.numbers(box.place[std::size_t(j)]);
@@ -115,12 +115,12 @@ struct HoledBody {
     });
   }
 
-  /// Strains of some ten per cent, without symmetry.
+  /// Random displacements: strains of some ten per cent, without symmetry.
   [[nodiscard]] std::vector<double> random(std::uint64_t seed) const {
     return Random(seed).vector(points.reference.size(), 0.1 * points.spacing);
   }
 
-  /// An integrity of every kind: none, in part, whole; point 0 has lost all of its neighbours.
+  /// Integrities of every kind: zero, partial and one. All neighbours of point 0 have zero.
   [[nodiscard]] std::vector<double> mask() const {
     std::vector<double> q(count(), 1.0);
     for (std::size_t i = 0; i < q.size(); i += 5) q[i] = 0.0;
@@ -133,15 +133,15 @@ struct HoledBody {
   }
 };
 
-/// A neighbour j of a point i, as it is without a convolution.
+/// A point i and its neighbour j, for direct sums without a convolution.
 struct Neighbour {
   std::size_t i = 0, j = 0;
   std::array<double, 3> xi{};
   double share = 0.0;
 };
 
-/// All of them, in both directions.
-/// @param with_cut those whose bonds are cut, too
+/// Returns all pairs of neighbours, in both directions.
+/// @param with_cut include pairs whose bonds are cut
 inline std::vector<Neighbour> neighbours(const HoledBody& body, bool with_cut = false) {
   std::map<std::array<Index, 3>, std::size_t> at;
   for (std::size_t i = 0; i < body.count(); ++i) at[body.box.numbers(body.box.place[i])] = i;
@@ -166,7 +166,7 @@ inline std::vector<Neighbour> neighbours(const HoledBody& body, bool with_cut = 
   return found;
 }
 
-/// Sum over components of a times the difference of the fields at the neighbour and here.
+/// a . (u_j - u_i)
 inline double along_difference(const std::array<double, 3>& a, const Neighbour& of,
                                const std::vector<double>& u, int d) {
   double sum = 0.0;
@@ -216,7 +216,7 @@ inline void expect_same_without_energies(LatticeForces& forces, const std::vecto
   EXPECT_EQ(force, with.force);
 }
 
-/// Of polynomials of degree four in u these differences are exact.
+/// Fourth-order central difference: exact where the function is a polynomial of degree four.
 template <class At>
 auto derivative_by_four(const At& at) {
   return (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / 12.0;
@@ -232,14 +232,14 @@ inline void expect_forces_of_energy(LatticeForces& forces, const std::vector<dou
   EXPECT_NEAR(derivative, -dot(evaluate(forces, u, points).force, v), tolerance * scale);
 }
 
-/// A point's virial is the derivative of its energy where all points get a displacement gradient,
-/// one of whose components counts.
+/// Expects a point's virial to be the derivative of its energy with respect to each component of a
+/// uniform displacement gradient.
 inline void expect_virials_of_energies(LatticeForces& forces, const HoledBody& body,
                                        double tolerance) {
   const auto d = std::size_t(body.dimension());
   const std::vector<double> u = body.random(5);
   std::vector<double> virials(u.size() * d), expected(u.size() * d);
-  // It adds to what is there: halves of two are one.
+  // add_virials() adds to its argument: half of two calls is one.
   forces.add_virials(u, virials);
   forces.add_virials(u, virials);
   for (double& entry : virials) entry *= 0.5;
@@ -290,7 +290,8 @@ inline double sum_of_forces(const std::vector<double>& force, int dimension) {
   return std::hypot(sum[0], sum[1], sum[2]);
 }
 
-/// A kilometre away, in binary fractions, so that the displacements themselves lose no digits.
+/// Expects the same results for a body displaced by a kilometre. Displacements are binary
+/// fractions, so that they lose no digits.
 inline void expect_same_far_away(LatticeForces& forces, std::vector<double> u, int dimension,
                                  std::size_t points, double tolerance) {
   for (double& entry : u) entry = std::round(std::ldexp(entry, 34)) * std::ldexp(1.0, -34);
@@ -305,7 +306,7 @@ inline void expect_same_far_away(LatticeForces& forces, std::vector<double> u, i
   EXPECT_LE(distance(far_product, product), tolerance * norm(product));
 }
 
-/// Nothing at the point 0 of HoledBody::mask, and numbers elsewhere.
+/// Expects zeros at the isolated point 0 of HoledBody::mask, and finite numbers elsewhere.
 inline void expect_nothing_at_lonely_points(LatticeForces& forces, const HoledBody& body) {
   const std::vector<double> u = body.random(5), v = body.random(6);
   const auto d = std::size_t(body.dimension());
@@ -330,14 +331,15 @@ inline void expect_nothing_at_lonely_points(LatticeForces& forces, const HoledBo
   }
 }
 
-/// Against the columns of the tangent, at rest unless told.
-/// @param has_blocks whether diagonal blocks are those of this state
+/// Checks diagonal blocks and row-sum bounds against the columns of the tangent, at zero
+/// displacement unless `at` is given.
+/// @param has_blocks true if the diagonal blocks are those of this state
 inline void expect_outline(LatticeForces& forces, const HoledBody& body, double most_slack,
                            std::vector<double> at = {}, bool has_blocks = true) {
   const auto d = std::size_t(body.dimension());
   const std::size_t size = body.count() * d;
   std::vector<double> diagonal(size * d), bounds(size), sums(size, 0.0);
-  // It adds to what is there: halves of two are one.
+  // outline_tangent() adds to its arguments: half of two calls is one.
   if (at.empty()) at.assign(size, 0.0);
   forces.outline_tangent(at, diagonal, bounds);
   forces.outline_tangent(at, diagonal, bounds);
@@ -357,13 +359,13 @@ inline void expect_outline(LatticeForces& forces, const HoledBody& body, double 
     EXPECT_LE(distance(diagonal, blocks), 1e-12 * norm(blocks));
   }
   for (std::size_t row = 0; row < size; ++row) {
-    // Columns have the round-off of as many convolutions.
+    // Sums over columns have the round-off of as many convolutions as there are columns.
     EXPECT_GE(bounds[row], sums[row] - 1e-11 * largest(sums));
   }
   EXPECT_LE(largest(bounds), most_slack * largest(sums));
 }
 
-/// R, a turn about an axis that is none of the lattice's.
+/// Rotation R by 2 radians, in 3D about an axis that is not a lattice axis.
 inline std::array<std::array<double, 3>, 3> turn(int d) {
   const double c = std::cos(2.0), s = std::sin(2.0);
   if (d == 2) return {{{c, -s, 0.0}, {s, c, 0.0}, {0.0, 0.0, 1.0}}};
@@ -422,7 +424,7 @@ inline LatticeBox bar(Index along) {
 using MakeForces = std::function<std::unique_ptr<LatticeForces>(
     const CutLattice& box, const std::array<bool, 3>& is_periodic)>;
 
-/// A period does what it does between two others.
+/// Expects a periodic body to give the forces and energies of the middle one of three copies.
 inline void expect_to_see_images(const MakeForces& make) {
   const std::size_t points = 9 * 7;
   const auto period = make(rectangle(9, 7), {true, false, false});
@@ -438,7 +440,7 @@ inline void expect_to_see_images(const MakeForces& make) {
   expect_equal(evaluate(*period, u, points), {middle(all.force), middle(all.energy)}, 1e-13);
 }
 
-/// Products are those of an operator that knows nothing yet, whatever was found before.
+/// Expects products that do not depend on what was evaluated before.
 inline void expect_to_remember_nothing_else(LatticeForces& used, LatticeForces& fresh,
                                             const HoledBody& body) {
   const std::vector<double> u = body.random(5), v = body.random(6), w = body.random(7);
@@ -450,7 +452,7 @@ inline void expect_to_remember_nothing_else(LatticeForces& used, LatticeForces& 
     used.multiply(at, v, of_used);
     fresh.multiply(at, v, of_fresh);
     EXPECT_EQ(of_used, of_fresh);
-    evaluate(fresh, v, body.count());  // leaves the next product to be found from the start
+    evaluate(fresh, v, body.count());  // so that the next product is computed from scratch
   }
 }
 

@@ -34,7 +34,7 @@ struct System {
   }
 };
 
-/// All components of points at opposite ends, and single components of others.
+/// Prescribes all components of four points (0, 1, middle, last) and single components of others.
 inline std::vector<char> some_prescribed(const BoxBody& body) {
   const int d = body.points.dimension;
   const int last = body.points.count() - 1;
@@ -46,7 +46,7 @@ inline std::vector<char> some_prescribed(const BoxBody& body) {
   return prescribed;
 }
 
-/// Ascending, of the rows and columns of the free degrees of freedom, by Eigen's dense solver.
+/// Eigenvalues, ascending, of the tangent on the free degrees of freedom, by Eigen's dense solver.
 [[nodiscard]] std::vector<double> dense_eigenvalues(const System& system);
 
 /// Distance of the system's solution from that of Eigen's dense solver, over its norm.

@@ -18,14 +18,14 @@ inline constexpr double onset = 0.01, critical = 0.03;
   return with_teeth(softening(micromodulus), 5);
 }
 
-/// What is controlled in the place of the load, and its values.
+/// Controlled sum of displacements, and the programme of its values.
 struct Control {
   std::vector<ControlTerm> terms{};
   LoadingProgramme programme{};
 };
 
-/// A strip with a notch from below in its middle, whose bonds across the middle alone may fail, or
-/// none.
+/// A strip with a notch from below in its middle (notched), without a notch and with bonds that may
+/// fail across the middle only (weak), or with bonds that never fail (elastic).
 /// The sets "left_lip" and "right_lip" are the points beside the mouth of the notch.
 struct Strip {
   enum class Middle { notched, weak, elastic };
@@ -88,13 +88,13 @@ struct Strip {
   }
 };
 
-/// The opening of the notch's mouth goes to a value [m].
+/// Controls the opening of the notch's mouth, which goes to `value` [m].
 [[nodiscard]] inline Control mouth_opening(double value) {
   return {{{"right_lip", {1.0, 0.0, 0.0}}, {"left_lip", {-1.0, 0.0, 0.0}}},
           LoadingProgramme({{0.0, value}})};
 }
 
-/// Held on the left, drawn along x on the right.
+/// Supports: fixed on the left, displaced along x on the right.
 [[nodiscard]] inline std::vector<SupportSpecification> drawn(const std::string& displacement) {
   return {support("left", "0", "0"), support("right", displacement, "0")};
 }

@@ -12,12 +12,12 @@
 
 namespace peristat::tests {
 
-/// A grid of points with unit spacing, whose operator is made up.
+/// Grid of points with unit spacing and a synthetic operator.
 struct GridSetting {
   int dimension = 2;
   int side = 10;            ///< points
   double reach = 3.01;      ///< of the operator [spacings]
-  double convection = 0.3;  ///< share by which what lies upstream is stiffer
+  double convection = 0.3;  ///< relative stiffening of neighbours towards +x
   double disorder = 0.2;    ///< share by which k_ij and k_ji differ at random
   double mass = 0.0;        ///< on the diagonal
   std::uint64_t seed = 1;   ///< of the disorder
@@ -25,8 +25,8 @@ struct GridSetting {
 };
 
 /// Convection and diffusion of a vector: (K u)_i = mass u_i + sum_j k_ij (u_i - u_j), with blocks
-/// k_ij = (1/2 + n n) w_ij / r^2 of a direction n and a distance r, and weights w_ij that are not
-/// those of j's row. Without mass, translations cost nothing.
+/// k_ij = (1/2 + n n) w_ij / r^2 for a direction n and a distance r, and weights w_ij that differ
+/// from w_ji. Without mass, translations give no force.
 struct GridOperator : UnsymmetricTangent {
   explicit GridOperator(const GridSetting& of)
       : UnsymmetricTangent(BlockPattern::of_rows(std::vector<Offset>(points_of(of) + 1, 0), {}),
@@ -55,7 +55,8 @@ struct GridOperator : UnsymmetricTangent {
   [[nodiscard]] double bytes_of_rows() const override {
     return double(matrix.column.size()) * (sizeof(Index) + sizeof(double));
   }
-  /// Nearest neighbours, with the stiffness of all for long waves: sum k r^2 is the same.
+  /// Rows of the nearest neighbours, as stiff as all neighbours for long waves: sum k r^2 is the
+  /// same.
   [[nodiscard]] SparseRows local_rows() const override {
     constexpr double local_reach = 1.5;
     return rows_within(local_reach, double(offsets_within(setting.reach).size() - 1) /
@@ -81,7 +82,7 @@ struct GridOperator : UnsymmetricTangent {
  private:
   using Step = std::array<int, 3>;
 
-  /// Ascending in the numbers of the points that they lead to.
+  /// Offsets, ascending in the numbers of the points that they lead to.
   [[nodiscard]] std::vector<Step> offsets_within(double reach) const {
     const int most = int(reach), y = dimension > 1 ? most : 0, z = dimension > 2 ? most : 0;
     std::vector<Step> steps;
@@ -95,7 +96,7 @@ struct GridOperator : UnsymmetricTangent {
     return steps;
   }
 
-  /// Between -1 and 1, for each ordered pair of points.
+  /// Pseudo-random number between -1 and 1 for each ordered pair of points.
   [[nodiscard]] double noise(Index i, Index j) const {
     std::uint64_t mixed = setting.seed * 0x9e3779b97f4a7c15u +
                           std::uint64_t(i) * 0xbf58476d1ce4e5b9u +
@@ -152,8 +153,8 @@ struct GridSystem {
     find_right_hand_side();
   }
 
-  /// All components of the first row of points (in 1D, of three points), and single components of
-  /// others.
+  /// Prescribes all components of the first row of points (in 1D, of three points), and single
+  /// components of others.
   static std::vector<char> held(const GridOperator& of, bool is_held) {
     std::vector<char> prescribed(std::size_t(of.dofs()), 0);
     if (!is_held) return prescribed;

@@ -41,14 +41,14 @@ struct CommandLine {
   std::vector<std::string> settings;
   int threads = 0, steps = 0, ranks = 0;
   bool quiet = false, overwrite = false;
-  bool no_plots = false;  // taken by the launcher, which draws
+  bool no_plots = false;  // accepted here, used by the launcher, which draws
   CalibrationQuestion calibration;
   MaterialModel calibrated_model = MaterialModel::cpd;
   BondCalibrationQuestion bond_calibration;
-  std::vector<const CLI::Option*> of_bonds;  // options of calibrate that cpd has no use for
+  std::vector<const CLI::Option*> of_bonds;  // options of calibrate for bond-based models only
 };
 
-/// "key=value" taken apart.
+/// Splits each "key=value" of --set, and adds --output.
 Settings overrides(const CommandLine& line) {
   Settings result;
   for (const std::string& setting : line.settings) {
@@ -72,7 +72,8 @@ void add_settings(CLI::App& command, CommandLine& line) {
       ->allow_extra_args(false);
 }
 
-/// Of whole numbers; CLI11's own PositiveNumber prints the largest double as what is allowed.
+/// Range of positive whole numbers. CLI11's own PositiveNumber prints the largest double as the
+/// limit.
 CLI::Range at_least_one() { return {1, std::numeric_limits<int>::max()}; }
 
 void add_threads(CLI::App& command, CommandLine& line) {
@@ -86,7 +87,7 @@ void add_case_options(CLI::App& command, CommandLine& line) {
   add_threads(command, line);
 }
 
-/// Of the commands that run a case.
+/// Adds the options of run and resume.
 void add_run_options(CLI::App& command, CommandLine& line) {
   command
       .add_option("--stop-after", line.steps,
@@ -128,7 +129,7 @@ void add_calibration(CLI::App& command, CommandLine& line) {
   add("--c3", asked.c3, "[N/m14], three-neighbour constant, 3D");
 }
 
-/// Names of an option's values.
+/// Transformer from the names of an option's values to the values.
 template <class Value>
 CLI::CheckedTransformer names(const std::vector<std::pair<std::string, Value>>& values) {
   return CLI::CheckedTransformer(values);
@@ -193,14 +194,14 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
   add("--rate", damage.rate, "tanh laws and exponential");
 }
 
-/// Constants of cpd know nothing of them: an answer would be told as if they were there.
+/// Refuses options that the constants of cpd do not depend on: they would seem to have been used.
 void refuse_options_of_bonds(const CommandLine& line) {
   for (const CLI::Option* option : line.of_bonds) {
     if (option->count() > 0) throw InputError(option->get_name(), "", "is for --model bond");
   }
 }
 
-/// Without a case file there is no calibration without these.
+/// Throws if an option is missing that calibrate needs without a case file.
 void require_lattice(const CLI::App& command) {
   for (const char* name : {"--dimension", "--spacing", "--horizon-ratio"}) {
     if (command.get_option(name)->count() > 0) continue;
@@ -222,15 +223,15 @@ RunOptions run_options(const CommandLine& line, int threads) {
   return {threads, line.quiet, line.log_file, line.overwrite, line.steps};
 }
 
-/// Whether all ranks have met the exception that is on its way: each ends by itself then, and rank
-/// 0 tells why.
+/// True if the exception being handled was thrown on all ranks. Each rank then ends by itself, and
+/// rank 0 prints the reason.
 bool& all_have_failed() {
   static bool have_failed = false;
   return have_failed;
 }
 
-/// Does what needs no other rank, and finds out whether it fails on all alike.
-/// @param ranks null: there is one
+/// Runs `act`, which needs no communication, and records if it fails on all ranks. Collective.
+/// @param ranks null for one rank
 template <class Act>
 auto on_each_rank(const Communicator* ranks, const Act& act) {
   std::exception_ptr failure;
@@ -270,7 +271,7 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads,
   return run(from, run_options(line, threads), ranks ? *ranks : sole);
 }
 
-/// Sentence about what stands on the command line without being expected.
+/// Returns a sentence about unexpected words on the command line.
 std::string unexpected_words(const CLI::App& program) {
   for (const CLI::App* command : program.get_subcommands()) {
     std::vector<std::string> options;
@@ -284,7 +285,7 @@ std::string unexpected_words(const CLI::App& program) {
   return describe_unknown(program.remaining(true), {}, false);
 }
 
-/// Makes sure that what was printed has arrived: it is all that these commands give.
+/// Throws if standard output can't be written: these commands have no other output.
 void require_told() {
   errno = 0;
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return;
@@ -292,7 +293,8 @@ void require_told() {
       fmt::format("standard output can't be written: {}", std::strerror(errno != 0 ? errno : EIO)));
 }
 
-/// The ranks of this run, if there are more than one; they outlive all that uses them.
+/// Communicator of this run; null unless the process was started as a rank. It outlives all its
+/// users.
 std::unique_ptr<Communicator>& all_ranks() {
   static std::unique_ptr<Communicator> ranks;
   return ranks;
@@ -302,7 +304,7 @@ std::unique_ptr<Communicator>& all_ranks() {
 const Communicator* start_ranks_of(const CLI::App& program, int asked_for) {
   if (!is_started_as_rank()) return nullptr;
   all_ranks() = start_ranks();
-  all_have_failed() = true;  // of what is refused here
+  all_have_failed() = true;  // the refusals below occur on all ranks
   if (asked_for > 0 && asked_for != all_ranks()->count()) {
     throw InputError(
         "--ranks", std::to_string(asked_for),
@@ -319,7 +321,7 @@ const Communicator* start_ranks_of(const CLI::App& program, int asked_for) {
   return all_ranks().get();
 }
 
-/// The arguments of a run without --ranks.
+/// Returns the arguments without --ranks.
 std::vector<std::string> arguments_of_ranks(int count, char** arguments) {
   std::vector<std::string> kept;
   for (int k = 1; k < count; ++k) {
@@ -333,14 +335,14 @@ std::vector<std::string> arguments_of_ranks(int count, char** arguments) {
   return kept;
 }
 
-/// Ends all ranks, who may wait for this one.
+/// Aborts all ranks, since others may be waiting for this one.
 int end_all_ranks(const Failure& failure) {
   give_way_to_first(*all_ranks());
   all_ranks()->abort("peristat: " + failure.message, static_cast<int>(failure.code));
   return static_cast<int>(failure.code);
 }
 
-/// Tells the exception that is being handled.
+/// Prints the exception being handled, and returns the exit code.
 int report_failure() {
   const Failure failure = current_failure();
   if (all_ranks() && all_ranks()->count() > 1) {
@@ -394,7 +396,8 @@ int main(int count, char** arguments) try {
     throw InputError("", "", unexpected_words(program));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) {
-      // What follows an unknown option is taken for a case file, and then excludes others.
+      // CLI11 takes the word after an unknown option for a case file, which then excludes other
+      // options.
       if (!program.remaining(true).empty()) throw InputError("", "", unexpected_words(program));
       throw InputError("", "", std::string(error.what()) + "; --help lists the options");
     }

@@ -40,12 +40,12 @@ struct RanksBody {
   return {"bar", lattice_box(1, {40, 0, 0}, {0.1, 0.1, 0.1}), 3.015};
 }
 
-/// Of as many points as there may be ranks, or fewer.
+/// Bar with no more points than there may be ranks.
 [[nodiscard]] inline RanksBody three_points() {
   return {"three points", lattice_box(1, {3, 0, 0}, {0.1, 0.1, 0.1}), 1.015};
 }
 
-/// Parts of it are thinner than the horizon.
+/// Bar whose parts are thinner than the horizon.
 [[nodiscard]] inline RanksBody short_bar() {
   return {"short bar", lattice_box(1, {7, 0, 0}, {0.1, 0.1, 0.1}), 3.015};
 }
@@ -54,7 +54,7 @@ struct RanksBody {
   return {"strip", lattice_box(2, {4, 2, 0}, {0.1, 0.1, 0.1}), 3.015};
 }
 
-/// With layers, along the shorter side, of different depths.
+/// Plate with layers of different depths.
 [[nodiscard]] inline RanksBody plate_with_hole() {
   RanksBody body{"plate with a hole", lattice_box(2, {17, 26, 0}, {0.1, 0.1, 0.1}), 3.015};
   body.lattice.shapes.push_back({ShapeStep::Action::subtract, Disk{{1.2, 1.7}, 0.42}});
@@ -65,14 +65,14 @@ struct RanksBody {
   return body;
 }
 
-/// Its layers make its shorter direction the longest one, by which points are numbered.
+/// Plate whose layers make its shorter direction the longest one, along which points are numbered.
 [[nodiscard]] inline RanksBody wide_layers() {
   RanksBody body{"wide layers", lattice_box(2, {4, 6, 0}, {0.1, 0.1, 0.1}), 2.015};
   body.lattice.layers = {{"left", {0, -1}, 3}, {"right", {0, 1}, 4}};
   return body;
 }
 
-/// Perturbed, of three spacings.
+/// Perturbed block with three different spacings.
 [[nodiscard]] inline RanksBody block() {
   RanksBody body{"block", lattice_box(3, {7, 6, 8}, {0.1, 0.11, 0.09}), 2.015};
   body.lattice.perturbation = 0.1;
@@ -80,7 +80,7 @@ struct RanksBody {
   return body;
 }
 
-/// Turned, with layers in front of its sides and a hole.
+/// Plate with a hole and layers, on a turned lattice.
 [[nodiscard]] inline RanksBody turned_plate() {
   RanksBody body = plate_with_hole();
   body.name = "turned plate";
@@ -88,7 +88,8 @@ struct RanksBody {
   return body;
 }
 
-/// Its boundary cuts cells; small parts go to their neighbours, and layers have parts of cells.
+/// Plate whose boundary cuts cells: small parts of cells join their neighbours, and layers contain
+/// partial cells.
 [[nodiscard]] inline RanksBody cut_plate() {
   RanksBody body = turned_plate();
   body.name = "cut plate";

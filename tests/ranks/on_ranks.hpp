@@ -4,8 +4,8 @@
 
 namespace peristat::tests {
 
-/// The ranks that mpirun has started. Tests run on all of them at once, in the same order: nothing
-/// may end a test on one rank alone, so that there are expectations only.
+/// The ranks that mpirun has started. All ranks run the same tests in the same order. No test may
+/// end on one rank alone, so that tests use EXPECT macros only.
 [[nodiscard]] const Communicator& all_ranks();
 
 }  // namespace peristat::tests

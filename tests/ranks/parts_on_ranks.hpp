@@ -27,7 +27,7 @@ inline BondPotential law_of(const BondSetting& setting) {
   return Harmonic{micromodulus(youngs_modulus, setting)};
 }
 
-/// The whole body, as one rank has it.
+/// The whole body, as a single rank has it.
 struct Whole {
   Whole(const RanksBody& body, SurfaceCorrection surface)
       : points(make_points(body.lattice)),
@@ -39,7 +39,7 @@ struct Whole {
   Assembler assembler;
 };
 
-/// This rank's part of it.
+/// This rank's part of the body.
 struct OnRanks {
   OnRanks(const RanksBody& body, SurfaceCorrection surface)
       : part(make_part(body, surface)),
@@ -49,7 +49,7 @@ struct OnRanks {
         matrix_free(energy),
         stored(energy) {}
 
-  /// All ways of having one.
+  /// Matrix-free and stored tangent.
   [[nodiscard]] std::vector<TangentOperator*> tangents() { return {&matrix_free, &stored}; }
 
   static Part make_part(const RanksBody& body, SurfaceCorrection surface) {
@@ -58,7 +58,7 @@ struct OnRanks {
     return distribute(std::move(slab), body.setting().horizon, reach, all_ranks(), 1);
   }
 
-  /// What the whole body has, of the points that are here.
+  /// Returns the whole body's values at the points of this part, ghosts included.
   [[nodiscard]] std::vector<double> of_part(const std::vector<double>& whole) const {
     const auto d = std::size_t(part.points.dimension);
     std::vector<double> result;
@@ -81,7 +81,7 @@ struct OnRanks {
   PartTangent<Tangent> stored;
 };
 
-/// Expects what this rank has of its own points to be what the whole body has.
+/// Expects this rank's values at its owned points to agree with those of the whole body.
 inline void expect_near(const OnRanks& ranks, const std::vector<double>& mine,
                         const std::vector<double>& whole, double tolerance) {
   const std::vector<double> here = ranks.without_ghosts(mine);
@@ -93,9 +93,9 @@ inline void expect_near(const OnRanks& ranks, const std::vector<double>& mine,
   }
 }
 
-/// Both ends along the last axis, one of them drawn away: flags and displacements.
+/// Flags and displacements that hold both ends along the last axis and displace the upper one.
 struct Pulled {
-  /// @param depth of what is held [spacings]
+  /// @param depth of the held ends [spacings]
   Pulled(const Points& points, double low, double high, double depth = 3.0) {
     const auto d = std::size_t(points.dimension);
     flags.assign(points.reference.size(), 0);
@@ -118,7 +118,7 @@ struct Solved {
   std::vector<double> displacement;
 };
 
-/// K d = -K u of what is prescribed.
+/// Solves K d = -K u for prescribed displacements u, and returns u + d.
 inline Solved solve(const TangentOperator& tangent, const std::vector<char>& no_equation,
                     const std::vector<double>& prescribed,
                     std::unique_ptr<Preconditioner> preconditioner, const Communicator* ranks,

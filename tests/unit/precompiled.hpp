@@ -1,4 +1,4 @@
-// Precompiled for the unit tests, which are many and small: what nearly all of them include.
+// Precompiled header of the unit tests: the includes that nearly all of them need.
 #pragma once
 
 #include <algorithm>

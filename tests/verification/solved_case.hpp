@@ -12,7 +12,7 @@
 
 namespace peristat {
 
-/// A shipped case, solved inside the test, with everything that statements are made about.
+/// A shipped case, solved inside the test, with the records that tests check.
 struct SolvedCase {
   Case from;
   std::unique_ptr<const Body> body;

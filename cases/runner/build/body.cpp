@@ -28,7 +28,7 @@ double stress_bytes_per_point(int dimension) {
 
 namespace {
 
-/// Input errors of `make` speak of keys inside a table.
+/// Calls `make`; puts the name of a table in front of the keys of its input errors.
 template <class Make>
 auto errors_in_table(const std::string& table, const Make& make) {
   try {
@@ -59,8 +59,8 @@ void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
     const double along = (box.max[c] - box.min[c]) / lattice.spacing.along(c);
     if (std::isfinite(along)) size.longest = std::max(size.longest, along);
   }
-  // This estimate counts the bounding box: only what cannot fit even if half of it is cut away is
-  // refused here; the points themselves tell the rest.
+  // This estimate counts the bounding box: only a lattice that cannot fit even if half of it is cut
+  // away is refused here. The points themselves are checked later.
   require_memory(0.5 * estimate_memory(size).least_bytes(),
                  fmt::format("the case with up to {:.3g} points", points));
 }
@@ -71,7 +71,7 @@ Points make_points_of(const Case& from) {
   return located_errors(from, [&] {
     Points points;
     if (const Lattice* lattice = lattice_of(from)) {
-      check_lattice(*lattice);  // first: what can't be used has no size
+      check_lattice(*lattice);  // first: the size of an invalid lattice is undefined
       require_memory_for_lattice(from, *lattice);
       points = make_points(*lattice);
       if (points.lattice && from.is_collocated()) {
@@ -103,7 +103,7 @@ Points make_points_of(const Case& from) {
       };
       require(".set", probe.set);
       require(".other", probe.other);
-      // A place off the body would be answered by what is far from it.
+      // A place off the body would be represented by a distant point.
       if (probe.at && nearest_point(points, *probe.at).distance > 2.0 * points.spacing.largest()) {
         throw InputError(table + ".at", "", "no point lies within two spacings of this place");
       }
@@ -144,7 +144,7 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
   if (from.solver.mode == Mode::path) of.teeth = from.loading.teeth;
   if (tells_stress(from)) {
     of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
-    // Of convolutions the bonds are found for it.
+    // Convolved models store no bonds: they are found for the stress.
     constexpr double bytes_per_bond = 6.0;
     if (of.is_convolved()) {
       of.evaluation_bytes_per_point +=

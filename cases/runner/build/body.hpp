@@ -17,19 +17,19 @@ namespace peristat {
 /// Subtracted shapes that bonds must not cross, by `cuts_bonds`.
 [[nodiscard]] std::vector<Crack> cracks_of_shapes(const Case& from);
 
-/// What the body is made of: with the cracks of its tables, then those of its shapes.
+/// Specification of the body: the cracks of its tables come first, then those of its shapes.
 [[nodiscard]] BodySpecification specification_of(const Case& from);
 
-/// The whole body.
+/// Builds the whole body on one rank.
 /// @throws InputError (with place), MemoryError if the estimate exceeds the memory available
 [[nodiscard]] std::unique_ptr<const Body> make_body(const Case& from, int threads);
 
-/// What finding strain and stress takes, per point: five tensors that are told and three beside
-/// them, symmetric halves of two, principal values and scalars [byte].
+/// Memory per point for strain and stress: five tensors that are written and three more, symmetric
+/// halves of two, principal values and scalars [byte].
 [[nodiscard]] double stress_bytes_per_point(int dimension);
 
-/// The same points and conditions with elastic bonds of another horizon (solver.
-/// elastic_horizon_ratio), or nothing if the case asks for none.
+/// Elastic model of the same points and conditions with another horizon
+/// (solver.elastic_horizon_ratio); nothing if the case asks for none.
 [[nodiscard]] std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body,
                                                          int threads);
 

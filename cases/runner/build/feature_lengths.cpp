@@ -19,7 +19,7 @@ namespace {
 using Kind = FeatureLength::Kind;
 using Run = std::array<double, 2>;
 
-/// The parts of a line, by t, that lie in what `contains` a place.
+/// Intervals of the line's parameter t in which `contains` holds.
 template <class Contains>
 std::vector<Run> runs(const Line& line, std::vector<double> crossings, const Contains& contains) {
   std::sort(crossings.begin(), crossings.end());
@@ -58,7 +58,7 @@ Coordinates middle(const Box& box, int dimension) {
   return at;
 }
 
-/// Across each of a polygon's edges.
+/// Smallest width of a polygon across one of its edges.
 double width_of_polygon(const Polygon& polygon) {
   double least = infinity;
   const std::size_t count = polygon.vertices.size();
@@ -77,7 +77,7 @@ double width_of_polygon(const Polygon& polygon) {
   return least;
 }
 
-/// What cracks and subtracted shapes leave of one body.
+/// Measures openings, and the ligaments that cracks and subtracted shapes leave of a body.
 class Measuring {
  public:
   explicit Measuring(const Lattice& lattice)
@@ -94,7 +94,7 @@ class Measuring {
       add_ligaments_along_axes(at, key);
       middles_.emplace_back(at, key);
     }
-    constexpr std::size_t most_pairs_of = 50;  // of a sheet with many holes the axes have to do
+    constexpr std::size_t most_pairs_of = 50;  // with more holes, only the axes are measured
     if (middles_.size() > most_pairs_of) return;
     for (std::size_t a = 0; a < middles_.size(); ++a) {
       for (std::size_t b = 0; b < a; ++b) add_ligaments_between(middles_[b], middles_[a]);
@@ -128,7 +128,7 @@ class Measuring {
   void add_ligaments_along_axes(const Coordinates& from, const std::string& key) {
     for (std::size_t c = 0; c < std::size_t(lattice_.dimension); ++c) {
       Line line{from, {}};
-      const double extent = body_.max[c] - body_.min[c];  // t counts in it
+      const double extent = body_.max[c] - body_.min[c];  // unit of t
       line.along[c] = extent;
       double before = infinity, after = infinity, last = -infinity;
       for (const auto& [begin, end] : runs(line, solid_)) {
@@ -149,7 +149,7 @@ class Measuring {
     }
   }
 
-  /// Beyond `to`, if that is a tip in the body.
+  /// Adds the ligament beyond `to` if that is a crack tip in the body.
   void add_ahead(const Coordinates& from, const Coordinates& to, const std::string& key) {
     const Line line{from, minus(to, from)};
     for (const auto& [begin, end] : runs(line, solid_)) {

@@ -5,9 +5,9 @@
 
 namespace peristat {
 
-/// The faces of a body of model "lps" by collocation, for tractions; of others, and of bodies that
-/// are no lattice, nothing.
-/// @param points of the body, or of the part that a rank has; a call that all ranks make
+/// Finds the faces of a collocated lattice body of model "lps", for tractions; does nothing for
+/// other bodies. Collective.
+/// @param points of the body, or of the part that a rank has
 void find_boundary(const Case& from, const Points& points, const Communicator& ranks,
                    BodySpecification& of);
 

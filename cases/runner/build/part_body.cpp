@@ -26,7 +26,7 @@
 namespace peristat {
 namespace {
 
-/// Keys that tests run on several ranks, and all below them where they end in a dot.
+/// Keys that tests run on several ranks. A key that ends in a dot includes all keys below it.
 constexpr std::array keys_of_ranks{
     "title", "dimension",
     // points
@@ -71,7 +71,7 @@ std::string without_numbers(const std::string& key) {
   return plain;
 }
 
-/// Whether a key is on the list, below one that is, or a table with one that is.
+/// True if a key is on the list, below one that is, or a table with one that is.
 bool has_ranks(const std::string& key) {
   return std::any_of(keys_of_ranks.begin(), keys_of_ranks.end(), [&](std::string_view known) {
     const bool is_below = known.back() == '.' && key.starts_with(known);
@@ -85,7 +85,7 @@ bool has_ranks(const std::string& key) {
   throw InputError(key, value, "is not for more than one rank yet; " + instead);
 }
 
-/// Transforms go over the whole body, which no rank has.
+/// Refuses convolutions: their transforms need the whole body, which no rank has.
 void refuse_convolutions(const Case& from) {
   const std::string why = "is for one rank, since convolutions go over the whole body; ";
   if (from.needs_convolutions()) {
@@ -96,7 +96,7 @@ void refuse_convolutions(const Case& from) {
   throw InputError("solver.operator", "\"fft\"", why + "on several take \"bonds\" or \"auto\"");
 }
 
-/// Of keys whose values have ranks in part, those that have.
+/// Refuses values that run on one rank only, for keys with other values that run on several.
 void refuse_values_without_ranks(const Case& from) {
   refuse_convolutions(from);
   const bool is_lattice = std::holds_alternative<Lattice>(from.body);
@@ -137,7 +137,8 @@ void require_places_of_probes(const Case& from, const RecordedPoints& recorded) 
   }
 }
 
-/// Sets of the whole body: the rules look at places alone, so that each rank finds its own.
+/// Adds the sets. Rules depend on positions only, so that each rank finds its own members.
+/// Collective.
 void add_sets(const Case& from, const Communicator& ranks, Part& part) {
   for (std::size_t k = 0; k < from.sets.size(); ++k) {
     const SetRule& rule = from.sets[k];
@@ -160,7 +161,7 @@ void add_sets(const Case& from, const Communicator& ranks, Part& part) {
   }
 }
 
-/// Points that stand on a lattice or in a file.
+/// Makes this rank's slab of the points of a lattice or a file. Collective.
 Part make_slab_of(const Case& from, const Communicator& ranks) {
   const auto* const lattice = std::get_if<Lattice>(&from.body);
   if (lattice == nullptr) {
@@ -207,7 +208,7 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
         distribute(std::move(slab), setting.horizon, reach, ranks, threads, std::move(images));
     add_sets(from, ranks, part);
     if (has_ghost_sites) {
-      // Those that neighbours of ghosts have are wrong, and nobody asks for them.
+      // Ghost sites around neighbours of ghosts are wrong, but never used.
       part.points.ghosts = ghost_sites(*lattice, part.points, from.horizon).reference;
     }
     BodySpecification of = specification_of(from);

@@ -28,13 +28,13 @@ const char* kind_of(const Shape& shape) {
   return names[shape.index()];
 }
 
-/// Whether boxes of the body are made of whole cells along the axes.
+/// True if boxes of the body consist of whole cells along the axes.
 bool has_whole_cells(const Lattice& lattice) {
   return lattice.arrangement == Arrangement::lattice && lattice.angle == 0.0 &&
          lattice.volumes == CellVolumes::whole;
 }
 
-/// Of added boxes that stand where the first one begins.
+/// Divisions of all added boxes into cells; cells are counted from the corner of the first box.
 std::vector<Preflight::Division> divisions_of(const Lattice& lattice) {
   std::vector<Preflight::Division> divisions;
   if (!has_whole_cells(lattice)) return divisions;
@@ -58,7 +58,7 @@ std::vector<Preflight::Division> divisions_of(const Lattice& lattice) {
   return divisions;
 }
 
-/// Bonds of a body, all of them; null: they are too many to be found for this.
+/// All bonds of a body; null if a convolved body has too many to find them for this.
 std::shared_ptr<const Bonds> network_of(const Body& body) {
   const auto* const term = dynamic_cast<const PointTerm*>(body.model.bond_term().get());
   if (term == nullptr || !term->is_convolved()) {
@@ -68,8 +68,8 @@ std::shared_ptr<const Bonds> network_of(const Body& body) {
   return term->count() > most ? nullptr : whole_network(body.model);
 }
 
-/// Bonds that a narrow shape has between its sides: a box's whole width of them lies in it, of
-/// other shapes half of it.
+/// Number of bonds that bridge a narrow shape: the part of a bond in the shape is at least as long
+/// as the shape is wide (half of that for shapes other than boxes).
 std::int64_t bridging(const Body& body, const Bonds& bonds, const Shape& shape, double width) {
   const Points& points = body.points;
   constexpr double round_off = 1e-6;
@@ -116,7 +116,7 @@ std::vector<Preflight::Opening> openings_of(const Lattice& lattice, const Body& 
   return openings;
 }
 
-/// Values of an expression over its points.
+/// Finds the range of an expression over the points that it acts on.
 class Values {
  public:
   Values(const Case& from, const Body& body, const Communicator& ranks)
@@ -167,7 +167,7 @@ class Values {
     return some;
   }
 
-  /// Some thousand of the points where they are many.
+  /// Places to evaluate an expression at: a few thousand of the points if there are many.
   [[nodiscard]] std::vector<Coordinates> places_of(const GivenValue& given,
                                                    const Expression& expression) const {
     if (!given.has_place || expression.is_constant()) return {Coordinates{}};
@@ -184,11 +184,12 @@ class Values {
     return places;
   }
 
-  /// Without places that the expression has no value at: what it acts on has no point there.
+  /// Range of values, leaving out places where the expression is undefined: it acts on no point
+  /// there.
   [[nodiscard]] Range range(const Expression& expression, const std::vector<Coordinates>& places,
                             double stage) const {
     std::vector<double> parameters = programme_.at(stage);
-    // The load that a control finds is not known: values are told for 1.
+    // The load under displacement control is not known: values are given for a load of 1.
     if (body_.conditions->control() != nullptr && stage > 0.0) parameters.front() = 1.0;
     Range range;
     for (const Coordinates& place : places) {
@@ -218,9 +219,10 @@ std::string key_in_case(std::string key) {
   return key;
 }
 
-/// Of bonds that break by their stretches alone: other laws have no strength of their own.
+/// Adds the stiffnesses of all materials, and the fracture data of bonds that break by stretch
+/// alone; other laws have no strength of their own.
 void add_materials(const Case& from, const Body& body, Preflight& to) {
-  const BodySpecification& of = body.specification;  // its stretches are found
+  const BodySpecification& of = body.specification;  // its stretches are computed
   const PointMaterials materials(of, body.points), as_given(from, body.points);
   const auto found = all_materials(of, materials), given = all_materials(from, as_given);
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -245,8 +247,8 @@ void add_materials(const Case& from, const Body& body, Preflight& to) {
   }
 }
 
-/// Keys with a value of their own that nothing uses. Tables of other modes are none: a case may
-/// have them for the mode that --set chooses.
+/// Keys that are given but not used. Tables of other modes don't count: a case may have them for a
+/// mode that --set chooses.
 std::vector<Preflight::Idle> idle_keys(const Case& from) {
   const Mode mode = from.solver.mode;
   const auto* const lattice = std::get_if<Lattice>(&from.body);
@@ -269,7 +271,7 @@ std::vector<Preflight::Idle> idle_keys(const Case& from) {
   return idle;
 }
 
-/// Of the shapes, or of the places of points from a file.
+/// Extents of the shapes, or of the positions of points from a file [m]. Collective.
 std::vector<double> extents_of(const Case& from, const Body& body, const Communicator& ranks) {
   const auto d = std::size_t(from.dimension);
   std::vector<double> low(d, infinity), high(d, -infinity), extents;
@@ -295,7 +297,7 @@ void take_lattice(const Case& from, const Lattice& lattice, const Body& body,
                   const Communicator& ranks, Preflight& to) {
   to.divisions = divisions_of(lattice);
   to.lengths = feature_lengths(lattice, from.cracks);
-  // Across planes of symmetry and periods the body goes on.
+  // The body continues across planes of symmetry and periods.
   const auto ends_across = [&](int axis) {
     const auto is_across = [axis](const auto& side) { return side.axis == axis; };
     return std::ranges::none_of(from.constraints.periods, is_across) &&
@@ -316,7 +318,7 @@ void take_cross_section(const Case& from, const Body& body, Preflight& to) {
   to.cross_section_key = table + (from.dimension == 1 ? "area" : "thickness");
   to.cross_section = body.setting.cross_section;
   to.cross_section_is_given = from.locations.contains(to.cross_section_key);
-  // cpd in the plane knows no thickness, and a body in plane strain is told per metre of it.
+  // Plane cpd does not depend on the thickness, and plane strain is reported per metre of it.
   const bool is_plane =
       from.material.model != MaterialModel::cpd && from.material.plane == PlaneState::stress;
   to.cross_section_counts = from.dimension == 1 || is_plane;
@@ -338,8 +340,9 @@ Coordinates middle_of(const Crack& crack) {
   return middle;
 }
 
-/// Of the tables [[crack]], which come first. One in the air of a subtracted shape, as along the
-/// middle of a notch, may cut nothing: where the spacing is refined, no bond bridges it any more.
+/// Refuses a [[crack]] that cuts no bond (these tables come first). A crack within a subtracted
+/// shape, as along the middle of a notch, may cut none: with a refined spacing, no bond bridges the
+/// notch.
 void refuse_idle_cracks(const Case& from, const std::vector<Preflight::CutByCrack>& cracks) {
   const auto* const lattice = std::get_if<Lattice>(&from.body);
   for (std::size_t k = 0; k < from.cracks.size(); ++k) {

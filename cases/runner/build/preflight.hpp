@@ -14,16 +14,16 @@
 
 namespace peristat {
 
-/// What a case makes of its body, its loads and its law, as plain values: what `check` prints, and
-/// what the rules of preflight_rules.hpp judge.
+/// Plain values about the body, the loads and the law of a case, which `check` prints and the rules
+/// of preflight_rules.hpp judge.
 struct Preflight {
   /// A box of the body along one of the lattice's axes.
   struct Division {
     std::string key;     ///< "lattice.shape[0]"
     int axis = 0;        ///< from 0
     double asked = 0.0;  ///< extent that the case gives [m]
-    double made = 0.0;   ///< that of the lattice's cells in it [m]
-    double cells = 0.0;  ///< their number
+    double made = 0.0;   ///< extent of the lattice's cells in it [m]
+    double cells = 0.0;  ///< number of cells
   };
   /// A subtracted shape.
   struct Opening {
@@ -40,7 +40,7 @@ struct Preflight {
   struct Applied {
     GivenValue::Kind kind = GivenValue::Kind::displacement;
     std::string key, where, unit, text;
-    bool changes = false;           ///< whether it goes with a load parameter or the time
+    bool changes = false;           ///< depends on a load parameter or the time
     std::array<double, 2> begin{};  ///< least and largest at load 0
     std::array<double, 2> end{};    ///< likewise at the end of the programme
     double largest = 0.0;           ///< magnitude at load 0 and all entries of the programme
@@ -51,10 +51,10 @@ struct Preflight {
     std::string key;   ///< "material"
     double youngs_modulus = 0.0, energy = 0.0, strength = 0.0;  ///< [Pa], [J/m2], [Pa]
     double critical = 0.0;                                      ///< stretch
-    bool has_strength = false;                                  ///< given, or by its stretches
-    bool is_data = false;                                       ///< its strength is given
+    bool has_strength = false;  ///< strength is given, or follows from given stretches
+    bool is_data = false;       ///< strength itself is given
     bool softens = false;
-    /// E G / f_t^2, which the process zone of a crack scales with [m].
+    /// E G / f_t^2, to which the length of a crack's process zone is proportional [m].
     [[nodiscard]] double characteristic_length() const {
       return youngs_modulus * energy / (strength * strength);
     }
@@ -75,7 +75,7 @@ struct Preflight {
   std::string cross_section_key;        ///< "lattice.thickness"
   bool cross_section_is_given = false, cross_section_counts = false;
   bool is_quasi_static = true, is_controlled = false, may_fail = false;
-  int steps = 1;  ///< of the programme's stages together
+  int steps = 1;  ///< in all stages of the programme together
   std::vector<Division> divisions;
   std::vector<FeatureLength> lengths;
   std::vector<Opening> openings;
@@ -85,13 +85,13 @@ struct Preflight {
   std::vector<Stiffness> stiffnesses;
   std::vector<Idle> idle;
   bool begins_moving = false;  ///< by initial fields
-  bool has_notch = false;      ///< a crack or a subtracted shape, which stress concentrates at
+  bool has_notch = false;      ///< a crack or a subtracted shape, at which stress concentrates
 
   /// The shortest length of a kind; null: there is none.
   [[nodiscard]] const FeatureLength* shortest(FeatureLength::Kind kind) const;
 };
 
-/// A call that all ranks make.
+/// Collective.
 /// @throws InputError ("cracks[0]") for a crack that cuts no bond
 [[nodiscard]] Preflight preflight_of(const Case& from, const Body& body, const Communicator& ranks);
 

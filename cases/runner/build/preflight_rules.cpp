@@ -11,7 +11,7 @@ namespace {
 using Kind = FeatureLength::Kind;
 using Warnings = std::vector<std::string>;
 
-/// Part of a spacing that boxes may miss whole cells by: the round-off of decimals.
+/// Largest difference between a box and whole cells, in spacings: the round-off of decimals.
 constexpr double round_off = 1e-6;
 
 void add_divisions(const Preflight& of, Warnings& warnings) {
@@ -35,7 +35,7 @@ void add_cross_section(const Preflight& of, Warnings& warnings) {
         of.dimension == 1 ? "has this area" : "is a metre thick", what));
     return;
   }
-  // A whole metre is taken on purpose, for forces per metre.
+  // A thickness of exactly 1 m is intended, for forces per metre.
   const double largest = *std::max_element(of.extents.begin(), of.extents.end());
   if (of.dimension == 2 && of.cross_section != 1.0 && of.cross_section > largest) {
     warnings.push_back(fmt::format(
@@ -67,7 +67,7 @@ void add_bridged(const Preflight& of, Warnings& warnings) {
 }
 
 void add_constant_values(const Preflight& of, Warnings& warnings) {
-  const bool is_path = of.may_fail || of.steps > 1;  // one elastic step solves for what is given
+  const bool is_path = of.may_fail || of.steps > 1;  // one elastic step may have constant values
   if (!of.is_quasi_static || !is_path) return;
   const bool grows = of.is_controlled || std::ranges::any_of(of.applied, [](const auto& value) {
                        return value.changes && value.largest > 0.0;
@@ -118,12 +118,11 @@ void add_fracture(const Preflight& of, const Preflight::Fracture& fracture, Warn
         name, fracture.critical));
   }
   if (!fracture.softens) return;
-  // docs/trustworthy-peaks.md: with bonds 1.6 times as strong as those of the law as it comes,
-  // whose length is 2.4 horizons, cracks run at up to 1.03 of the toughness, and near brittle ones
-  // at 1.19.
+  // docs/trustworthy-peaks.md: the default law has a length of 2.4 horizons. With bonds 1.6 times
+  // as strong, cracks run at up to 1.03 of the toughness, with brittle bonds at up to 1.19.
   constexpr double shortest_zone = 1.1;  // in horizons
   const double zone = fracture.characteristic_length();
-  // A law that is given by its stretches is a choice of model, its strength no data to be met.
+  // Stretches that a case gives are a modelling choice: their strength is no datum to be met.
   if (fracture.is_data && zone < shortest_zone * of.horizon) {
     warnings.push_back(fmt::format(
         "the spacing is coarse for the process zone{}: E G/ft^2 = {:.3g} m is {:.2g} horizons, and "

@@ -7,7 +7,7 @@
 
 namespace peristat {
 
-/// What may not be meant: a sentence each, without "warning:" in front.
+/// Warnings about what may not be intended: one sentence each, without "warning:" in front.
 [[nodiscard]] std::vector<std::string> warnings_of(const Preflight& of);
 
 }  // namespace peristat

@@ -10,11 +10,11 @@
 
 namespace peristat {
 
-/// The points of a body that its results tell of, the first ones: those that stand for themselves,
-/// and of a part of a body those that its rank owns.
+/// The points of a body that appear in its results: all but images, and in a part of a body those
+/// that its rank owns. They come first in the numbering.
 class RecordedPoints {
  public:
-  /// Both outlive it.
+  /// Both arguments must outlive this object.
   /// @param part null: the body is whole
   RecordedPoints(const Points& points, const PartOfBody* part = nullptr)
       : points_(points), part_(part) {}
@@ -23,17 +23,17 @@ class RecordedPoints {
   [[nodiscard]] const PartOfBody* part() const { return part_; }
   [[nodiscard]] Index count() const { return part_ ? part_->owned() : points_.own(); }
   [[nodiscard]] int dimension() const { return points_.dimension; }
-  /// Those that have the other parts; a sole one of a whole body.
+  /// Communicator of the parts; a sole rank for a whole body.
   [[nodiscard]] const Communicator& ranks() const;
 
-  /// Number in the results of a point that is here; of an image its source's.
+  /// Number of a local point in the results; of an image, that of its source.
   [[nodiscard]] Index number(Index point) const {
     const Index source = points_.source(point);
     return part_ ? static_cast<Index>(part_->number_of(source)) : source;
   }
-  /// Whether a bond is told here: one that is here and on another rank, too, is where the point is
-  /// owned that has the lower number in the whole body, and one to an image where its other point
-  /// is.
+  /// True if this rank reports a bond. If several ranks have the bond, the owner of its point with
+  /// the lower number in the whole body reports it. A bond to an image is reported by the owner of
+  /// its other point.
   [[nodiscard]] bool tells(Index lower, Index upper) const {
     if (!part_) return true;
     const bool comes_first = points_.is_image(upper) || number(lower) < number(upper);
@@ -48,8 +48,8 @@ class RecordedPoints {
   const PartOfBody* part_;
 };
 
-/// The recorded point that is nearest to a place, of all ranks; of those as near but for round-off
-/// the one with the lowest number. A call that all ranks make.
+/// The recorded point nearest to a place among all ranks; of points equally near up to round-off,
+/// the one with the lowest number. Collective.
 struct NearestRecorded {
   std::optional<Index> here{};  ///< the point, on the rank that has it
   double distance = 0.0;        ///< [m]
@@ -57,7 +57,7 @@ struct NearestRecorded {
 [[nodiscard]] NearestRecorded nearest_recorded(const RecordedPoints& points,
                                                const Coordinates& place);
 
-/// Without what is not recorded: images and ghosts.
+/// Copy of the points without images and ghosts.
 [[nodiscard]] Points only_recorded(const RecordedPoints& points);
 
 }  // namespace peristat

@@ -5,7 +5,7 @@
 
 namespace peristat {
 
-/// All that a study of a case goes by.
+/// All options of the study of a case.
 [[nodiscard]] StudyOptions study_options(const Case& from, int threads);
 
 /// Options of the load stepping as a case gives them.

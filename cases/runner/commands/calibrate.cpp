@@ -16,7 +16,7 @@
 namespace peristat {
 namespace {
 
-/// "youngs_modulus" as the option that gives it.
+/// Option for a key: "--youngs-modulus" for "youngs_modulus".
 std::string option(std::string key) {
   for (char& c : key) {
     if (c == '_') c = '-';
@@ -133,8 +133,8 @@ std::string section(const CpdConstants& constants, const CpdStiffness& stiffness
   return fmt::format("{{{}}}", fmt::join(pairs, ", "));
 }
 
-/// Refuses a lattice on which what a unit of a constant contributes is lost to underflow (with the
-/// ninth power of a length in 3D) or overflows: its ratios would be arbitrary.
+/// Refuses a lattice on which the contribution of a unit constant underflows (with the ninth power
+/// of a length in 3D) or overflows: its ratios would be arbitrary.
 void require_representable(const CalibrationQuestion& question, const CpdStiffness& stiffness) {
   for (const CubicElasticity* part : {&stiffness.of_c1, &stiffness.of_c2, &stiffness.of_c3}) {
     const double lambda = part->isotropic(stiffness.dimension).lambda;
@@ -181,7 +181,7 @@ void check_place(const CalibrationQuestion& where, const BondCalibrationQuestion
   }
 }
 
-/// Answers for a case, of bonds.
+/// Prints the calibration of the bonds of a case.
 Exit calibrate_bonds(const Case& from, bool with_strengths) {
   const auto body = make_body(from, 1);
   located_errors(from, [&] {
@@ -197,7 +197,7 @@ Exit calibrate_bonds(const Case& from, bool with_strengths) {
   return Exit::done;
 }
 
-/// The error of a material, of options in the place of keys.
+/// Replaces the key of a material's error by the option of the command line.
 InputError of_options(const InputError& error) {
   if (error.key().starts_with("--")) return error;
   const std::string& key = error.key();
@@ -206,7 +206,7 @@ InputError of_options(const InputError& error) {
           error.allowed()};
 }
 
-/// @param damage what is told of a law of damage; empty: there is none
+/// @param damage JSON of the law of damage; empty: there is none
 void print_calibration(const CalibrationQuestion& question, const std::string& damage) {
   const int dimension = question.dimension;
   const double horizon = question.horizon_ratio * question.spacing;

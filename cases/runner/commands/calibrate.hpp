@@ -8,7 +8,7 @@
 
 namespace peristat {
 
-/// Lattice, and what is known of the material: E and nu, or lambda and mu, or C1 to C3.
+/// Lattice and given constants of the material: E and nu, or lambda and mu, or C1 to C3.
 struct CalibrationQuestion {
   int dimension = 0;
   double spacing = 0.0;        ///< [m]
@@ -19,18 +19,18 @@ struct CalibrationQuestion {
   std::optional<double> youngs_modulus, poisson_ratio, lambda, mu, c1, c2, c3;
 };
 
-/// The same for bonds alone: lattice, corrections, and a material with its law of damage.
+/// Further data for bond-based models: corrections, and a material with its law of damage.
 struct BondCalibrationQuestion {
   double area = 1.0;   ///< 1D [m2]
-  double angle = 0.0;  ///< of the lattice, which turns a correction by energy [degrees]
+  double angle = 0.0;  ///< of the lattice, on which a correction by energy depends [degrees]
   VolumeCorrection volume_correction = VolumeCorrection::none;
   HorizonShape horizon_shape = HorizonShape::ball;
   SurfaceCorrection surface_correction = SurfaceCorrection::none;
   MaterialSpecification material{};
 };
 
-/// Prints constants and moduli, in the continuum and on the lattice's bulk sums, as JSON, and with
-/// a law of damage what it makes of a tear on the lattice.
+/// Prints constants and moduli, of the continuum and of the lattice's bulk sums, as JSON; with a
+/// law of damage also fracture energies and strengths on the lattice.
 /// @throws InputError with the command line's options as keys
 [[nodiscard]] Exit calibrate(const CalibrationQuestion& question,
                              const DamageSpecification& damage);
@@ -40,7 +40,7 @@ struct BondCalibrationQuestion {
 /// @throws InputError with the command line's options as keys
 [[nodiscard]] Exit calibrate(const CalibrationQuestion& where, BondCalibrationQuestion question);
 
-/// The same for the lattice and material of a case.
+/// Prints the calibration for the lattice and materials of a case.
 [[nodiscard]] Exit calibrate(const Case& from, bool with_strengths);
 
 }  // namespace peristat

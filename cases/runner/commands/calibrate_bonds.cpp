@@ -29,7 +29,7 @@ std::string object(const std::vector<std::string>& pairs) {
   return fmt::format("{{{}}}", fmt::join(pairs, ", "));
 }
 
-/// A quantity of directions of the lattice: its axes and the diagonals between them.
+/// Lists a quantity along directions of the lattice: its axes and the diagonals between them.
 template <class Quantity>
 std::vector<std::string> of_directions(int dimension, const Quantity& quantity) {
   const Coordinates x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
@@ -54,7 +54,8 @@ std::string youngs_moduli(const BulkBonds& bonds, double micromodulus, const Bon
   return object(pairs);
 }
 
-/// Of cracks whose normals have these directions.
+/// Fracture energies of cracks: mean, least and most, and those with normals along the lattice's
+/// directions.
 template <class OfPlane>
 std::string fracture_energies(const DirectionalSpread& spread, int dimension,
                               const OfPlane& of_plane) {
@@ -82,7 +83,7 @@ std::string over_directions(const DirectionalSpread& of) {
       {exact_pair("mean", of.mean), exact_pair("least", of.least), exact_pair("most", of.most)});
 }
 
-/// What a body bears under other stresses than a pull, and where its bonds begin to soften.
+/// Stresses at which bonds begin to soften and at which a body fails, for several states of stress.
 std::string strengths(const DamageSpecification& damage, const BulkPull& pull, int dimension) {
   const AnyLaw law = law_of(damage);
   const auto of = [&](const char* name, Loading loading) {

@@ -36,7 +36,7 @@ struct NeighbourCounts {
   double mean = 0.0;
 };
 
-/// Of the points that stand for themselves.
+/// Counts neighbours of the body's own points, without images.
 NeighbourCounts count_neighbours(const Bonds& bonds, Index own) {
   std::vector<std::int32_t> neighbours = neighbour_counts(bonds);
   neighbours.resize(std::size_t(own));
@@ -66,12 +66,12 @@ std::string seconds_text(double seconds) {
   return fmt::format("about {:.1f} h", seconds / 3600.0);
 }
 
-/// "constants", or "constants of fibres": the lines of several materials say whose they are.
+/// "constants", or "constants of fibres": with several materials, lines name theirs.
 std::string heading(const std::string& what, const std::string& of) {
   return of.empty() ? fmt::format("{:<11}", what) : fmt::format("{} of {}:", what, of);
 }
 
-/// Constants of bonds and their moduli.
+/// Prints constants of bonds and their moduli.
 void print_bond_constants(const PointMaterials::Material& of, const std::string& name,
                           const BondSetting& setting) {
   const DirectedConstant constant = micromodulus_of(*of.of, of.key, setting);
@@ -91,7 +91,7 @@ void print_bond_constants(const PointMaterials::Material& of, const std::string&
              poisson_ratio(setting));
 }
 
-/// ": fracture energy 10 J/m2, …"; nothing where finding it would take minutes.
+/// ": fracture energy 10 J/m2, …"; empty if computing it would take minutes.
 std::string fracture_energy_text(const DamageSpecification& damage, const FractureScale& scale,
                                  const BondSetting& setting) {
   if (scale.crossing == 0.0) return "";
@@ -110,7 +110,7 @@ std::string fracture_energy_text(const DamageSpecification& damage, const Fractu
                      spread.least, spread.most);
 }
 
-/// ", strength 3e+06 Pa in the mean …"; nothing where finding it would take minutes.
+/// ", strength 3e+06 Pa in the mean …"; empty if computing it would take minutes.
 std::string strength_text(const DamageSpecification& damage, const FractureScale& scale,
                           int dimension) {
   if (!scale.pull) return "";
@@ -123,7 +123,7 @@ std::string strength_text(const DamageSpecification& damage, const FractureScale
                            of.least, of.most);
 }
 
-/// Where bonds begin to soften, and what a body bears under other stresses.
+/// Prints stresses at which bonds begin to soften, and strengths under other stresses.
 void print_strengths(const DamageSpecification& damage, const std::string& name,
                      const FractureScale& scale, int dimension) {
   if (!scale.pull || dimension == 1) return;
@@ -137,7 +137,7 @@ void print_strengths(const DamageSpecification& damage, const std::string& name,
       scale.pull->peak(Loading::biaxial, law).mean, scale.pull->peak(Loading::shear, law).mean);
 }
 
-/// What a law of damage makes of a tear and of a pull.
+/// Prints fracture energy and strength of a law of damage.
 void print_fracture(const PointMaterials::Material& of, const std::string& name,
                     const BondSetting& setting, double spacing) {
   const DamageSpecification& damage = of.of->damage;
@@ -182,15 +182,15 @@ void print_cpd_constants(const PointMaterials::Material& of, const std::string& 
         elasticity.anisotropy());
   };
   print_moduli("lattice", lattice_stiffness(body.setting, body.points.spacing));
-  if (body.setting.influence) return;  // the continuum's are known for none
+  if (body.setting.influence) return;  // continuum moduli are not known with an influence function
   print_moduli("continuum",
                continuum_stiffness(dimension, body.setting.horizon, body.setting.cross_section));
 }
 
-/// What the quadrature of bonds is worth, whatever their constants.
+/// Prints the error of the quadrature of bonds, whatever their constants.
 void print_quadrature(const Case& from, const Body& body, int threads) {
   Bonds bonds = body.model.bonds();
-  if (!from.is_uniform()) {  // their weights have the constants in them
+  if (!from.is_uniform()) {  // the weights include the constants
     bonds = make_bonds(body.points, from.surface_correction, body.setting, threads);
     static_cast<void>(cut_bonds(bonds, body.points, body.specification.cracks));
   }
@@ -199,7 +199,7 @@ void print_quadrature(const Case& from, const Body& body, int threads) {
       confined_energy_error(body.points, bonds, body.setting));
 }
 
-/// Lame's constants of models lps and correspondence.
+/// Prints Lame's constants of models lps and correspondence.
 void print_lame_constants(const PointMaterials::Material& of, const std::string& name,
                           int dimension) {
   const LamePair constants = lame_constants(*of.of, dimension);
@@ -207,7 +207,7 @@ void print_lame_constants(const PointMaterials::Material& of, const std::string&
              constants.mu);
 }
 
-/// What the weights of model lps are like.
+/// Prints properties of the weights of collocated model lps.
 void print_collocation(const Case& from, const Body& body) {
   const CollocationSummary& of = body.collocation;
   fmt::print(
@@ -219,7 +219,7 @@ void print_collocation(const Case& from, const Body& body) {
 }
 
 void print_constants(const Case& from, const Body& body, int threads) {
-  const BodySpecification& of = body.specification;  // its stretches are found
+  const BodySpecification& of = body.specification;  // its stretches are computed
   const PointMaterials materials(of, body.points);
   const auto all = all_materials(of, materials);
   const bool is_bond = has_bonds(from.material.model);
@@ -247,7 +247,7 @@ void print_constants(const Case& from, const Body& body, int threads) {
   }
 }
 
-/// How many points each material has.
+/// Prints the number of points of each material.
 void print_regions(const Case& from, const Body& body) {
   if (from.regions.empty()) return;
   const auto count = [&](std::int32_t region) {
@@ -259,8 +259,8 @@ void print_regions(const Case& from, const Body& body) {
   if (count(-1) > 0) fmt::print("region      none, [material]: {} points\n", count(-1));
 }
 
-/// What becomes of the degrees of freedom: those of the points that stand for themselves, and the
-/// unknowns that constraints bring along.
+/// Prints the numbers of prescribed, dependent and free degrees of freedom: those of the body's own
+/// points, and the unknowns that constraints add.
 void print_supports(const Body& body) {
   const std::vector<char>& prescribed = body.conditions->prescribed();
   const std::vector<char>& follows = body.conditions->constraints().dependent();
@@ -281,7 +281,7 @@ void print_supports(const Body& body) {
   fmt::print("supports    {}\n", text);
 }
 
-/// Loads that follow the deformation, and what the symmetric tangent leaves out of their stiffness.
+/// Prints the pressures, and the part of their stiffness that the symmetric tangent leaves out.
 void print_pressures(const Body& body) {
   for (const auto& term : body.model.terms()) {
     const auto* const pressures = dynamic_cast<const PressureTerm*>(term.get());
@@ -311,7 +311,7 @@ const PointTerm* convolved(const Body& body) {
   return term != nullptr && term->is_convolved() ? term : nullptr;
 }
 
-/// Of an explicit step, as measured; other terms than bonds take longer.
+/// Measured time of the forces of an explicit step [s]; terms other than bonds take longer.
 double seconds_of_forces(const Body& body) {
   constexpr double seconds_per_bond = 6e-9, seconds_per_place = 2e-7;
   if (const PointTerm* const term = convolved(body)) {
@@ -320,7 +320,7 @@ double seconds_of_forces(const Body& body) {
   return double(body.model.bonds().count()) * seconds_per_bond;
 }
 
-/// Of a motion in time: its stable step, and what its steps take.
+/// Prints the stable step of a motion in time, and the time that its steps take.
 void print_motion(const Case& from, const Body& body, const StudyOptions& options,
                   double seconds_of_solving) {
   const double stable = Study(body, options).find_initial_stiffness().stable_step();

@@ -5,8 +5,9 @@
 
 namespace peristat {
 
-/// Reads and builds a case without solving it and prints what it would be: counts, sets, supports,
-/// neighbours, parts that may move freely, memory and time.
+/// Reads and builds a case without solving it, and prints a summary: counts, sets, supports,
+/// neighbours, memory and time. Refuses what a run would refuse, such as parts that may move
+/// freely.
 /// @throws InputError, MemoryError as a run would
 [[nodiscard]] Exit check(const Case& from, int threads);
 

@@ -61,7 +61,7 @@ std::vector<double> displacement_of(const std::string& deformation, const Points
   return displacement;
 }
 
-/// Gives handles the values that fit a deformation of the points best, each by itself.
+/// Fits each generalised degree of freedom (handle) by itself to a deformation of the points.
 void fit_handles(const Constraints& constraints, const Points& points,
                  std::vector<double>& displacement) {
   const std::size_t d = std::size_t(points.dimension);
@@ -96,7 +96,7 @@ void fit_handles(const Constraints& constraints, const Points& points,
   }
 }
 
-/// The energy as a function of what follows nothing, without loads.
+/// The energy as a function of the independent degrees of freedom, without loads.
 class Reduced {
  public:
   Reduced(Assembler& assembler, const Constraints& constraints, const History& history,
@@ -111,7 +111,7 @@ class Reduced {
     return {displacement, history_, damage_, environment_};
   }
 
-  /// Moves what follows, and finds the gradient, which is zero there.
+  /// Moves dependent degrees of freedom and finds the gradient, whose entries there are zero.
   Evaluation gradient(std::vector<double> displacement, std::vector<double>& gradient) const {
     if (constraints_.none()) return assembler_.gradient(at(displacement), gradient);
     constraints_.move(displacement);
@@ -120,7 +120,7 @@ class Reduced {
     return found;
   }
 
-  /// Of all points, at a displacement of what follows nothing.
+  /// Energies of all points, at a displacement of the independent degrees of freedom.
   [[nodiscard]] std::vector<double> point_energies(std::vector<double> displacement) const {
     if (!constraints_.none()) constraints_.move(displacement);
     std::vector<double> energies(assembler_.points().volume.size());
@@ -128,7 +128,7 @@ class Reduced {
     return energies;
   }
 
-  /// Forces on followers onto what they follow.
+  /// Adds forces on dependent degrees of freedom to those that they follow.
   void fold(const std::vector<double>& displacement, std::vector<double>& forces) const {
     if (constraints_.none()) return;
     constraints_.fold(displacement, no_load(), forces);
@@ -137,7 +137,7 @@ class Reduced {
     }
   }
 
-  /// Of rigid sets, at a displacement at which what follows has moved.
+  /// Curvature of rigid sets, at a displacement whose dependent degrees of freedom have moved.
   [[nodiscard]] std::vector<Tensor> curvature(const std::vector<double>& displacement) const {
     std::vector<double> forces(displacement.size());
     static_cast<void>(assembler_.gradient(at(displacement), forces));
@@ -174,7 +174,7 @@ std::vector<double> test_direction(const Points& points, const std::vector<char>
 }
 
 /// Adds a little of the gradient's direction: where steps have to be small, the slope along a
-/// random direction alone may be, too, and drown in round-off.
+/// random direction may be small, too, and drown in round-off.
 void steepen(const std::vector<double>& gradient, double size, std::vector<double>& direction) {
   constexpr double share = 0.05;
   double largest = 0.0;
@@ -182,9 +182,9 @@ void steepen(const std::vector<double>& gradient, double size, std::vector<doubl
   if (largest > 0.0) add_scaled(direction, share * size / largest, gradient);
 }
 
-/// Where a case has damage its forces have kinks (or jumps) at the onset and at the critical
-/// stretch, over which no difference converges. Takes the points whose bonds are close to one out
-/// of the direction.
+/// Keeps finite differences off the kinks (or jumps) that forces with damage have at the onset and
+/// at the critical stretch, across which no difference converges. Sets the direction to zero at
+/// points whose bonds are close to one.
 /// @return the largest step along the direction at which no bond reaches one
 double keep_off_kinks(const Body& body, const std::vector<double>& displacement,
                       const std::vector<double>& gradient, std::vector<double>& direction,
@@ -235,7 +235,7 @@ struct Convergence {
   double error = 0.0;
   std::optional<double> order;
 
-  /// As JSON: null where no step size stands clear of round-off.
+  /// As JSON: null if round-off affects all step sizes.
   [[nodiscard]] std::string order_text() const {
     return order ? fmt::format("{:.6g}", *order) : "null";
   }
@@ -250,9 +250,8 @@ double round_off_of(const std::vector<double>& errors) {
   return around[1];
 }
 
-/// Smallest error, and the order at the smallest step whose error still stands clear of round-off:
-/// of 100 times what round-off leaves or, where no step's does, of 15 times, which leaves an order
-/// of 2 an error of up to 0.1.
+/// Smallest error, and the order at the smallest step whose error is still well above round-off:
+/// 100 times or, if no step's is, 15 times, which gives an order of 2 an error of up to 0.1.
 Convergence convergence_of(const std::vector<double>& errors) {
   Convergence result;
   result.error = *std::min_element(errors.begin(), errors.end());
@@ -304,7 +303,7 @@ std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler,
   return std::make_unique<ConstrainedTangent>(assembler, constraints);
 }
 
-/// As JSON: null of a tangent without entries.
+/// As JSON: null for a tangent without entries.
 std::string frobenius_norm(const TangentOperator& tangent) {
   const Tangent* const stored = tangent.as_tangent();
   if (!stored && !tangent.as_unsymmetric()) return "null";
@@ -315,7 +314,7 @@ std::string frobenius_norm(const TangentOperator& tangent) {
 /// Gradients that differenced_block evaluates for a column.
 constexpr double passes_per_column = 6.0;
 
-/// Degrees of freedom of points that see one another, from several places of the body: those whose
+/// Sample of degrees of freedom, of neighbouring points at several places of the body, whose
 /// columns of the tangent are found by differences.
 /// @param direction of the check; where it is zero a difference would meet a kink
 std::vector<std::size_t> sampled_dofs(const Body& body, const std::vector<double>& direction) {
@@ -373,8 +372,8 @@ std::vector<double> differenced_block(const Reduced& body, const std::vector<dou
   return block;
 }
 
-/// Largest |K_ij - K_ji| over the largest |K_ij|. Of differences: the tangent itself is stored once
-/// for both places of a block, and can't be unsymmetric.
+/// Largest |K_ij - K_ji| over the largest |K_ij|. Needs a block from differences: the tangent
+/// itself is stored once for both places of a block, and can't be unsymmetric.
 double asymmetry_of(const std::vector<double>& block, std::size_t count) {
   double difference = 0.0, largest = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -386,8 +385,9 @@ double asymmetry_of(const std::vector<double>& block, std::size_t count) {
   return largest > 0.0 ? difference / largest : 0.0;
 }
 
-/// Eigenstrains, pressures and the ground at the end of the load; under a control at the load 1. Of
-/// implicit steps also the inertia, which holds the points where they are.
+/// Eigenstrains, pressures and ground displacements at the end of the load; under displacement
+/// control at the load 1. For implicit time steps also the inertia, which holds the points at this
+/// displacement.
 SharedEnvironment environment_at_end(const Case& from, const Body& body,
                                      const std::vector<double>& displacement) {
   const Conditions& conditions = *body.conditions;
@@ -430,13 +430,14 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   std::vector<double> gradient(dofs), image(dofs), shifted(dofs), forward(dofs), backward(dofs);
   History history = assembler.initial_history();
   const SharedEnvironment environment = environment_at_end(from, body, displacement);
-  // From event to event a body is elastic, after all drops that the deformation brings.
+  // In mode path the body is elastic between events: damage of this deformation is committed, then
+  // held.
   const bool goes_by_events = body.specification.teeth > 0;
   if (goes_by_events) assembler.commit(displacement, history, {}, environment);
   const Reduced reduced(assembler, constraints, history,
                         goes_by_events ? Damage::held : Damage::grows, environment);
   const StateView at = reduced.at(displacement);
-  std::vector<double> internal_force(dofs);  // folded onto nothing, less that of a ground
+  std::vector<double> internal_force(dofs);  // not folded, without the force of foundations
   static_cast<void>(assembler.gradient(at, internal_force));
   body.conditions->foundations().add_force(displacement, environment, 1.0, internal_force);
   const Evaluation found = reduced.gradient(displacement, gradient);
@@ -451,12 +452,12 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   tangent.linearise(assembler, state, 0.0);
   std::vector<double> direction = test_direction(points, constraints.dependent());
   double largest_step = 0.05;
-  // Without a potential forces know of damage once it is committed only.
+  // Without a potential, forces depend on committed damage only.
   if (!goes_by_events && assembler.has_potential()) {
     largest_step = keep_off_kinks(body, displacement, gradient, direction, largest_step);
   }
   tangent.multiply(direction, image);
-  // Forces that follow the deformation have no part in the energy.
+  // Follower forces have no part in the energy.
   std::vector<double> follower_force(dofs);
   assembler.follower_force(at, follower_force);
   reduced.fold(displacement, follower_force);

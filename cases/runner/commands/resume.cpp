@@ -33,7 +33,7 @@ void require_extending(const Settings& settings) {
   }
 }
 
-/// Settings that a run was begun with, for the folder that it is found in.
+/// Settings that the run began with, and the folder that it is in now.
 Settings settings_in(const EarlierRun& earlier) {
   Settings settings = earlier.settings();
   std::erase_if(settings, [](const auto& setting) { return setting.first == "output.directory"; });
@@ -41,8 +41,8 @@ Settings settings_in(const EarlierRun& earlier) {
   return settings;
 }
 
-/// The text of the case: of its file, or of the run where the file is gone.
-/// @throws InputError if the file says something else than it did
+/// Text of the case: from its file, or from the run if the file is gone.
+/// @throws InputError if the file has changed
 std::string case_text(const EarlierRun& earlier, const Settings& settings) {
   if (!std::filesystem::exists(earlier.case_file())) return earlier.case_text();
   const Case then = read_case(earlier.case_file(), earlier.case_text(), settings);
@@ -62,7 +62,7 @@ LoadingProgramme programme_of(const Case& from) {
   return from.programme.empty() ? LoadingProgramme() : LoadingProgramme(from.programme);
 }
 
-/// Refuses tables that lead to where the run is by another way than it has gone.
+/// Refuses load tables that differ from the run's up to the stage that it has reached.
 void require_same_beginning(const LoadingProgramme& then, const LoadingProgramme& now,
                             const PathState& path) {
   const double stage = path.accepted.stage, reached = std::ceil(stage);
@@ -88,7 +88,7 @@ void require_same_beginning(const LoadingProgramme& then, const LoadingProgramme
                   stage, then.parameters()));
 }
 
-/// Only mode adaptive knows how the body takes the place of its stand-in.
+/// Refuses other modes than adaptive, which alone replaces the stand-in by the body.
 void require_stand_in(const PathState& path, const Case& from) {
   if (!path.stands_in || from.solver.mode == Mode::adaptive) return;
   throw InputError(

@@ -48,7 +48,7 @@ std::vector<LineTable> lines_of(const Case& from, const Points& points) {
   return lines;
 }
 
-/// What is known of a run before its first step.
+/// Fills in the summary's counts before the first step.
 void count(const Body& body, const FreeDofs& free, const RunOptions& options,
            const Communicator& ranks, Summary& summary) {
   summary.points = body.part ? Index(body.part->whole()) : body.points.own();
@@ -108,8 +108,8 @@ namespace {
 /// A run of a case, step by step.
 class CaseRun {
  public:
-  /// @param earlier run to go on from; null: from rest
-  /// @param results is made as soon as the case is known to be right
+  /// @param earlier run to resume; null: start from rest
+  /// @param results is made as soon as the case has been checked
   CaseRun(const Case& from, const RunOptions& options, const Communicator& ranks,
           EarlierRun* earlier, Progress& progress, Summary& summary,
           std::optional<Results>& results)
@@ -143,7 +143,7 @@ class CaseRun {
   }
 
  private:
-  /// Body, equations and their solver; refuses what can't be run.
+  /// Makes body, equations and their solver; refuses cases that can't be run.
   void make() {
     body_ = ranks_.count() > 1 ? make_part_body(from_, ranks_, options_.threads)
                                : make_body(from_, options_.threads);
@@ -295,7 +295,7 @@ class CaseRun {
     return told;
   }
 
-  /// Null: the body is whole.
+  /// Null for a whole body.
   [[nodiscard]] const RowGathering* gathering() const {
     return gathering_ ? &*gathering_ : nullptr;
   }
@@ -305,7 +305,7 @@ class CaseRun {
     return ranks_.max(largest_displacement(displacement, body_->points));
   }
 
-  /// Of this session and those before.
+  /// Costs of this session and earlier ones.
   RunCosts costs(double relaxation_seconds) {
     RunCosts costs = summary_.costs;
     add_costs(study_->equations(), costs);
@@ -317,7 +317,7 @@ class CaseRun {
     return costs;
   }
 
-  /// What is known of a run after its last step.
+  /// Completes the summary after the last step, and writes the dossier of a failure.
   void conclude(const LoadSteppingResult& result) {
     summary_.status = status_of(result.outcome);
     if (result.outcome != Outcome::converged) {
@@ -339,7 +339,7 @@ class CaseRun {
     results_->add_dossier(dossier.text, dossier.residual, dossier.displacement);
   }
 
-  /// What ranks send to one another, as counts that do not depend on the machine.
+  /// Prints the traffic between ranks, in counts that do not depend on the machine.
   void tell_traffic() {
     const Traffic mine = body_->part->traffic();
     const double exchanges = std::max(1.0, double(mine.exchanges));
@@ -381,11 +381,11 @@ class CaseRun {
   std::vector<ProbeColumns> probes_;
   FurtherOutput further_;
   const Clock::time_point start_ = Clock::now();
-  EarlierResults earlier_results_;  // until they are taken up
+  EarlierResults earlier_results_;  // until results_ takes them over
   double seconds_of_checkpoints_ = 0.0;
   int steps_here_ = 0;  // accepted in this session
   std::unique_ptr<const Body> body_;
-  // Of ranks.
+  // With several ranks only.
   std::optional<RowGathering> gathering_;
   std::optional<RecordedPoints> recorded_;
   std::optional<StateNumbering> numbering_;
@@ -422,7 +422,8 @@ Exit run(const Case& from, const RunOptions& options, const Communicator& ranks,
     progress.problem(failure.message);
     progress.problem(results->what_is_left());
     if (failure.code == Exit::out_of_memory) {
-      // What HDF5 could not allocate it can't close either: it would end in a segmentation fault.
+      // After a failed allocation HDF5 can't close its objects: that would end in a segmentation
+      // fault.
       std::fflush(nullptr);
       std::_Exit(static_cast<int>(failure.code));
     }

@@ -14,25 +14,23 @@ struct RunOptions {
   int threads = 1;
   bool quiet = false;
   std::string log_file;
-  bool overwrite = false;  ///< an earlier run of another case in the folder, too
+  bool overwrite = false;  ///< replaces an earlier run of another case in the folder, too
   int steps = 0;           ///< to accept before the run is interrupted; 0: all
 };
 
 /// Versions of the program and of its libraries, for the results file and the version command.
 [[nodiscard]] std::map<std::string, std::string> versions();
 
-/// Runs a case and writes its results folder; follows SIGINT, SIGTERM, SIGUSR1 and SIGHUP by
-/// closing the results and returning `interrupted`. The folder's absolute path is written to the
-/// file that the environment variable PERISTAT_NOTE names, for the launcher.
-/// @param ranks   that have a part of the body each; all make this call, and rank 0 tells and
-/// writes
-///                what all have. The exit code is the same on all
-/// @param earlier run that is gone on from: of the same case, or of one that this one extends
+/// Runs a case and writes its results folder. On SIGINT, SIGTERM, SIGUSR1 and SIGHUP it closes the
+/// results and returns `interrupted`. The folder's absolute path is written to the file that the
+/// environment variable PERISTAT_NOTE names, for the launcher. Collective.
+/// @param ranks   that have a part of the body each; rank 0 prints and writes for all. The exit
+///                code is the same on all
+/// @param earlier run to resume: of the same case, or of one that this one extends
 /// @throws InputError, MemoryError before anything is written
 /// @throws MachineError if the machine fails, std::bad_alloc if the memory does: every accepted
-/// step
-///         is kept, and the summary says "failed" if it can be written. Of several ranks perhaps on
-///         one alone: the others must be ended then (Communicator::abort)
+///         step is kept, and the summary says "failed" if it can be written. With several ranks
+///         perhaps on one alone: the others must be ended then (Communicator::abort)
 [[nodiscard]] Exit run(const Case& from, const RunOptions& options, const Communicator& ranks,
                        EarlierRun* earlier = nullptr);
 

@@ -176,7 +176,7 @@ std::string status_of(Outcome outcome) {
 
 namespace {
 
-/// Where forces have no potential their sum is an error that can be seen.
+/// Reports unbalanced force: without a potential it is a visible error.
 void report_unbalanced_force(const StepRecord& last, Progress& progress) {
   constexpr double worth_telling = 0.02;  // of the largest reaction
   double largest = 0.0;

@@ -11,8 +11,7 @@ namespace {
 
 constexpr std::size_t most_of_word = 80, most_keys = 3;
 
-/// Dotted keys of tables (not of arrays of tables, whose elements need a number) that end like
-/// this.
+/// Dotted keys of this name in tables (not in arrays of tables, whose elements need a number).
 std::vector<std::string> keys_named(const std::string& name) {
   std::vector<std::string> found;
   for (const std::string table : {"", "lattice", "quadrature", "material", "material.damage",

@@ -13,7 +13,8 @@ namespace peristat {
 /// Corrections of the weights.
 [[nodiscard]] Table<Case> quadrature_keys();
 
-/// The quadrature is read before the material, whose model tells which of its keys apply.
+/// Refuses keys of the quadrature that the model of the material, which is read later, does not
+/// use.
 void check_quadrature(const Entry& at, const Case& result);
 
 }  // namespace peristat

@@ -34,7 +34,7 @@ CaseLocation location_of(const Case& from, const std::string& key) {
   return {};
 }
 
-/// Horizon and cross-section of whichever body it is.
+/// Sets horizon and cross-section, of a lattice or of points from a file.
 void resolve_size(Case& result) {
   if (const auto* lattice = std::get_if<Lattice>(&result.body)) {
     result.horizon = result.horizon_ratio * lattice->spacing;
@@ -46,7 +46,7 @@ void resolve_size(Case& result) {
   }
 }
 
-/// Keys by the names that lower floors have for what they are given.
+/// Keys of the case file by the names that lower layers use for their inputs.
 const std::map<std::string, std::string>& keys_of_members() {
   static const std::map<std::string, std::string> keys{
       {"spacing", "lattice.spacing"},

@@ -41,11 +41,12 @@ struct LoadingSpecification {
   double smallest_step = 1e-6;    ///< of the stage
   double largest_step = 0.0;      ///< of the stage; 0: the first step (the reader writes it out)
   int max_broken_bonds = 0;       ///< in one implicit step; 0: no limit
-  double stop_below = 0.0;        ///< share of the largest reaction; 0: the load's end alone
-  EventOptions events{};          ///< of mode path
-  int teeth = 10;                 ///< of mode path, see BodySpecification
+  double stop_below = 0.0;  ///< fraction of the largest reaction to end at; 0: load's end only
+  EventOptions events{};    ///< of mode path
+  int teeth = 10;           ///< of mode path, see BodySpecification
 
-  /// Equal steps from one entry to the next: an expression has an entry for each step.
+  /// Number of equal steps from one entry to the next; 1 for an expression, which has an entry for
+  /// each step.
   [[nodiscard]] int steps_to_entry() const;
   /// Load parameters that expressions may use.
   [[nodiscard]] std::vector<std::string> parameters() const;
@@ -60,8 +61,8 @@ struct SolverSpecification {
   Projection projection = Projection::automatic;
   Predictor predictor = Predictor::consistent;
   double relative_tolerance = 1e-10;
-  int max_iterations = 25;         ///< of Newton in a step
-  double linear_tolerance = 1e-3;  ///< largest relative residual of a linear system in it
+  int max_iterations = 25;         ///< of Newton's method in a step
+  double linear_tolerance = 1e-3;  ///< largest relative residual of its linear systems
   ArcLengthOptions arc_length{};   ///< table [arc_length]
   FragmentRemedy fragments = FragmentRemedy::hold;
   /// Horizon / spacing of the elastic stand-in that the adaptive mode uses until damage begins; 0:
@@ -71,18 +72,18 @@ struct SolverSpecification {
 
 /// Table [dynamics]: the motion in time.
 struct DynamicsSpecification {
-  bool is_asked_for = false;  ///< by solver.mode
+  bool is_asked_for = false;  ///< set by solver.mode
   double end_time = 0.0;      ///< [s]
-  double time_step = 0.0;     ///< [s]; 0: a share of the stable one
+  double time_step = 0.0;     ///< [s]; 0: step_share of the stable step
   double step_share = 0.9;
   int history_every = 0;  ///< time steps from one row of the history to the next; 0: output.every
   MotionScheme scheme = MotionScheme::verlet;
   double spectral_radius = 1.0;  ///< of implicit steps at the highest frequencies
   MotionStart start = MotionStart::rest;
 
-  /// Whether each step searches an equilibrium, with the settings of the solver.
+  /// True if each step solves for equilibrium, with the settings of the solver.
   [[nodiscard]] bool is_implicit() const { return is_asked_for && scheme == MotionScheme::newmark; }
-  /// Whether the start or each step is an equilibrium that is searched.
+  /// True if the start or each step is an equilibrium that is solved for.
   [[nodiscard]] bool searches() const {
     return is_implicit() || (is_asked_for && start == MotionStart::equilibrium);
   }
@@ -91,8 +92,8 @@ struct DynamicsSpecification {
 /// Table [relaxation]: steps of the load factor, and how each is relaxed.
 struct RelaxationSpecification {
   int steps = 1;
-  bool moving = false;      ///< the load moves in every iteration, as in [ADAPT]; nothing is held
-  int iterations = 10'000;  ///< of the whole load, if it moves
+  bool moving = false;  ///< the load changes in every iteration, as in [ADAPT], and is never held
+  int iterations = 10'000;      ///< for the whole load, if it moves
   double peak_tolerance = 0.0;  ///< of the stage; 0: the peak is not searched
   RelaxationOptions options;
 };
@@ -100,21 +101,21 @@ struct RelaxationSpecification {
 struct OutputSpecification {
   std::filesystem::path directory;  ///< default results/FOLDER_STEM of the case file
   int every = 1;              ///< fields of every n-th accepted step, or time step; the last always
-  bool count_cracks = false;  ///< whether bonds that a pre-crack has cut count as damage
-  bool stress = false;        ///< whether strain and stress are among the fields
+  bool count_cracks = false;  ///< bonds that a pre-crack has cut count as damage
+  bool stress = false;        ///< strain and stress are among the fields
 };
 
-/// What becomes of a field's values over a set.
+/// Statistic of a field's values over a set.
 enum class Statistic { mean, max, min, rms_error, max_error };
 
-/// Whether it judges the difference from expected values.
+/// True for statistics of the difference from expected values.
 [[nodiscard]] constexpr bool is_of_error(Statistic statistic) {
   return statistic == Statistic::rms_error || statistic == Statistic::max_error;
 }
 
-/// A number of a field at every accepted step: over a set, at the point nearest to a place, or of
-/// every point along a line, which makes a table of its own. Exactly one of `set`, `at` and `from`
-/// is given.
+/// A value of a field at every accepted step: over a set, at the point nearest to a place, or for
+/// every point along a line, which is written to a table of its own. Exactly one of `set`, `at` and
+/// `from` is given.
 struct ProbeSpecification {
   std::string name, set;
   std::optional<Coordinates> at{}, from{}, to{};  ///< [m]
@@ -122,14 +123,14 @@ struct ProbeSpecification {
   std::string field = "displacement";
   std::string component;  ///< of a vector or tensor; empty: all
   Statistic statistic = Statistic::mean;
-  /// Errors: what the components should be, expressions of place and load parameters.
+  /// Statistics of errors: expected components, expressions of place and load parameters.
   std::vector<std::string> expected{};
   int axis = 0;       ///< poisson_ratio: direction that is pulled; crack_length: of the crack
-  std::string other;  ///< opening: set whose mean displacement is taken off
+  std::string other;  ///< opening: set whose mean displacement is subtracted
 };
 
-/// A case as read and checked once; constant from then on: what the body is made of, which knows
-/// no file, and all the rest.
+/// A case, read and checked once and constant from then on: the specification of the body, which
+/// knows no file, and all the rest.
 struct Case : BodySpecification {
   std::string title;
   int dimension = 2;
@@ -155,10 +156,10 @@ struct Case : BodySpecification {
   std::map<std::string, CaseLocation> locations;
 };
 
-/// Whether the probe needs strain or stress.
+/// True if the probe needs strain or stress.
 [[nodiscard]] bool needs_stress(const ProbeSpecification& probe);
 
-/// Whether the results or a probe of the case tell strain or stress.
+/// True if the results or a probe of the case contain strain or stress.
 [[nodiscard]] bool tells_stress(const Case& from);
 
 /// Reads and checks a case file.
@@ -167,20 +168,20 @@ struct Case : BodySpecification {
 ///         read at all, empty
 [[nodiscard]] Case read_case(const std::filesystem::path& file, const Settings& overrides = {});
 
-/// The same with the text that the file has, or had.
+/// Reads and checks a case from the text that its file has, or had.
 [[nodiscard]] Case read_case(const std::filesystem::path& file, const std::string& text,
                              const Settings& overrides);
 
-/// The error's message with file, line and column of its key in front; of the longest part of the
-/// key that the case file has, or of the file alone.
+/// Puts file, line and column of a key in front of a message: those of the longest part of the key
+/// that the case file has, or the file alone.
 [[nodiscard]] std::string located(const Case& from, const std::string& key,
                                   const std::string& message);
 
-/// The error with its key of the case file, where a lower floor has named what it was given, and
-/// with the key's place, unless it has a place already.
+/// Returns the error with the case file's key, if a lower layer has used a name of its own, and
+/// with the key's place. An error that has a place already is returned as it is.
 [[nodiscard]] InputError located(const Case& from, const InputError& error);
 
-/// Runs `make`; input errors leave with the place of their key in the case file.
+/// Runs `make`; adds the place of the key in the case file to input errors.
 template <class Make>
 auto located_errors(const Case& from, const Make& make) {
   try {

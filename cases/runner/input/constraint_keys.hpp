@@ -4,7 +4,7 @@
 
 namespace peristat {
 
-/// What holds or ties points beside supports.
+/// Constraints other than supports, and foundations.
 [[nodiscard]] Table<RigidSetSpecification> rigid_set_keys();
 [[nodiscard]] Table<RollerSpecification> roller_keys();
 [[nodiscard]] Table<LinearConstraintSpecification> linear_constraint_keys();

@@ -53,7 +53,7 @@ class Collection {
  private:
   void add(GivenValue value) { values_.push_back(std::move(value)); }
 
-  /// Components of a vector, those that are free left out.
+  /// Adds the components of a vector, except free ones.
   template <class Components>
   void add_components(const GivenValue& like, const Components& components, std::size_t count) {
     for (std::size_t c = 0; c < count; ++c) {
@@ -146,7 +146,7 @@ class Collection {
   std::vector<GivenValue> values_;
 };
 
-/// Whether a name stands in an expression by itself, not as a part of a longer one.
+/// True if a name occurs in an expression by itself, not as a part of a longer one.
 bool has_word(const std::string& text, const std::string& word) {
   const auto belongs = [&](std::size_t at) {
     return at < text.size() &&
@@ -165,13 +165,13 @@ std::vector<GivenValue> given_values(const Case& from) { return Collection(from)
 void refuse_idle_tables(const Case& from) {
   const std::vector<std::string> parameters = from.parameters();
   std::vector<bool> is_used(parameters.size(), false);
-  is_used.front() = !from.controls.empty();  // the controlled displacement goes by its table
+  is_used.front() = !from.controls.empty();  // the controlled displacement uses its table
   for (const GivenValue& value : given_values(from)) {
     for (std::size_t k = 0; k < parameters.size(); ++k) {
       is_used[k] = is_used[k] || has_word(value.text, parameters[k]);
     }
   }
-  // The first one may have to be there for those that follow it.
+  // The first table may be needed for those that follow it.
   is_used.front() = std::ranges::find(is_used, true) != is_used.end();
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const std::string key = "loading.table" + (k > 0 ? std::to_string(k + 1) : std::string());

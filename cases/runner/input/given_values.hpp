@@ -14,13 +14,13 @@ struct GivenValue {
   std::string key;   ///< "support[0].displacement[1]"
   std::string text;  ///< the expression
   std::string unit;
-  std::string where;                ///< whom it is of, for people; empty: the body
-  std::string set;                  ///< whose points have it; empty: none in particular
-  bool has_place = false;           ///< whether the expression may ask for a place
-  std::optional<Coordinates> at{};  ///< the place that it is for, where that is no set's
+  std::string where;                ///< name of what it acts on, for messages; empty: the body
+  std::string set;                  ///< set that it acts on; empty: none in particular
+  bool has_place = false;           ///< the expression may depend on the place
+  std::optional<Coordinates> at{};  ///< place that it acts on, if this is no set
 };
 
-/// All of them but what is free, in the order of the tables.
+/// All given values of a case except free components, in the order of the tables.
 [[nodiscard]] std::vector<GivenValue> given_values(const Case& from);
 
 /// Refuses tables of load parameters that no expression names.

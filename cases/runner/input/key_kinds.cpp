@@ -13,13 +13,13 @@ namespace {
 
 std::size_t dimension_of(const Case& from) { return std::size_t(from.dimension); }
 
-/// The first of the items, as many as the dimension.
+/// The first items, one per dimension.
 template <class Item>
 std::vector<Item> components_of(const std::array<Item, 3>& items, const Case& from) {
   return {items.begin(), items.begin() + from.dimension};
 }
 
-/// Of the lattice; stands for any positive number if points come from a file.
+/// Spacing of the lattice; 1 in place of any positive number if points come from a file.
 Spacing spacing_of(const Case& from) {
   const auto* lattice = std::get_if<Lattice>(&from.body);
   return lattice != nullptr ? lattice->spacing : Spacing(1.0);
@@ -37,7 +37,7 @@ std::map<std::string, std::string> set_names(const Case& from) {
   return names;
 }
 
-/// Whether names of sets are not all known before a file of points is read.
+/// True if names of sets are not all known before a file of points is read.
 bool has_sets_from_file(const Case& from) { return std::holds_alternative<PointSource>(from.body); }
 
 /// Refuses a component that is no expression of load and, in `dimension` > 0, of place.
@@ -139,7 +139,7 @@ Kind<std::int64_t> choice_of_numbers(std::vector<Choice<std::int64_t>> choices) 
 
 namespace {
 
-/// Names of columns and files have these in them; file systems take 255 bytes.
+/// Names of columns and files contain these names; file systems allow 255 bytes.
 constexpr std::size_t longest_name = 100;
 
 }  // namespace
@@ -423,7 +423,7 @@ Kind<double> stretch() {
 
 namespace {
 
-/// A number, or an expression of place and, if it has them, of the parameters.
+/// Reads a number, or an expression of place and, if `has_parameters`, of the load parameters.
 std::string read_field(const Entry& at, bool has_parameters) {
   const std::string given = at.from.is_string(at.key)
                                 ? at.from.string(at.key)
@@ -451,7 +451,7 @@ Kind<std::string> field_of_place(const std::string& unit) {
 
 namespace {
 
-/// Per component an expression of load, and of place if it has one.
+/// An expression per component: of load, and of place if `has_place`.
 Kind<std::array<std::string, 3>> located_components(bool has_place, const std::string& against_free,
                                                     const std::string& unit) {
   const auto read = [=](const Entry& at) {

@@ -19,12 +19,12 @@ namespace peristat {
 /// A finite number within the range.
 [[nodiscard]] Kind<double> number(const Range& range, std::string allowed, std::string unit = {});
 [[nodiscard]] Kind<double> positive(const std::string& unit, double high = 1e30);
-/// Of a lattice: a number, or one for each of its axes.
+/// Spacing of a lattice: a number, or one for each of its axes.
 [[nodiscard]] Kind<Spacing> spacing();
 [[nodiscard]] Kind<double> between(double low, double high, std::string unit = {});
 [[nodiscard]] Kind<std::int64_t> integer(std::int64_t low, std::int64_t high,
                                          std::string unit = {});
-/// An integer that counts something and is limited for the machine's sake alone.
+/// An integer that counts something; its limit only protects the machine.
 [[nodiscard]] Kind<std::int64_t> count_from(std::int64_t low, std::string unit = {},
                                             std::int64_t high = 1'000'000'000);
 [[nodiscard]] Kind<bool> boolean();
@@ -51,13 +51,13 @@ template <class Value>
   return choice_of_numbers(std::move(numbers));
 }
 
-/// A name that is given: letters, digits, _ and -.
+/// A new name: letters, digits, _ and -.
 [[nodiscard]] Kind<std::string> name();
 /// Numbers, or an expression of the step.
 [[nodiscard]] Kind<LoadTable> load_table();
-/// A name of a set or layer, which is a set too; no other one has it.
+/// A new name of a set or layer (a layer is a set, too), different from all others.
 [[nodiscard]] Kind<std::string> set_name();
-/// Name of a set or layer that is there.
+/// Name of an existing set or layer.
 [[nodiscard]] Kind<std::string> known_set();
 [[nodiscard]] Kind<std::vector<std::string>> known_sets();
 
@@ -65,20 +65,20 @@ template <class Value>
 [[nodiscard]] Kind<Coordinates> coordinates(std::string unit = "m");
 [[nodiscard]] Kind<std::vector<std::array<double, 2>>> pairs();
 [[nodiscard]] Kind<std::vector<std::array<double, 3>>> triples();
-/// A side of the dimension, by its name, "x-" for one.
+/// A side of the body by its name, such as "x-".
 [[nodiscard]] Kind<Side> side();
 [[nodiscard]] Kind<std::optional<Side>> optional_side();
-/// A direction of the dimension, by its number.
+/// An axis, named "x", "y" or "z"; the value is its number.
 [[nodiscard]] Kind<int> axis();
 
-/// A component per dimension, none below zero and one above it.
+/// A component per dimension, none negative and not all zero.
 [[nodiscard]] Kind<Coordinates> stiffnesses(const std::string& unit);
 
 /// An expression that selects points.
 [[nodiscard]] Kind<std::string> condition();
 /// Per component an expression of place and load, or "free".
 [[nodiscard]] Kind<std::array<std::optional<std::string>, 3>> prescribed_components();
-/// What components are for, and whether an expression of them may ask for a place.
+/// Kind of free components: one per axis (axes, of_load), or rotations: one in 2D, three in 3D.
 enum class Components { axes, rotations, of_load };
 /// Per component an expression of load alone, or "free"; all may be free.
 [[nodiscard]] Kind<std::array<std::optional<std::string>, 3>> free_components(
@@ -103,7 +103,7 @@ enum class Components { axes, rotations, of_load };
 
 /// Per entry of a stress, xx yy xy or xx yy zz xy yz xz, an expression of place and load.
 [[nodiscard]] Kind<std::vector<std::string>> stress_components();
-/// Expressions of place and parameters, of as many components as there may be.
+/// Expressions of place and parameters, for any number of components.
 [[nodiscard]] Kind<std::vector<std::string>> expected_components();
 
 /// "[a, b]"

@@ -12,11 +12,11 @@
 
 namespace peristat {
 
-/// What the value of a key may be: how it is read and checked, written as TOML, and described.
+/// Kind of a key's value: how it is read and checked, written as TOML, and described.
 template <class Value>
 struct Kind : UntypedKind {
-  /// @param reads  what gives the value of an Entry
-  /// @param writes what gives TOML of a value and the case
+  /// @param reads  function that returns the value of an Entry
+  /// @param writes function that returns the TOML of a value of a case
   template <class Reads, class Writes>
   Kind(Reads reads, Writes writes, std::string is_allowed, std::string has_unit = {})
       : UntypedKind([=](const Entry& at, void* value) { *static_cast<Value*>(value) = reads(at); },
@@ -41,8 +41,8 @@ auto in(Outer outer, Inner inner) {
   return [=](auto& spec) -> auto& { return member_of(member_of(spec, outer), inner); };
 }
 
-/// An action without the type of its specification. Those that capture nothing become functions,
-/// for which std::function is compiled once.
+/// Wraps an action without the type of its specification. Actions that capture nothing become
+/// functions, for which std::function is compiled once.
 template <class Spec, class Action>
 UntypedKey::Action untyped_action(Action action) {
   if constexpr (std::is_empty_v<Action>)
@@ -110,7 +110,7 @@ template <class Element>
 constexpr ElementsOfMember elements_of_member{read_element_of_member<Element>,
                                               find_element_of_member<Element>};
 
-/// Null for a table of its own.
+/// Null for a single table.
 template <class Held, class Inner>
 constexpr const ElementsOfMember* elements_if_array() {
   if constexpr (std::is_same_v<Held, std::vector<Inner>>) {
@@ -121,8 +121,8 @@ constexpr const ElementsOfMember* elements_if_array() {
   }
 }
 
-/// A key of a table: all that reading, the resolved text and the reference know of it. Unless more
-/// is said it is optional, and its default is that of the specification's struct.
+/// A key of a table, with all that reading, the resolved text and the reference need. By default it
+/// is optional, and its default value is that of the specification's struct.
 ///
 /// A predicate takes the specification and the case so far, an action the entry and the
 /// specification.
@@ -133,13 +133,14 @@ class Key : public UntypedKey {
                                                       std::declval<const Access&>()))>;
 
  public:
-  /// @param member  pointer to a member of the specification, or what gives a reference to one
+  /// @param member  pointer to a member of the specification, or a function that returns a
+  ///                reference to one
   /// @param meaning a sentence for the reference, as are the words below
   template <class Access, class Value>
   Key(std::string_view name, Access member, const Kind<Value>& kind, std::string_view meaning)
       : UntypedKey(name, UntypedMember::of<Spec>(member), value_of_member<Value, Held<Access>>,
                    kind, meaning) {}
-  /// A table of its own, or an array of tables if the member is a vector.
+  /// A single table, or an array of tables if the member is a vector.
   template <class Access, class Inner>
   Key(std::string_view name, Access member, const Table<Inner>& inner, std::string_view meaning)
       : UntypedKey(name, UntypedMember::of<Spec>(member), inner,
@@ -162,34 +163,34 @@ class Key : public UntypedKey {
     set_default_words(words);
     return *this;
   }
-  /// Limits beside those of the kind.
+  /// Adds limits to those of the kind.
   Key& moreover(std::string_view words) {
     add_limits(words);
     return *this;
   }
-  /// Where this holds the key is neither read nor written: it is refused, or ignored if there is no
-  /// reason.
+  /// If the predicate holds, the key is neither read nor written: it is refused with the reason, or
+  /// ignored if the reason is empty.
   template <class Predicate>
   Key& unless(Predicate holds, std::string_view reason) {
     add_exclusion(untyped_predicate<Spec>(holds), reason);
     return *this;
   }
-  /// Of the keys of the table that say so exactly one is needed.
+  /// Exactly one of the keys of the table that are marked by this is needed.
   Key& one_of() {
     set_one_of();
     return *this;
   }
-  /// Read first: which other keys apply may depend on it.
+  /// Reads this key first: other keys may depend on it.
   Key& early() {
     set_early();
     return *this;
   }
-  /// May change when a run goes on: see extending_keys.
+  /// The key may change when a run is resumed: see extending_keys.
   Key& extends() {
     set_extends();
     return *this;
   }
-  /// What follows from the key, there or not: checks together with what was read before.
+  /// Action after the key, given or not: checks that involve keys read before.
   template <class Action>
   Key& then(Action action) {
     set_then(untyped_action<Spec>(action));
@@ -200,14 +201,14 @@ class Key : public UntypedKey {
     set_written_if(untyped_predicate<Spec>(holds));
     return *this;
   }
-  /// Describes tables inside that are read by a kind.
+  /// Describes inner tables that a kind reads.
   Key& describes(DescribeInside tables_inside) {
     set_described(tables_inside);
     return *this;
   }
 };
 
-/// Stands for no action before or after the keys of a table.
+/// No action before or after the keys of a table.
 struct NoAction {};
 
 /// A table of the case file; its keys in the order of the resolved text.
@@ -243,7 +244,7 @@ struct Table : UntypedTable {
   }
 };
 
-/// For `unless`.
+/// Predicate for `unless`.
 template <int dimension>
 constexpr auto in_dimension = [](auto&, const Case& from) { return from.dimension == dimension; };
 

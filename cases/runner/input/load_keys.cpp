@@ -29,7 +29,7 @@ Key<LoadSpecification> load_value(LoadSpecification::Kind kind, const std::strin
       .one_of();
 }
 
-/// Where a load acts depends on its kind.
+/// Checks where a load acts, which depends on its kind.
 void check_place_of_load(const Entry& at, const LoadSpecification& load) {
   using Kind = LoadSpecification::Kind;
   const bool is_on_boundary =

@@ -4,7 +4,7 @@
 
 namespace peristat {
 
-/// The way of the loads, and its steps.
+/// The loading programme and its steps.
 [[nodiscard]] Table<LoadingSpecification> loading_keys();
 
 /// The motion in time.
@@ -12,10 +12,10 @@ namespace peristat {
 [[nodiscard]] Table<AbsorbingSpecification> absorbing_keys();
 [[nodiscard]] Table<DynamicsSpecification> dynamics_keys();
 
-/// Supports and loads are read as soon as it is known whether they are expressions of the time, and
-/// settings of the solver as soon as it is known whether steps search equilibria.
+/// Reads ahead if the case is a motion in time, and its scheme and start. Supports and loads are
+/// then expressions of the time, and settings of the solver apply only if equilibria are searched.
 void ask_for_dynamics(const Entry& at, Case& result);
-/// What goes with a motion in time, and what goes with it alone.
+/// Refuses keys that don't go with a motion in time, or that go with it alone.
 void check_dynamics(const Entry& at, const Case& result);
 
 }  // namespace peristat

@@ -14,7 +14,8 @@ namespace peristat {
 
 void check_regions(const Entry& at, Case& result) {
   if (!at.from.has("material")) {
-    if (result.regions.empty()) static_cast<void>(at.from.table("material"));  // it is missing
+    if (result.regions.empty())
+      static_cast<void>(at.from.table("material"));  // throws: it is missing
     const MaterialSpecification& first = result.regions.front().material;
     result.material.model = first.model;
     result.material.potential = first.potential;
@@ -27,7 +28,8 @@ void check_regions(const Entry& at, Case& result) {
 
 namespace {
 
-/// Without a law its data would do nothing; no_fail may be of other materials' laws.
+/// Refuses data of damage without a law, which would have no effect. no_fail may belong to laws of
+/// other materials.
 void require_law(const Entry& at, DamageSpecification&) {
   if (at.from.has("law")) return;
   for (const char* key :
@@ -56,7 +58,7 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
   const auto begins_by_strength = [](auto& damage, auto&) {
     return damage.strength && damage.law != DamageLaw::blended;
   };
-  // Asking for what is not there tells that it is missing.
+  // Reading a missing key throws the error that it is missing.
   const auto require_key = [](auto lacks) {
     return [=](const Entry& at, const Spec& damage) {
       if (lacks(damage)) static_cast<void>(at.from.number(at.key, Range()));
@@ -378,8 +380,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
 
 namespace {
 
-/// What regions and interfaces add to the keys of a material: its model, potential, plane,
-/// influence function and kinematics are those of the body.
+/// Keys of the material of a region or interface: its model, potential, plane, influence function
+/// and kinematics are those of the body.
 Table<MaterialSpecification> material_of_body_keys(const std::string& name) {
   Table<MaterialSpecification> keys = material_keys(name);
   const auto of_body = [](const Case& so_far) -> const MaterialSpecification& {

@@ -12,7 +12,8 @@ namespace peristat {
 [[nodiscard]] Table<RegionSpecification> region_keys();
 [[nodiscard]] Table<InterfaceSpecification> interface_keys();
 
-/// What follows from the materials. Without [material] the first region tells model and plane.
+/// Checks that involve several materials. Without [material], the first region sets the model, the
+/// plane and what else is common to the body.
 void check_regions(const Entry& at, Case& result);
 
 }  // namespace peristat

@@ -64,12 +64,12 @@ Table<OutputSpecification> output_keys() {
 
 namespace {
 
-/// Of fields that are looked at as a whole, over a set.
+/// True for quantities of a whole set, which single points don't have.
 bool is_whole(const ProbeSpecification& probe, const Case&) {
   return probe_field(probe.field) == nullptr;
 }
 
-/// Whether a probe's component is one of its field's, and is there where it has to be.
+/// Checks that a probe's component is one of its field's, and is given where it is needed.
 void check_component_of_probe(const Entry& at, const ProbeSpecification& probe) {
   const ProbeField* field = probe_field(probe.field);
   if (field == nullptr) return;
@@ -86,7 +86,7 @@ void check_component_of_probe(const Entry& at, const ProbeSpecification& probe) 
     at.refuse("is none of " + probe.field + ", which has " + listed(components));
 }
 
-/// Whether there is an expression for each component.
+/// Checks that there is an expression for each component.
 void check_expected(const Entry& at, const ProbeSpecification& probe) {
   const ProbeField* const field = probe_field(probe.field);
   const std::size_t all = std::max<std::size_t>(1, field->components(at.so_far.dimension).size());

@@ -57,7 +57,7 @@ const ProbeField* probe_field(const std::string& name) {
 std::vector<std::string> probe_field_names() {
   std::vector<std::string> names;
   for (const ProbeField& field : fields()) names.push_back(field.name);
-  // The first fields that there were keep their places in the reference.
+  // Inserted here to keep the order of the reference.
   names.insert(names.begin() + 5,
                {"poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end",
                 "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"});

@@ -5,24 +5,24 @@
 
 namespace peristat {
 
-/// A field whose values probes look at.
+/// A field that probes evaluate.
 struct ProbeField {
   std::string name, unit;
   enum class Kind { scalar, vector, principal, tensor, symmetric } kind = Kind::scalar;
-  bool is_of_stress = false;  ///< found with strain and stress alone
-  bool is_of_motion = false;  ///< in mode dynamics alone
+  bool is_of_stress = false;  ///< computed with strain and stress only
+  bool is_of_motion = false;  ///< in mode dynamics only
 
   /// Names of its components, in the order in which results hold them; empty for a scalar.
   [[nodiscard]] std::vector<std::string> components(int dimension) const;
 };
 
-/// Of a field, or null for what is no field but looks at a whole set (poisson_ratio, opening,
+/// Returns the field of a name; null for quantities of a whole set (poisson_ratio, opening,
 /// crack_length, …).
 [[nodiscard]] const ProbeField* probe_field(const std::string& name);
 
-/// What `[[probe]] field` may be.
+/// Allowed values of `[[probe]] field`.
 [[nodiscard]] std::vector<std::string> probe_field_names();
-/// What `[[probe]] component` may be, of any field and dimension.
+/// Allowed values of `[[probe]] component`, for any field and dimension.
 [[nodiscard]] std::vector<std::string> probe_component_names();
 
 }  // namespace peristat

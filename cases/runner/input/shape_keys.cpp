@@ -115,7 +115,7 @@ std::string shape_lines(const Shape& shape, const Case& from) {
   return std::visit([&](const auto& kind) { return keys_of(kind).lines(kind, from); }, shape);
 }
 
-/// What a table of a shape is called: "box".
+/// Name of the table of a shape: "box".
 std::string kind_of(const Shape& shape) {
   return std::visit([](const auto& kind) { return kind_name(kind); }, shape);
 }

@@ -11,7 +11,7 @@
 namespace peristat {
 namespace {
 
-/// Whether any of the materials has a law of damage.
+/// True if any of the materials has a law of damage.
 bool may_fail(const Case& from) {
   const auto fails = [](const MaterialSpecification& material) {
     return material.damage.law != DamageLaw::none;
@@ -23,7 +23,7 @@ bool may_fail(const Case& from) {
          });
 }
 
-/// Whether the model's tangent is symmetric, as that of an energy is.
+/// True if the model's tangent is symmetric, as that of an energy is.
 bool has_symmetric_tangent(const Case& from) { return !from.is_collocated(); }
 
 void check_linear(const Entry& at, const SolverSpecification& solver) {
@@ -38,7 +38,7 @@ void check_preconditioner(const Entry& at, SolverSpecification& solver) {
   if (!why.empty()) at.refuse(why);
   if (solver.linear == LinearMethod::cholesky || solver.linear == LinearMethod::lu)
     at.refuse("is for iterative solvers, not for solver.linear = \"cholesky\" and \"lu\"");
-  // Who names a preconditioner wants it used.
+  // A preconditioner that is named is used, by an iterative solver.
   if (solver.linear == LinearMethod::automatic) {
     solver.linear = is_symmetric ? LinearMethod::conjugate_gradients : LinearMethod::gmres;
   }
@@ -59,7 +59,7 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
   }
 }
 
-/// A piece that stays where it is would be torn by what it can't take up.
+/// Refuses to remove pieces under eigenstrains: a removed piece can't grow or shrink.
 void check_fragments(const Entry& at, const SolverSpecification& solver) {
   if (solver.fragments == FragmentRemedy::remove && at.so_far.eigenstrains.are_there())
     at.refuse(
@@ -222,7 +222,7 @@ Table<SolverSpecification> arc_length_keys() {
 
 namespace {
 
-/// Refuses settings of the solver that a control and mode arc_length would not heed.
+/// Refuses settings of the solver that a control and mode arc_length would ignore.
 void check_heeded(const Entry& at, const std::string& who) {
   if (!at.from.has("solver")) return;
   const TomlTable solver = at.from.table("solver");
@@ -283,14 +283,13 @@ void check_found_loads(const Entry& at, const Case& result) {
 
 namespace {
 
-/// Damage grows in steps that are smaller than elastic ones.
+/// Default number of steps; larger if damage may grow, which needs smaller steps.
 int default_relaxation_steps(const Case& from) {
   constexpr int steps_of_damage = 50;
   const bool hands_over = from.solver.mode == Mode::adaptive && may_fail(from);
   const int steps = from.loading.steps_to_entry();
   if (!hands_over) return steps;
-  const int entries =
-      from.loading.steps / steps;  // as many as steps where these are an expression's
+  const int entries = from.loading.steps / steps;  // number of entries of an expression, else 1
   return std::max(steps, (steps_of_damage + entries - 1) / entries);
 }
 

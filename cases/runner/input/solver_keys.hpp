@@ -9,7 +9,7 @@ namespace peristat {
 [[nodiscard]] Table<SolverSpecification> arc_length_keys();
 [[nodiscard]] Table<RelaxationSpecification> relaxation_keys();
 
-/// What goes with a load that is found, not given.
+/// Checks of modes that find the load instead of prescribing it.
 void check_found_loads(const Entry& at, const Case& result);
 
 }  // namespace peristat

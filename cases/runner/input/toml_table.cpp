@@ -31,17 +31,16 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// The whole number that a value is, as an integer or a float; nothing for other values.
+/// Whole number that a value holds, as an integer or a float; nothing for other values.
 std::optional<std::int64_t> whole_number(const TomlValue& value) {
   if (value.kind == TomlValue::Kind::integer) return value.integer;
-  constexpr double exact = 9007199254740992.0;  // 2^53, up to which doubles have all of them
+  constexpr double exact = 9007199254740992.0;  // 2^53: doubles represent all integers up to it
   const double number = value.kind == TomlValue::Kind::real ? value.real : 0.5;
   if (!(std::abs(number) <= exact) || std::trunc(number) != number) return std::nullopt;
   return static_cast<std::int64_t>(number);
 }
 
-/// Symbols of data sheets and papers, in small letters without underscores, and the keys that they
-/// stand for.
+/// Symbols of data sheets and papers, in small letters without underscores, and the keys for them.
 const std::map<std::string, std::string>& keys_of_symbols() {
   static const std::string energy = "material.damage.fracture_energy";
   static const std::string from_toughness = energy +
@@ -81,8 +80,8 @@ std::string completed(const std::string& word, const std::vector<std::string>& k
   return whole;
 }
 
-/// What a person may have meant by an unknown key: a symbol, the beginning of a key or a similar
-/// one of this table, or the same one of another table.
+/// Suggests a key in place of an unknown one: that of a symbol, one that begins with it or is
+/// similar in this table, or the same one of another table.
 std::string suggestion(const std::string& key, const std::vector<std::string>& known) {
   std::string symbol;
   for (const char c : key)
@@ -147,7 +146,7 @@ TomlTable::TomlTable(const TomlValue& value, std::string path, const std::string
     refuse(value, path_, "is empty (allowed: " + listed(known) + ")");
 }
 
-/// A shape of an unknown kind has unknown keys, too: the kind is what is wrong.
+/// Refuses an unknown kind of shape: its keys are unknown, too, but the kind is the mistake.
 void TomlTable::refuse_unknown_kind() const {
   if (without_indices(path_) != "lattice.shape") return;
   for (const char* const key : {"add", "subtract"}) {

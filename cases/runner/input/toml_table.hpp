@@ -9,10 +9,10 @@
 
 namespace peristat {
 
-/// What a number may be.
+/// Allowed range of a number.
 struct Range {
   double low = -1e30, high = 1e30;                ///< both allowed
-  std::string words = "must be a finite number";  ///< for the person; with the unit
+  std::string words = "must be a finite number";  ///< for messages; with the unit
   /// The limits only keep products of such numbers from overflow; `words` don't name them.
   bool limits_are_remote = true;
 
@@ -21,32 +21,32 @@ struct Range {
   [[nodiscard]] static Range between(double low, double high);
 };
 
-/// A table of a case file all of whose keys must be known; every question refuses a wrong answer
-/// with the place, the key, the value and what is allowed.
+/// A table of a case file. All of its keys must be known. Every query refuses a wrong value with
+/// the place, the key, the value and what is allowed.
 ///
 /// A view: file name and value must outlive it.
 class TomlTable {
  public:
   /// @param path dotted name of the table ("support[1]"), empty for the document
   /// @throws InputError if the value is no table or if one of its keys is unknown (see
-  /// case_keys.hpp)
+  ///         case_keys.hpp)
   TomlTable(const TomlValue& value, std::string path, const std::string& file);
 
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] std::string path(const std::string& key) const;
   [[nodiscard]] bool has(const std::string& key) const { return find(key) != nullptr; }
 
-  /// Stops reading: the value of the key (or the table, if it lacks the key) is wrong.
+  /// Throws InputError: the value of the key (or the table, if it lacks the key) is wrong.
   [[noreturn]] void refuse(const std::string& key, const std::string& why) const;
   /// Like `refuse` for one element of the key's array.
   [[noreturn]] void refuse(const std::string& key, std::size_t element,
                            const std::string& why) const;
-  /// Refuses keys that are known but mean nothing here.
+  /// Refuses all keys but these: keys that are known but have no effect here.
   void allow_only(const std::vector<std::string>& keys, const std::string& why) const;
   /// The one of the keys that is there. @throws InputError if there is none or more than one
   [[nodiscard]] std::string exactly_one(const std::vector<std::string>& keys) const;
 
-  /// These need the key.
+  /// The following throw InputError if the key is missing.
   [[nodiscard]] std::string string(const std::string& key) const;
   [[nodiscard]] bool boolean(const std::string& key) const;
   [[nodiscard]] double number(const std::string& key, const Range& range) const;
@@ -60,9 +60,9 @@ class TomlTable {
                                             const Range& range) const;
   /// An array of two numbers or more.
   [[nodiscard]] std::vector<double> numbers(const std::string& key, const Range& range) const;
-  /// Whether the key has an array.
+  /// True if the value of the key is an array.
   [[nodiscard]] bool is_array(const std::string& key) const;
-  /// Whether the key has a string.
+  /// True if the value of the key is a string.
   [[nodiscard]] bool is_string(const std::string& key) const;
   /// An array of pairs of numbers.
   [[nodiscard]] std::vector<std::array<double, 2>> pairs(const std::string& key) const;
@@ -75,7 +75,7 @@ class TomlTable {
                                                     std::size_t count) const;
 
   [[nodiscard]] TomlTable table(const std::string& key) const;
-  /// The table that the key would have if nothing stood in it.
+  /// An empty table in the place of a missing one.
   [[nodiscard]] TomlTable empty_table(const std::string& key) const;
   /// An array of tables; without the key there are none.
   [[nodiscard]] std::vector<TomlTable> tables(const std::string& key) const;

@@ -6,7 +6,8 @@
 
 // toml++ 3.3 asserts that "[[[" does not occur, and reports it well if the assertion is not there.
 #define TOML_ASSERT(condition) static_assert(true)
-// Values in values; a case needs 4. It and deepest_key keep recursions far from the stack's end.
+// Largest depth of nested values; a case needs 4. This limit and deepest_key keep recursions from
+// overflowing the stack.
 #define TOML_MAX_NESTED_VALUES 16
 #include <toml++/toml.h>
 
@@ -57,8 +58,8 @@ void check_depth_of_keys(std::string_view text, const std::string& file) {
   }
 }
 
-/// The part of a one-line region of the text; columns count code points from 1, as toml++ does.
-/// Where the code points of a line begin is found once, at the first question about it.
+/// Lines of a text, with the text of one-line regions. Columns count code points from 1, as toml++
+/// does. The first bytes of a line's code points are found once, at the first query.
 class Lines {
  public:
   explicit Lines(std::string_view text) {
@@ -70,7 +71,7 @@ class Lines {
     code_points_.resize(lines_.size());
   }
 
-  /// What stands behind the first '=' of a line.
+  /// Text behind the first '=' of a line.
   std::string value_in(toml::source_index line) const {
     if (line == 0 || line > lines_.size()) return {};
     const std::size_t equals = lines_[line - 1].find('=');
@@ -236,7 +237,7 @@ TomlValue parse_toml(const std::string& text, const std::string& file) {
 }
 
 void apply_override(TomlValue& document, const std::string& key, const std::string& value) {
-  // Every value in it keeps a copy as its place.
+  // Every value that the override sets keeps a copy of this text as its place.
   const std::string text = readable(key + "=" + value, most_of_override);
   const auto refuse = [&](const std::string& why) {
     throw InputError(key, value, why, "--set " + text);

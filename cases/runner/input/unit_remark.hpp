@@ -4,8 +4,8 @@
 
 namespace peristat {
 
-/// "; numbers carry no unit: …" if the text is a number with a unit behind it ("3.2 GPa"), which a
-/// case file has no place for; otherwise empty.
+/// "; numbers carry no unit: …" if the text is a number with a unit behind it ("3.2 GPa"), which
+/// case files don't allow; otherwise empty.
 [[nodiscard]] std::string remark_on_unit(const std::string& text);
 
 }  // namespace peristat

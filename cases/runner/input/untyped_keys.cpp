@@ -67,7 +67,7 @@ const std::string* UntypedKey::exclusion(const void* spec, const Case& so_far) c
   return nullptr;
 }
 
-/// Whether the key means something here. @throws InputError if it is there and means nothing
+/// True if the key applies here. @throws InputError if it is given and does not apply
 bool UntypedKey::applies(const Entry& at, const void* spec) const {
   const std::string* reason = exclusion(spec, at.so_far);
   if (reason != nullptr && !reason->empty() && at.from.has(name())) at.from.refuse(name(), *reason);
@@ -94,7 +94,7 @@ void UntypedKey::read_value(const Entry& at, void* spec) const {
       elements_->read(*inner_, {table, "", at.so_far}, member_, spec);
 }
 
-/// Values and arrays keep what the specification's struct has.
+/// Values and arrays keep the defaults of the specification's struct.
 void UntypedKey::read_default(const Entry& at, void* spec) const {
   if (fallback_)
     fallback_(at, spec);

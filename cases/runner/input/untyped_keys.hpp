@@ -51,8 +51,8 @@ auto& member_of(Spec& spec, const Access& access) {
     return access(spec);
 }
 
-/// How a specification without its type is asked for a member. An access may make what a
-/// specification lacks, unless that is constant.
+/// Access to a member of a specification without its type. An access may create a missing member,
+/// unless the specification is constant.
 class UntypedMember {
  public:
   template <class Spec, class Access>
@@ -80,7 +80,7 @@ class UntypedMember {
   const void* (*find_constant_)(const void* access, const void* spec) = nullptr;
 };
 
-/// How a value of a kind is stored in a member of another type, and shown from there.
+/// How a value of a kind is stored in a member of another type, and converted to text from there.
 struct ValueOfMember {
   void (*read)(const UntypedKind&, const Entry&, const UntypedMember&, void* spec);
   std::string (*text)(const UntypedKind&, const void* held, const Case&);
@@ -154,7 +154,7 @@ class UntypedKey {
 class UntypedTable {
  public:
   using Action = UntypedKey::Action;
-  using Defaults = const void* (*)();  ///< gives a specification that nothing was read into
+  using Defaults = const void* (*)();  ///< returns a specification with default values
 
   UntypedTable(std::string_view name, Defaults);
   UntypedTable(const UntypedTable&);

@@ -21,10 +21,10 @@
 namespace peristat {
 namespace {
 
-// Of OpenBLAS on x86-64: 32 MB << 2; measured as the growth of the address space per thread.
+// Buffer of OpenBLAS on x86-64: 32 MB << 2; measured as the growth of the address space per thread.
 constexpr std::size_t buffer_bytes = std::size_t(128) << 20;
-// What else is allocated while libraries are loaded, and between a look at what is left and the
-// buffer's own allocation, which OpenBLAS tries again for ever where it fails.
+// Room for other allocations while libraries are loaded, and between the check of the room left and
+// the allocation of the buffer, which OpenBLAS retries for ever if it fails.
 constexpr std::size_t loading_bytes = std::size_t(16) << 20;
 constexpr int most_buffers = 128;  // OpenBLAS of Debian takes no more threads
 
@@ -40,7 +40,7 @@ int positive_variable(char** environment, const char* name) {
   return 0;
 }
 
-/// Runs before the initialisers of all libraries, so it may only use what needs none.
+/// Runs before the initialisers of all libraries, so it may use nothing that needs them.
 void require_room_to_load(int, char**, char** environment) {
   int buffers = std::min(processors(), most_buffers);
   for (const char* name : {"OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS"}) {
@@ -62,7 +62,7 @@ void require_room_to_load(int, char**, char** environment) {
   gnu::used]] void (*before_libraries)(int, char**, char**) = require_room_to_load;
 #endif
 
-/// As many threads as OpenMP will start, at once, and ended again.
+/// Starts `count` threads at once, as OpenMP will, and ends them again.
 void try_threads(int count) {
   std::vector<std::jthread> team;
   for (int thread = 0; thread < count; ++thread) {
@@ -81,8 +81,8 @@ void claim_blas_memory(int threads) {
     throw std::bad_alloc();
   }
   openblas_set_num_threads(threads);
-  // The caller's own buffer is taken by its first product that is not a small one: with AVX-512
-  // those of up to 1e6 multiplications take none.
+  // The calling thread's buffer is allocated by its first product that is not small: with AVX-512,
+  // products of up to 1e6 multiplications need none.
   constexpr int size = 160;
   std::vector<double> a(std::size_t(size) * size, 1.0), c(a.size());
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, size, size, size, 1.0, a.data(), size,

@@ -18,7 +18,7 @@
 namespace peristat {
 namespace {
 
-/// What the shell allows, where it sets a limit.
+/// Text about the shell's limit of the address space; empty if there is none.
 std::string shell_limit() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return "";
@@ -48,7 +48,7 @@ Failure current_failure() {
 
 void give_way_to_first(const Communicator& ranks) {
   using namespace std::chrono_literals;
-  constexpr int most_in_turn = 40;  // what more of them tell is told by several
+  constexpr int most_in_turn = 40;  // ranks beyond these wait equally long: several may report
   if (ranks.rank() == 0) return;
   std::this_thread::sleep_for(2s + std::min(ranks.rank() - 1, most_in_turn) * 250ms);
 }

@@ -13,12 +13,12 @@ struct Failure {
   std::string message;
 };
 
-/// Of the exception that is being handled: wrong input, too little memory, a fault of the machine,
-/// and a bug where it is none of these.
+/// Classifies the exception being handled: wrong input, too little memory, a fault of the machine,
+/// or else a bug.
 [[nodiscard]] Failure current_failure();
 
-/// Lets the first of the ranks that have met a failure tell it: it ends the others while they wait
-/// here, rank after rank.
+/// Lets the first of the failed ranks report the failure: ranks wait here, one longer than the
+/// other, and the first ends the others while they wait.
 void give_way_to_first(const Communicator& ranks);
 
 }  // namespace peristat

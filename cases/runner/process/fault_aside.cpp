@@ -18,11 +18,11 @@ namespace {
 
 constexpr const char* done = "done";
 
-/// Processor time [s] after which a library is taken to be in an endless loop: what it reads is no
-/// more than some hundred gigabytes.
+/// Processor time [s] after which a library is taken to be in an endless loop: files have no more
+/// than some hundred gigabytes.
 constexpr rlim_t most_seconds = 600;
 
-/// What the work says in the end.
+/// Runs the work. Returns `done`, or the message of its exception.
 std::string told(const std::function<void()>& work) {
   try {
     work();

@@ -24,7 +24,7 @@ void heed_interruptions() {
   requested = false;
   std::signal(SIGINT, request);
   std::signal(SIGTERM, request);
-  std::signal(SIGUSR1, request);  // what mpirun and Slurm can send
+  std::signal(SIGUSR1, request);  // mpirun and Slurm can send it
   if (std::signal(SIGHUP, request) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 

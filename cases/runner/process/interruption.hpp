@@ -10,7 +10,7 @@ void make_write_faults_errors();
 /// run to stop; a second one ends the program at once.
 void heed_interruptions();
 
-/// Whether the run has been asked to stop.
+/// True if the run has been asked to stop.
 [[nodiscard]] bool interruption_requested();
 
 }  // namespace peristat

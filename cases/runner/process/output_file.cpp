@@ -35,14 +35,14 @@ int write_and_close(int descriptor, std::string_view contents) {
   return error;
 }
 
-/// Whether the first line of a file is the heading.
+/// True if the first line of a file is the heading.
 bool begins_with(int descriptor, std::string_view heading) {
   std::string line(heading.size() + 1, '\0');
   const ssize_t count = ::pread(descriptor, line.data(), line.size(), 0);
   return count == static_cast<ssize_t>(line.size()) && line == std::string(heading) + "\n";
 }
 
-/// @return a descriptor of a file that is new, or that may be emptied
+/// @return descriptor of a file that is new, empty, emptied or not regular; negative on failure
 int open_empty_or_own(const std::filesystem::path& file, std::string_view heading) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) {

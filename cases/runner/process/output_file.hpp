@@ -25,24 +25,24 @@ class OutputError : public MachineError {
   int cause_;
 };
 
-/// Whether an error of the system is about the machine's means (room, descriptors, limits of the
-/// shell, a device) and not about the path that was asked for.
+/// True if an error of the system concerns the machine's resources (room, descriptors, limits of
+/// the shell, a device) and not the path that was asked for.
 [[nodiscard]] bool is_about_means(int error);
 
-/// A file that this program has not written, and leaves as it is; says why.
+/// Thrown for a file that this program has not written, and leaves as it is; the message says why.
 class ForeignFile : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 /// Opens a file that a person has named. It may be new, empty, or no plain file (a terminal, a
-/// pipe, /dev/null). Of a file with contents the first line must be the heading, which this program
-/// gives to each file that it opens so; the contents are then dropped. Links are judged by where
-/// they lead; one that leads nowhere is refused.
+/// pipe, /dev/null). A file with contents must begin with the heading, the first line of each file
+/// that is opened by this function; the contents are then dropped. Links are followed; one that
+/// leads nowhere is refused.
 /// @throws ForeignFile, OutputError; nothing is changed then
 [[nodiscard]] std::FILE* open_own_file(const std::filesystem::path& file, std::string_view heading);
 
-/// Makes a new file in place of what carries the name: a link is replaced, never followed.
+/// Writes a new file in place of any entry of this name: a link is replaced, never followed.
 /// @throws OutputError; the file is then removed
 void write_file(const std::filesystem::path& file, std::string_view contents);
 
@@ -52,8 +52,8 @@ void write_file(const std::filesystem::path& file, std::string_view contents);
 /// @throws OutputError; the file then keeps its old contents
 void publish_file(const std::filesystem::path& file, std::string_view contents);
 
-/// The same, into the room that `reserve_file` has set aside for the path with ".tmp" appended, so
-/// that it works on a full disk.
+/// Replaces a file in one step, using the room that `reserve_file` has set aside for the path with
+/// ".tmp" appended, so that it works on a full disk.
 /// @throws OutputError
 void publish_reserved_file(const std::filesystem::path& file, std::string_view contents);
 
@@ -66,8 +66,8 @@ void reserve_file(const std::filesystem::path& file, std::uint64_t bytes);
 /// @throws OutputError
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Waits until a file, or the names in a folder, have reached the disk, where the file system knows
-/// such a thing.
+/// Waits until a file, or the names in a folder, have reached the disk, if the file system supports
+/// that.
 /// @throws OutputError
 void sync_file(const std::filesystem::path& file);
 

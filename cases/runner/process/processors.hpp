@@ -2,7 +2,7 @@
 
 namespace peristat {
 
-/// Processors that this process may run on; 1 if the system does not tell.
+/// Number of processors that this process may run on; 1 if unknown.
 [[nodiscard]] int processors();
 
 }  // namespace peristat

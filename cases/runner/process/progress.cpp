@@ -24,12 +24,12 @@ int write_now(std::FILE* file, const std::string& text) {
   return is_written ? 0 : (errno != 0 ? errno : EIO);
 }
 
-/// Standard error is the last place to tell anything: what it does not take is lost.
+/// Ignores errors: there is no other place to report them.
 void write_to_standard_error(const std::string& line) {
   write_now(stderr, "peristat: " + line + "\n");
 }
 
-/// Width of a terminal; 80 if it does not tell.
+/// Width of a terminal; 80 if unknown.
 std::size_t columns(int descriptor) {
   winsize size{};
   const bool told = ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 20;
@@ -125,7 +125,7 @@ void Progress::iteration(const IterationRecord& record) {
   live_line_shown_ = true;
 }
 
-/// Where no live line shows that a long search goes on.
+/// Prints a line now and then in a long search where no live line is shown.
 void Progress::show_life(const IterationRecord& record) {
   if (std::chrono::steady_clock::now() - last_said_ < longest_silence_) return;
   say(fmt::format("  step {}: still searching, iteration {}, residual {:.1e}", record.step,
@@ -142,7 +142,7 @@ void Progress::decision(const DecisionRecord& record) {
   const std::string what = record.action == Decision::cut
                                ? fmt::format("step cut to {:.4g}", record.next_increment)
                                : name(record.action);
-  // Where a search has converged, what follows from its state is told, not that it has.
+  // After a converged search, the reason is printed without the outcome.
   const std::string why = record.outcome == "converged"
                               ? record.reason
                               : fmt::format("{} ({})", record.outcome, record.reason);
@@ -166,7 +166,7 @@ void Progress::accepted(const StepRecord& record, double relative_residual) {
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
   const bool relaxed_or_damaged =
       !record.motion && (record.relaxation_iterations > 0 || record.max_damage > 0.0);
-  // How long a path is, nobody knows.
+  // The length of these paths is not known in advance.
   if (record.mode != Mode::arc_length.name && record.mode != Mode::path.name)
     time_left_.accepted(elapsed.count(), record.stage / last_stage_, relaxed_or_damaged);
   if (record.motion) return moved(record);

@@ -9,33 +9,33 @@
 
 namespace peristat {
 
-/// What a run tells while it goes: one line per accepted step and decision; on a terminal a line
-/// that follows the iterations too, with the time that is left; lines are folded to its width.
-/// Everything also goes to the log file. Where standard output or the log can't be written any more
-/// (nobody reads the pipe, the disk is full), that is told once on standard error, and the run goes
-/// on.
+/// Prints the progress of a run: one line per accepted step and decision. A terminal also gets a
+/// line that follows the iterations, with the time left; lines are folded to its width. Everything
+/// also goes to the log file. If standard output or the log can't be written any more (nobody reads
+/// the pipe, the disk is full), that is reported once on standard error, and the run goes on.
 class Progress {
  public:
   static constexpr const char* log_heading = "# log of peristat";
 
-  /// @param quiet nothing on the terminal, except what `problem` tells
+  /// @param quiet prints nothing on the terminal, except in `problem`
   /// @param log_file empty for none; a new file, or an earlier log, which is replaced: it begins
   ///                 with the line `log_heading`
-  /// @param tells    whether anything is told at all, problems and the log, too: of ranks one does
+  /// @param tells    false: prints nothing at all, neither problems nor the log; true on one rank
+  ///                 only
   /// @throws InputError (key "--log") if the log file can't be written, or holds something else
   Progress(bool quiet, const std::string& log_file, bool tells = true);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// How long a search may go on without a line where no live line follows it; without this 30 s.
+  /// Sets how long a search may go on without a line if there is no live line (default: 30 s).
   void show_life_after(std::chrono::milliseconds silence) { longest_silence_ = silence; }
 
-  /// The stage of the loading programme at which the run ends; without this 1.
+  /// Sets the stage of the loading programme at which the run ends (default: 1).
   void follow_to(double last_stage) { last_stage_ = last_stage; }
 
   void say(const std::string& line);
-  /// To standard error, quiet or not.
+  /// Prints to standard error, quiet or not.
   void problem(const std::string& line);
   void iteration(const IterationRecord& record);
   void decision(const DecisionRecord& record);

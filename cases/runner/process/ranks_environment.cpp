@@ -19,8 +19,8 @@
 namespace peristat {
 namespace {
 
-/// mpirun gives its ranks no other streams than the standard ones: they reach a descriptor of this
-/// process through /proc.
+/// mpirun passes only the standard streams on to its ranks. They reach a descriptor of this process
+/// through /proc.
 void keep_note_reachable() {
   const std::string descriptors = "/dev/fd/";
   const char* const note = std::getenv("PERISTAT_NOTE");
@@ -31,8 +31,8 @@ void keep_note_reachable() {
 
 volatile pid_t mpirun = 0;
 
-/// mpirun ends ranks at once when it is interrupted, but passes on this signal, at which they come
-/// to their end as a run of one rank does. A second one ends them at once.
+/// mpirun kills its ranks when it is interrupted, but forwards SIGUSR1, on which they stop as a run
+/// of one rank does. A second interruption ends them at once.
 void pass_on(int signal) {
   kill(mpirun, SIGUSR1);
   std::signal(signal, [](int) { kill(mpirun, SIGTERM); });
@@ -45,10 +45,10 @@ void pass_on_interruptions() {
 }
 
 [[noreturn]] void become_mpirun(const std::vector<char*>& words) {
-  prctl(PR_SET_PDEATHSIG, SIGTERM);  // a run has no life without who has started it
-  setpgid(0, 0);                     // what a terminal interrupts is this process' parent
+  prctl(PR_SET_PDEATHSIG, SIGTERM);  // mpirun ends with the process that has started it
+  setpgid(0, 0);                     // the terminal interrupts the parent process only
   const int nothing = open("/dev/null", O_RDONLY);
-  dup2(nothing, STDIN_FILENO);  // reading the terminal would stop it now
+  dup2(nothing, STDIN_FILENO);  // reading the terminal would stop mpirun
   execvp(words.front(), words.data());
   std::fprintf(stderr, "peristat: mpirun can't be started: %s; it is in Debian's openmpi-bin\n",
                std::strerror(errno));
@@ -68,7 +68,7 @@ int ranks_on_machine() {
 
 int run_as_ranks(int ranks, const std::vector<std::string>& arguments) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
-  // Ranks may have threads, so that they are bound to no core.
+  // Ranks may have several threads, so they are not bound to cores.
   std::vector<std::string> words{"mpirun", "--quiet", "--oversubscribe",     "--bind-to",
                                  "none",   "-np",     std::to_string(ranks), program};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -83,7 +83,7 @@ int run_as_ranks(int ranks, const std::vector<std::string>& arguments) {
   int status = 0;
   while (waitpid(mpirun, &status, 0) < 0 && errno == EINTR) {
   }
-  constexpr int of_signals = 128;  // as shells have it
+  constexpr int of_signals = 128;  // as in shells
   return WIFEXITED(status) ? WEXITSTATUS(status) : of_signals + WTERMSIG(status);
 }
 

@@ -5,16 +5,16 @@
 
 namespace peristat {
 
-/// Whether something has started this process as one of several ranks, or of one: mpirun, or srun
-/// with PMIx.
+/// True if this process was started as a rank, of several or of one: by mpirun, or by srun with
+/// PMIx.
 [[nodiscard]] bool is_started_as_rank();
 
-/// Ranks on this machine, as far as mpirun has told; at least 1.
+/// Number of ranks on this machine according to mpirun; 1 if unknown.
 [[nodiscard]] int ranks_on_machine();
 
-/// Has mpirun start the program as so many ranks, more than there are cores if so many are asked
-/// for, and waits for their end. Interruptions are passed on to them; the note that PERISTAT_NOTE
-/// asks for is still this process'.
+/// Starts the program on `ranks` ranks by mpirun, even if there are fewer cores, and waits for
+/// their end. Interruptions are passed on to them. A descriptor in PERISTAT_NOTE remains that of
+/// this process.
 /// @param arguments of the program, without its name
 /// @return exit code
 /// @throws MachineError

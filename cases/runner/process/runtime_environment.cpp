@@ -71,8 +71,8 @@ void restart_with_environment(int threads, char** arguments) {
   const std::string count = std::to_string(threads);
   setenv("OMP_NUM_THREADS", count.c_str(), 1);
   setenv("OMP_THREAD_LIMIT", count.c_str(), 1);
-  // Vectors of a large body go back to the system when they are freed: without a fixed threshold
-  // what the neighbour search has used stays with its threads.
+  // With a fixed threshold, vectors of a large body go back to the system when they are freed.
+  // Without it, the memory of the neighbour search stays with its threads.
   setenv("MALLOC_MMAP_THRESHOLD_", "1048576", 0);
   if (!std::getenv("OMP_WAIT_POLICY")) setenv("GOMP_SPINCOUNT", "1000", 0);
   execv("/proc/self/exe", arguments);

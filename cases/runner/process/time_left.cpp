@@ -25,7 +25,7 @@ std::optional<double> TimeLeft::seconds() const {
     return (end.share - since.share) / (end.seconds - since.seconds);
   };
   const double whole = rate_since(last_.front()), recent = rate_since(middle);
-  // Written so that what is not a number, of steps that took no time, says nothing either.
+  // Written so that NaN, from steps that took no time, gives no estimate either.
   if (!(whole > 0.0 && recent > 0.5 * whole && recent < 2.0 * whole)) return {};
   return (1.0 - end.share) / recent;
 }

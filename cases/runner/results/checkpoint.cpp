@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::string_view magic = "peristat checkpoint";
 
-/// A named array of a checkpoint. Of a sparse one the places of what differs from `usual` stand
-/// among the integers.
+/// A named array of a checkpoint. A sparse one stores the values that differ from `usual`, with
+/// their positions among the integers.
 struct Entry {
   std::string name;
   std::size_t size = 0, others = 0;
@@ -41,20 +41,21 @@ Entry parse_entry(const std::string& line) {
   return entry;
 }
 
-/// To the last bit: -0 is not 0.
+/// True if the bits are the same: -0 is not 0.
 bool is_same(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
-/// How many of some values differ from 0, and from 1.
+/// Number of values that differ from 0, and from 1.
 struct Differences {
   std::size_t from_0 = 0, from_1 = 0, of = 0;
 };
 
-/// As what an array is written: whole bonds and bodies at rest are full of zeros or ones.
+/// Entry of an array: sparse if most values are 0, or most are 1, as in undamaged bodies and at
+/// rest.
 Entry entry_for(const std::string& name, const Differences& found) {
   const std::size_t fewest = std::min(found.from_0, found.from_1);
-  // A place takes as much room as a value.
+  // A position takes as much room as a value.
   if (2 * fewest >= found.of) return {name, found.of};
   return {name, found.of, fewest, true, found.from_0 <= found.from_1 ? 0.0 : 1.0};
 }
@@ -64,22 +65,22 @@ std::string_view bytes_of(const std::vector<Value>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
 }
 
-/// A value of an array that ranks have parts of, and its place in the whole one.
+/// A value of a distributed array, and its position in the whole one.
 struct PlacedValue {
   std::int64_t place;
   double value;
 };
 
-/// Of an array that ranks have parts of, what is told here.
+/// This rank's part of a distributed array.
 struct PlacedPart {
   std::vector<PlacedValue> values{};
   std::int64_t size = 0;      ///< of the whole array
-  std::uint64_t written = 0;  ///< values, of all ranks
-  bool are_integers = false;  ///< or numbers,
-  bool are_sparse = false;    ///< with their places among the integers
+  std::uint64_t written = 0;  ///< number of values that all ranks write
+  bool are_integers = false;  ///< otherwise numbers
+  bool are_sparse = false;    ///< with their positions among the integers
 };
 
-/// What stands in a row among the numbers, and among the integers, of a checkpoint.
+/// Consecutive values among the numbers, and among the integers, of a checkpoint.
 struct Piece {
   std::vector<double> numbers{};
   std::vector<std::int64_t> integers{};
@@ -93,7 +94,7 @@ struct Piece {
   }
 };
 
-/// Takes arrays away from what it packs: beside each other they would need their memory twice.
+/// Packs a state. Moves arrays out of it: copies would need their memory twice.
 class Packer : public StateArchive {
  public:
   explicit Packer(StateNumbering* numbering) : numbering_(numbering) {}
@@ -128,8 +129,7 @@ class Packer : public StateArchive {
     if (numbering_) numbering_->pin(pins);
   }
 
-  /// Entries, numbers and integers one after the other, behind how many there are of each; forgets
-  /// the numbers.
+  /// Puts the sizes of entries, numbers and integers, and then these in turn; frees the numbers.
   void put(const PutBytes& put) {
     const std::string entries = entries_.str();
     std::vector<std::uint64_t> sizes{entries.size(), 0, 0};
@@ -226,7 +226,7 @@ class Packer : public StateArchive {
   std::vector<Piece> pieces_;
 };
 
-/// Values that stand in a row in some bytes, taken from the front.
+/// Reads consecutive values from some bytes, in order.
 template <class Value>
 class Values {
  public:
@@ -266,15 +266,15 @@ class Values {
   }
 
   const CheckpointBytes& bytes_;
-  std::uint64_t at_, left_;  // of what is not in the buffer
+  std::uint64_t at_, left_;  // of the values that are not in the buffer
   std::vector<Value> buffer_;
   std::size_t next_ = 0;
 };
 
-/// What is wanted of an array of the whole body, whose values come in its order.
+/// Takes the values that are wanted of an array of the whole body, which come in its order.
 class ArrayTaker {
  public:
-  /// @param usual what values are that don't come
+  /// @param usual value of entries that are not stored
   ArrayTaker(const WantedState& wanted, Rows rows, std::size_t size, double usual)
       : numbering_(rows == Rows::whole || rows == Rows::list_of_points ? nullptr
                                                                        : wanted.numbering),
@@ -287,7 +287,7 @@ class ArrayTaker {
     if (numbering_) places_ = numbering_->places(rows, *here);
   }
 
-  /// Whether it takes any.
+  /// True if any values are wanted.
   [[nodiscard]] bool takes() const { return takes_; }
 
   void take(std::size_t place, double value) {
@@ -369,7 +369,7 @@ class Unpacker : public StateArchive {
   }
 
  private:
-  /// No body has more bonds: what claims to is damaged.
+  /// No body has more bonds: a larger array is a sign of damage.
   static constexpr std::size_t most_values = std::size_t(1) << 40;
 
   static void require(bool holds) { Values<double>::require(holds); }
@@ -432,8 +432,8 @@ void transfer(StateArchive& archive, Checkpoint& checkpoint) {
   archive.transfer("costs/seconds/checkpoints", checkpoints);
 }
 
-/// FNV-1a over words of eight bytes [http://www.isthe.com/chongo/tech/comp/fnv], of bytes that come
-/// in parts.
+/// FNV-1a over words of eight bytes [http://www.isthe.com/chongo/tech/comp/fnv], for bytes that
+/// come in parts.
 class Checksum {
  public:
   void add(std::string_view bytes) {
@@ -449,7 +449,7 @@ class Checksum {
     add_words(bytes.substr(0, whole));
     begun_ = bytes.substr(whole);
   }
-  /// Of what has been added so far.
+  /// Checksum of the bytes added so far.
   [[nodiscard]] std::uint64_t sum() const {
     Checksum ended = *this;
     ended.add_words(ended.begun_);
@@ -464,12 +464,12 @@ class Checksum {
       std::uint64_t word = 0;
       std::memcpy(&word, bytes.data() + at, std::min(word_size, bytes.size() - at));
       sum_ = (sum_ ^ word) * 0x100000001b3u;
-      sum_ ^= sum_ >> 32;  // what a multiplication does to high bits alone reaches the low ones too
+      sum_ ^= sum_ >> 32;  // products carry bits upwards only: brings high bits to the low ones
     }
   }
 
   std::uint64_t sum_ = 0xcbf29ce484222325u;
-  std::string begun_;  // of a word
+  std::string begun_;  // of an unfinished word
 };
 
 /// "peristat checkpoint 1 0.1.0": the layout, and the version of the program that has written it.
@@ -488,7 +488,7 @@ void check_head(const std::string& line, const std::string& program) {
                       std::to_string(checkpoint_layout));
 }
 
-/// Where the parts of a checkpoint are.
+/// Positions of the parts of a checkpoint.
 struct Outline {
   std::string entries;
   std::uint64_t first_number = 0, numbers = 0, integers = 0;

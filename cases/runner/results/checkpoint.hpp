@@ -13,30 +13,30 @@
 
 namespace peristat {
 
-/// Layout of checkpoints, which other programs can't read: a number that grows with every change of
-/// what they are made of, or of how they are written.
+/// Version of the layout of checkpoints, which other programs can't read. It grows with every
+/// change of their contents or format.
 inline constexpr std::int64_t checkpoint_layout = 8;
 
-/// How many rows the tables of results.h5 have.
+/// Numbers of rows of the tables of results.h5.
 struct TableRows {
   int history = 0, iterations = 0, decisions = 0, broken_bonds = 0;
 };
 
-/// What a run goes on from.
+/// State that a run is resumed from.
 struct Checkpoint {
   PathState path;
   TableRows rows;
   static constexpr int none = -1;
   int last_with_fields = none;  ///< number of the last step that has fields
-  /// What the fields of the last step will need, if it has none so far.
+  /// Data for the fields of the last step, if they are not written yet.
   struct Unwritten {
-    std::vector<double> told_stretches;  ///< histories of bonds as the step with fields told them
+    std::vector<double> told_stretches;  ///< histories of bonds as last written with fields
     std::vector<double> force;           ///< internal force [N]
   } unwritten;
   RunCosts costs;  ///< so far
 };
 
-/// A path's state that can't be gone on from; says why, as part of a sentence: "is damaged: …".
+/// Thrown for a checkpoint that can't be used. The message is part of a sentence: "is damaged: …".
 class BadCheckpoint : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -46,39 +46,39 @@ class BadCheckpoint : public std::runtime_error {
 using PutBytes = std::function<void(std::string_view)>;
 
 /// Writes a checkpoint as bytes, with a checksum: HDF5 would take longer for it than a small body
-/// for a step. Of arrays that hold nearly only zeros, or nearly only ones, what differs is kept.
-/// The bytes are those of the whole body whatever the number of ranks, and no rank ever has all of
+/// for a step. Arrays of nearly only zeros, or nearly only ones, store the values that differ. The
+/// bytes are those of the whole body whatever the number of ranks, and no rank ever has all of
 /// them.
 /// @param program   version that writes
-/// @param numbering null: the body is whole; otherwise a call that all ranks make
+/// @param numbering null for a whole body; otherwise collective
 /// @param put       called at rank 0
 void write_checkpoint(Checkpoint checkpoint, const std::string& program, StateNumbering* numbering,
                       const PutBytes& put);
 
-/// Where the bytes of a checkpoint are.
+/// Access to the bytes of a checkpoint.
 struct CheckpointBytes {
   std::uint64_t size = 0;
   std::function<std::string(std::uint64_t first, std::uint64_t count)> read;
 };
 
-/// What of a checkpoint is wanted.
+/// Parts of a checkpoint to read.
 struct WantedState {
-  bool has_arrays = true;               ///< without them a path's state has numbers alone
-  StateNumbering* numbering = nullptr;  ///< null: arrays are of the whole body
+  bool has_arrays = true;               ///< false: arrays of the state stay empty
+  StateNumbering* numbering = nullptr;  ///< null: arrays of the whole body
 };
 
-/// The checkpoint that some bytes begin with. Of a part of a body an array is left empty that is of
-/// another body.
+/// Reads the checkpoint that some bytes begin with. For a part of a body, arrays whose size is that
+/// of another body are left empty.
 /// @param program version that reads
-/// @throws BadCheckpoint: it has another layout (named with both programs), or is damaged as far as
-///         that shows without its checksum
+/// @throws BadCheckpoint if it has another layout (named with both programs), or is damaged as far
+///         as that shows without its checksum
 [[nodiscard]] Checkpoint read_checkpoint(const CheckpointBytes& bytes, const std::string& program,
                                          const WantedState& wanted);
 
-/// @throws BadCheckpoint if the bytes are no checkpoint to the last bit
+/// @throws BadCheckpoint if the bytes are not a checkpoint to the last bit
 void require_whole(const CheckpointBytes& bytes, const std::string& program);
 
-/// Both for bytes in memory.
+/// Write and read a checkpoint in memory.
 [[nodiscard]] std::string encode(Checkpoint checkpoint, const std::string& program);
 [[nodiscard]] Checkpoint decode(std::string_view bytes, const std::string& program);
 

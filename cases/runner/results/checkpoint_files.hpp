@@ -12,7 +12,7 @@
 
 namespace peristat {
 
-/// Two files that checkpoints are written to by turns, in place: a kill leaves one of them whole,
+/// Two files to which checkpoints are written in turn, in place: a kill leaves one of them whole,
 /// and no step has to wait for new files.
 class CheckpointFiles {
  public:
@@ -22,7 +22,7 @@ class CheckpointFiles {
   CheckpointFiles& operator=(const CheckpointFiles&) = delete;
 
   /// @param put_into writes the bytes of a checkpoint, see write_checkpoint
-  /// @throws OutputError; the checkpoint before stays
+  /// @throws OutputError; the previous checkpoint stays
   void write(const std::function<void(const PutBytes&)>& put_into);
 
   /// The file that was written last; empty before the first.
@@ -37,12 +37,12 @@ class CheckpointFiles {
   std::size_t next_ = 0;
 };
 
-/// The later one of the checkpoints in a folder that are whole.
+/// Path of the newest checkpoint in a folder that is whole.
 /// @throws BadCheckpoint if there is none
 [[nodiscard]] std::filesystem::path newest_checkpoint(const std::filesystem::path& folder,
                                                       const std::string& program);
 
-/// The bytes of a file, read as they are asked for.
+/// Access to the bytes of a file, which are read on demand.
 /// @throws BadCheckpoint if it can't be read
 [[nodiscard]] CheckpointBytes bytes_of_file(const std::filesystem::path& file);
 

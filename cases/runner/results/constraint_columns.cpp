@@ -5,7 +5,7 @@
 namespace peristat {
 namespace {
 
-/// Axes about which a body of a dimension turns.
+/// Axes of rotation in a dimension.
 std::vector<int> axes_of(int dimension) {
   if (dimension == 3) return {0, 1, 2};
   return dimension == 2 ? std::vector<int>{2} : std::vector<int>{};

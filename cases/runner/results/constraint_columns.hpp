@@ -17,7 +17,7 @@ namespace peristat {
 /// every period.
 [[nodiscard]] std::vector<ProbeColumns> constraint_columns(const Case& from);
 
-/// Their values in a state. A call that all ranks make.
+/// Adds the values of these columns in a state. Collective.
 void add_constraint_values(const Conditions& conditions, const Trial& state,
                            std::span<const double> external_force, const Communicator& ranks,
                            std::map<std::string, std::vector<double>>& values);

@@ -17,7 +17,7 @@ void ConvergenceTable::add(const IterationRecord& record) {
 void ConvergenceTable::accept(int step) {
   std::vector<ResidualRatio> ratios = std::exchange(attempt_, {});
   last_iteration_ = -1;
-  if (step == 0 && ratios.empty()) return;  // the body at rest was not searched for
+  if (step == 0 && ratios.empty()) return;  // the body at rest needed no search
   const double first = ratios.empty() ? 0.0 : ratios.front().value;
   for (ResidualRatio& ratio : ratios) ratio.value = first > 0.0 ? ratio.value / first : 0.0;
   columns_.push_back({step, std::move(ratios)});

@@ -39,10 +39,10 @@ class ConvergenceTable {
   std::vector<Column> columns_;
 };
 
-/// Order p = log(r_(k+1)/r_k) / log(r_k/r_(k-1)) of the last three residuals in a row that can show
-/// it: neither far from the solution (r_(k-1) < 0.2 of the first) nor round-off (r_(k+1) > 1e-13 of
-/// it), and a hundred times above what the linear solver has left of the residual before. None if
-/// there are no such three.
+/// Order p = log(r_(k+1)/r_k) / log(r_k/r_(k-1)) of the last three consecutive residuals that can
+/// show it: neither far from the solution (r_(k-1) < 0.2 of the first) nor round-off (r_(k+1) >
+/// 1e-13 of it), and more than a hundred times what the linear solver has left of the previous
+/// residual. None if there are no such three.
 [[nodiscard]] std::optional<double> observed_order(const std::vector<ResidualRatio>& ratios);
 
 }  // namespace peristat

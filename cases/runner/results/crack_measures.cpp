@@ -21,7 +21,7 @@ bool touches(const BondEnds& ends, Members set) {
          std::binary_search(set.begin(), set.end(), j);
 }
 
-/// Length of the period across an axis [m]; 0: the body has none there.
+/// Length of the period across an axis [m]; 0 if there is none.
 double period_along(const Points& points, std::size_t axis) {
   for (const ImageKind& kind : points.images.kinds) {
     if (kind.periods[axis] == 1) return kind.shift[axis];
@@ -45,7 +45,7 @@ std::array<double, 2> interval_of(std::vector<double> places, double period) {
   return interval;
 }
 
-/// Where cracks begin and end along an axis; twice the same without one.
+/// Begin and end of cracks along an axis [m]; both 0 without a crack.
 std::array<double, 2> extent(const Points& points, Members set, int axis, const CrackState& crack) {
   const double spacing = points.angle == 0.0 ? points.spacing.along(axis) : double(points.spacing);
   std::vector<double> middles;
@@ -62,7 +62,8 @@ std::array<double, 2> extent(const Points& points, Members set, int axis, const 
   return {begin - 0.5 * spacing, end + 0.5 * spacing};
 }
 
-/// The faces between the cells of a lattice. Points belong to the place that they were moved from.
+/// Faces between the cells of a lattice. Shifted points belong to the site that they were moved
+/// from.
 class CellFaces {
  public:
   explicit CellFaces(const Points& points)
@@ -70,7 +71,8 @@ class CellFaces {
         frame_(points.dimension, {}, 0.0, points.spacing, points.angle),
         origin_(frame_.spacings_to(points.lattice.value().origin)) {}
 
-  /// Of the one between next neighbours, or 0; half where a period has it twice.
+  /// Area of the face between next neighbours [m2], otherwise 0; half across a period, where it
+  /// occurs twice.
   [[nodiscard]] double area(const BondEnds& ends) const {
     const auto [i, j] = ends;
     const Cell from = cell_of(i), to = cell_of(j);
@@ -102,8 +104,8 @@ class CellFaces {
   Coordinates origin_;
 };
 
-/// Of the separated bonds from one on. Summed by size: a run that was resumed knows its broken
-/// bonds in another order.
+/// Area of the faces of separated bonds from number `first` on [m2]. Faces are summed by size,
+/// since a resumed run has its broken bonds in another order.
 double area(const Points& points, Members set, std::size_t first, const CrackState& crack) {
   const CellFaces of_cells(points);
   std::vector<double> faces;
@@ -132,7 +134,7 @@ double angle(const Points& points, Members set, int axis, const CrackState& crac
     mine.insert(mine.end(), {0.5 * (a[along] + b[along]), 0.5 * (a[across] + b[across]), size});
   }
   const std::vector<double> all = crack.of_all(std::move(mine));
-  std::vector<Face> faces;  // in an order of their own, as in area()
+  std::vector<Face> faces;  // sorted, as in area()
   for (std::size_t k = 0; k < all.size(); k += 3) faces.push_back({all[k], all[k + 1], all[k + 2]});
   std::ranges::sort(faces);
   double area = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
@@ -147,7 +149,7 @@ double angle(const Points& points, Members set, int axis, const CrackState& crac
     xy += face.area * from_x * from_y;
     yy += face.area * from_y * from_y;
   }
-  constexpr double round = 1e-9;  // a cloud that is as long along all directions
+  constexpr double round = 1e-9;  // faces without a preferred direction
   if (std::hypot(xx - yy, 2.0 * xy) <= round * (xx + yy)) return 0.0;
   return 90.0 / std::numbers::pi * std::atan2(2.0 * xy, xx - yy);
 }

@@ -10,45 +10,46 @@
 
 namespace peristat {
 
-/// What a crack had when its area grew last.
+/// State of a crack when its area last grew.
 struct CrackGrowth {
   double area = 0.0;        ///< that has grown since the start [m2]
   double dissipated = 0.0;  ///< [J]
 };
 
-/// How far cracks have come.
+/// State of the cracks.
 struct CrackState {
-  /// Bonds that pre-cracks have cut, then those that broke: those that are told here.
+  /// Separated bonds that this rank reports: those cut by pre-cracks, then broken ones.
   std::span<const BondEnds> separated;
-  std::size_t cut = 0;                  ///< how many of them pre-cracks have cut
+  std::size_t cut = 0;                  ///< number of them that pre-cracks have cut
   double taken_up = 0.0;                ///< work that is not stored any more [J]
   double dissipated = 0.0;              ///< by damage [J]
-  CrackGrowth before{};                 ///< when the area through the set grew last
-  const Communicator* ranks = nullptr;  ///< that have other separated bonds; null: these are all
+  CrackGrowth before{};                 ///< when the area through the set last grew
+  const Communicator* ranks = nullptr;  ///< with other separated bonds; null: these are all
 
-  /// What all ranks have, by a call that all make.
+  /// Values of all ranks. Collective.
   [[nodiscard]] std::vector<double> of_all(std::vector<double> mine) const {
     return ranks ? concatenated(mine, *ranks) : mine;
   }
 };
 
-/// What a probe can tell of the cracks through a set: of the separated bonds that have an end in
-/// it.
+/// A quantity of the cracks through a set that a probe can report, from the separated bonds that
+/// have an end in the set.
 ///
-/// - crack_length [m]: extent along the axis of the middles of those that run across it, whose ends
-///   are no more than half a spacing apart along it; each stands for a strip of one spacing. Only
-///   those, because where along an inclined bond the crack passes is not known.
+/// - crack_length [m]: extent along the axis of the midpoints of bonds that run across it, whose
+///   ends are no more than half a spacing apart along it; each represents a strip of one spacing.
+///   Inclined bonds are left out: it is not known where along them the crack passes.
 /// - crack_begin, crack_end [m]: where that extent begins and ends along the axis.
-/// - crack_angle [degree], in 2D: of the crack to the axis, from there to the other one, -90 to 90:
-///   of the line of least squares through the middles of the cell faces below, weighed by their
-///   areas; 0 if these have no direction. Over a branch it tells how that runs.
-/// - crack_area [m2]: of the cell faces between the points of those that join next neighbours, the
-///   crack's area by its projections on the axes of the lattice.
+/// - crack_angle [degree], in 2D: angle from the axis to the crack, towards the other axis, -90 to
+///   90: that of the line of least squares through the midpoints of the cell faces below, weighted
+///   by their areas; 0 if these have no direction. In a set over a branch, it is the angle of the
+///   branch.
+/// - crack_area [m2]: area of the cell faces between the points of separated bonds that join next
+///   neighbours, the crack's area by its projections on the axes of the lattice.
 /// - work_of_fracture [J/m2]: work that is not stored any more over the area that has grown since
 ///   the start.
-/// - crack_resistance [J/m2]: energy dissipated since the area grew last over what it has grown by
-///   now, R = dD/dA of an R-curve; 0 while it does not grow. The sum of R dA over the steps is D
-///   when the area grew last.
+/// - crack_resistance [J/m2]: R = dD/dA of an R-curve, the energy dissipated since the area last
+///   grew over its present growth; 0 while it does not grow. The sum of R dA over the steps is D
+///   when the area last grew.
 ///
 /// All are 0 without such a bond, work_of_fracture without an area that has grown.
 struct CrackMeasure {
@@ -63,7 +64,7 @@ struct CrackMeasure {
 [[nodiscard]] double grown_area(const Points& points, std::span<const Index> set,
                                 const CrackState& crack);
 
-/// Of a name, or null.
+/// Measure of a name, or null.
 [[nodiscard]] const CrackMeasure* crack_measure(const std::string& name);
 
 }  // namespace peristat

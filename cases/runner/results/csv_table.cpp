@@ -80,7 +80,7 @@ void CsvTable::append(const Row& row) {
     } while (written < 0 && errno == EINTR);
     if (written != static_cast<ssize_t>(line.size())) {
       const int error = written < 0 ? errno : ENOSPC;
-      // A failure to cut the torn row off has nothing to add to the error that is reported.
+      // A failure to cut off the torn row is not reported: it would add nothing to the error below.
       [[maybe_unused]] const int ignored = ::ftruncate(descriptor_, static_cast<off_t>(size_));
       throw OutputError(file_.string() + ": can't be written: " + std::strerror(error), error);
     }

@@ -7,7 +7,7 @@ namespace peristat {
 BondHistories DamageHistories::changes(const RecordedPoints& recorded, const Bonds& bonds,
                                        std::span<const double> history) const {
   const Points& points = recorded.points();
-  const bool has_images = !points.images.kinds.empty();  // which all ranks know
+  const bool has_images = !points.images.kinds.empty();  // the same on all ranks
   BondHistories changed;
   auto known = known_.begin();
   for (Index i = 0; i < bonds.points(); ++i) {

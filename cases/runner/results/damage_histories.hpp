@@ -11,19 +11,19 @@
 
 namespace peristat {
 
-/// The histories of the bonds (bond_stretches) as a reader of the results knows them. Only
-/// those that differ from 0 are kept: nearly all bonds of a body are never damaged.
+/// Histories of the bonds (bond_stretches) as last written to the results. Only those that differ
+/// from 0 are kept: nearly all bonds of a body are never damaged.
 class DamageHistories {
  public:
-  /// The bonds whose history is another one than the reader knows. Bonds between two images, which
-  /// repeat others, are left out, and those that another rank tells.
+  /// Bonds whose history differs from the one last written. Leaves out bonds between two images,
+  /// which repeat others, and bonds that another rank reports.
   [[nodiscard]] BondHistories changes(const RecordedPoints& points, const Bonds& bonds,
                                       std::span<const double> history) const;
 
-  /// What the reader knows, of all bonds.
+  /// Last written histories of all bonds.
   [[nodiscard]] std::vector<double> told(Offset bonds) const;
 
-  /// The reader knows this history now.
+  /// Notes a history as written.
   void tell(std::span<const double> history);
 
  private:

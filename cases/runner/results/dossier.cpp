@@ -117,7 +117,7 @@ void keep_worst(std::vector<WorstPoint>& points) {
   points.resize(kept);
 }
 
-/// The points with the largest residual, of all ranks.
+/// Points with the largest residual, among all ranks.
 std::vector<WorstPoint> worst_points(const RecordedPoints& recorded,
                                      const std::vector<double>& residual) {
   const auto d = std::size_t(recorded.dimension());
@@ -164,7 +164,7 @@ Dossier make_dossier(const Case& from, const Body& body, const LoadSteppingResul
       dossier.residual[dof] = attempt.external_force[dof] - attempt.state.gradient[dof];
     }
   }
-  // A search that went astray may end in a state that is not finite: such entries tell nothing.
+  // A search that diverged may end in a state that is not finite: such entries become 0.
   for (std::vector<double>* field : {&dossier.residual, &dossier.displacement}) {
     for (double& entry : *field) entry = std::isfinite(entry) ? entry : 0.0;
   }

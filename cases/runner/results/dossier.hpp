@@ -9,14 +9,14 @@
 
 namespace peristat {
 
-/// What a person needs who wonders why a run has stopped.
+/// Report on why a run has stopped.
 struct Dossier {
   std::string text;
   std::vector<double> residual;  ///< recorded points x dimension [N], 0 where nothing is solved for
   std::vector<double> displacement;  ///< of the state in which the last search ended [m]
 };
 
-/// A call that all ranks make.
+/// Collective.
 /// @param last the last accepted step, or nothing if there is none
 /// @param decisions of the load stepping, all or the last ones
 [[nodiscard]] Dossier make_dossier(const Case& from, const Body& body,

@@ -31,7 +31,7 @@ std::vector<Row> first_rows(const Hdf5File& file, const std::string& group,
   return rows;
 }
 
-/// Where an object of a results file is.
+/// File and path of an object of a results file.
 ObjectInFile place_of(const Hdf5File& file, const fs::path& name, const std::string& path) {
   return file.link_target(path).value_or(ObjectInFile{name.filename().string(), path});
 }
@@ -41,7 +41,7 @@ bool has_checkpoints(const ResultsFolder& folder) {
                      [&](const char* name) { return fs::exists(folder.parts() / name); });
 }
 
-/// Of a run that has ended.
+/// Checkpoint in results.h5 of a run that has ended.
 CheckpointBytes checkpoint_in(const fs::path& results) {
   const auto file = std::make_shared<const Hdf5File>(Hdf5File::open_for_reading(results));
   const std::uint64_t size = file->count_of_rows("/checkpoint");
@@ -59,7 +59,7 @@ ResultsMarker claim(const fs::path& directory) {
   return std::move(*marker);
 }
 
-/// Copies everything to where nobody looks, as it will be copied when the run ends.
+/// Copies everything into memory as a test, as it will be copied when the run ends.
 void try_to_copy(const ResultsFolder& folder, const EarlierResults& earlier) {
   const auto copy = [&](const std::string& file, const std::string& object) {
     Hdf5File::in_memory("trial (in memory)", std::size_t(1) << 20)
@@ -94,7 +94,8 @@ EarlierRun::EarlierRun(const fs::path& directory, const std::string& program,
   read(chosen.front() == 's' ? Generation::safe : Generation::newest);
 }
 
-/// Finds out which state is gone on from, and whether it can be.
+/// Chooses the state to resume from: the newest, or else the safe one. Throws if neither can be
+/// used.
 void EarlierRun::choose() {
   try {
     marker_.emplace(claim(folder_.directory));
@@ -150,7 +151,7 @@ void EarlierRun::read(Generation which) {
   case_file_ = file.text_attribute("/case", "file");
   case_text_ = file.text("/case/as_read");
   settings_ = read_settings(file);
-  // Whatever a run writes, it writes the step before its checkpoint.
+  // A run writes each step before its checkpoint, so that the tables must have its rows.
   static_cast<void>(
       first_rows(file, "/iterations", iteration_columns(), checkpoint_.rows.iterations));
 }
@@ -170,7 +171,7 @@ CheckpointBytes EarlierRun::bytes_of_checkpoint() const {
 void EarlierRun::load(StateNumbering* numbering) {
   CheckpointBytes bytes = bytes_of_checkpoint();
   if (ranks_.count() > 1) {
-    // What each picks its own from.
+    // Each rank picks its own values from these.
     bytes.read = [this, read = bytes.read](std::uint64_t first, std::uint64_t count) {
       std::string part;
       if (ranks_.rank() == 0) part = read(first, count);

@@ -19,7 +19,7 @@
 
 namespace peristat {
 
-/// What results.h5 of a run holds up to its checkpoint.
+/// Contents of a run's results.h5 up to its checkpoint.
 struct EarlierResults {
   std::vector<Row> history, iterations, decisions, broken_bonds;
   ObjectInFile points;
@@ -27,15 +27,15 @@ struct EarlierResults {
   std::map<std::string, std::vector<Row>> lines{};  ///< by name
 };
 
-/// A run that has left its results and a checkpoint in a folder, which nobody else writes as long
-/// as this lives.
+/// An earlier run with results and a checkpoint in a folder. Nobody else writes the folder as long
+/// as this object lives.
 class EarlierRun {
  public:
   /// @param program version of this program
-  /// @param ranks   that go on with it, all by this call
-  /// @throws InputError if the folder holds no run, or none that can be gone on from:
-  ///         says why. HDF5 may crash on a damaged file, so all is tried in a process of its own.
-  ///         Of ranks the first one alone throws
+  /// @param ranks   that resume it. Collective
+  /// @throws InputError if the folder holds no run, or none that can be resumed, with the reason.
+  ///         HDF5 may crash on a damaged file, so all is tried in a separate process. Only rank 0
+  ///         throws
   EarlierRun(const std::filesystem::path& directory, const std::string& program,
              const Communicator& ranks);
 
@@ -43,30 +43,30 @@ class EarlierRun {
   [[nodiscard]] const std::filesystem::path& case_file() const { return case_file_; }
   [[nodiscard]] const std::string& case_text() const { return case_text_; }
   [[nodiscard]] const Settings& settings() const { return settings_; }
-  /// Without arrays before they are loaded.
+  /// The checkpoint; its arrays are empty before load().
   [[nodiscard]] const Checkpoint& checkpoint() const { return checkpoint_; }
-  /// Reads the arrays of the checkpoint's state; a call that all ranks make.
-  /// @param numbering of this rank's part; null: the body is whole
+  /// Reads the arrays of the checkpoint's state. Collective.
+  /// @param numbering of this rank's part; null for a whole body
   void load(StateNumbering* numbering);
-  /// Completes a state that is of this body with what terms remember that follow others.
+  /// Completes the state by the parts of histories that follow from the rest, for this body.
   void find_followers(const Assembler& body);
-  /// Other solvers than before begin at the top of their ladders.
+  /// Forgets how far solvers have fallen back: changed solvers begin at the top of their chains.
   void forget_solvers() { checkpoint_.path.rungs = {}; }
-  /// Whether the run has gathered its results and said how it ended.
+  /// True if the run has gathered its results and reported how it ended.
   [[nodiscard]] bool is_concluded() const;
   /// A sentence if the newest checkpoint was lost and an older one is taken.
   [[nodiscard]] const std::string& remark() const { return remark_; }
 
-  /// @throws InputError if something of it is damaged
+  /// @throws InputError if a part of them is damaged
   [[nodiscard]] EarlierResults results(const std::vector<std::string>& support_sets,
                                        const std::vector<ProbeColumns>& probes,
                                        const std::vector<LineTable>& lines = {}) const;
-  /// Whether the run was one of these points, on this rank.
-  /// @param gathering of ranks, which all make this call with the points that they own
+  /// True if the run had these points, on this rank.
+  /// @param gathering with several ranks: collective, each with the points that it owns
   [[nodiscard]] bool has_points(const Points& points, const RowGathering* gathering) const;
 
-  /// Makes the folder ready for results that link to those there are.
-  /// @param earlier their files are named anew where they move
+  /// Prepares the folder for results that link to the existing ones.
+  /// @param earlier names of files that move are updated
   /// @throws OutputError
   [[nodiscard]] ClaimedFolder take_over(const RunIdentity& run, EarlierResults& earlier);
 
@@ -75,7 +75,7 @@ class EarlierRun {
   enum class Generation { newest, safe };
 
   void choose();
-  /// Everything but arrays.
+  /// Reads everything but arrays.
   void read(Generation which);
   void require_whole_checkpoint() const;
   [[nodiscard]] CheckpointBytes bytes_of_checkpoint() const;
@@ -87,10 +87,10 @@ class EarlierRun {
   ResultsFolder folder_;
   std::string program_;
   const Communicator& ranks_;
-  std::optional<ResultsMarker> marker_;  // of the first rank
+  std::optional<ResultsMarker> marker_;  // on rank 0 only
   Generation generation_ = Generation::newest;
   std::filesystem::path checkpoint_file_;  // of a run that has parts
-  std::filesystem::path results_;          // the file that is gone on from
+  std::filesystem::path results_;          // the file to resume from
   bool is_gathered_ = false;               // it has no parts
   std::filesystem::path case_file_;
   std::string case_text_, remark_;

@@ -15,7 +15,7 @@ namespace {
 static_assert(sizeof(hid_t) == sizeof(std::int64_t));
 
 /// Throws the innermost message of the library's error stack if the result of a call is negative;
-/// std::bad_alloc if that is what it is about.
+/// std::bad_alloc if the message is about memory.
 template <class Result>
 Result checked(Result result, const std::string& action) {
   if (result >= 0) return result;
@@ -331,7 +331,7 @@ bool Hdf5File::has_attribute(const std::string& path, const std::string& name) c
 }
 
 bool Hdf5File::has(const std::string& path) const {
-  // Every group on the way is asked for: the library fails below one that is missing.
+  // Checks every group on the way: the library fails below one that is missing.
   for (std::size_t slash = path.find('/', 1);; slash = path.find('/', slash + 1)) {
     const std::string part = path.substr(0, slash);
     if (H5Lexists(id_, part.c_str(), H5P_DEFAULT) <= 0 ||

@@ -18,7 +18,7 @@ struct DatasetLabel {
   std::string unit, description;
 };
 
-/// An object of a file, which is relative to the folder of who links to it.
+/// An object of a file; the file is relative to the folder of the file that links to it.
 struct ObjectInFile {
   std::string file, object;
 };
@@ -38,7 +38,7 @@ class Hdf5File {
   /// @param room bytes that the file may need
   /// @throws OutputError if the disk has less room
   [[nodiscard]] static Hdf5File create(const std::filesystem::path& file, std::uint64_t room);
-  /// The same for a file with the contents that image() gave; `room` counts them as well.
+  /// Creates a file with contents from image(); `room` counts them as well.
   [[nodiscard]] static Hdf5File create(const std::filesystem::path& file, std::uint64_t room,
                                        std::string_view image);
   [[nodiscard]] static Hdf5File open_for_reading(const std::filesystem::path& file);
@@ -57,10 +57,10 @@ class Hdf5File {
              const DatasetLabel& label);
   void write(const std::string& path, const std::vector<std::uint8_t>& values, const Shape& shape,
              const DatasetLabel& label);
-  /// Puts rows from one on into a dataset.
+  /// Writes rows into a dataset, from row `first` on.
   template <class Value>
   using PutRows = std::function<void(std::uint64_t first, const std::vector<Value>& rows)>;
-  /// The same in parts, which `fill` puts: values are double, int32 or uint8.
+  /// Writes a dataset in parts, which `fill` puts: values are double, int32 or uint8.
   template <class Value>
   void write_rows(const std::string& path, const Shape& shape, const DatasetLabel& label,
                   const std::function<void(const PutRows<Value>&)>& fill);
@@ -78,14 +78,14 @@ class Hdf5File {
   void set_attribute(const std::string& path, const std::string& name,
                      const std::vector<std::string>& texts);
 
-  /// Whether there is an object; a link to what can't be opened counts as none.
+  /// True if there is an object; a link to one that can't be opened counts as none.
   [[nodiscard]] bool has(const std::string& path) const;
-  /// Whether there is an object or a link, wherever it leads.
+  /// True if there is an object or a link, wherever it leads.
   [[nodiscard]] bool has_link(const std::string& path) const;
   [[nodiscard]] bool has_attribute(const std::string& path, const std::string& name) const;
   [[nodiscard]] std::string text_attribute(const std::string& path, const std::string& name) const;
 
-  /// Values of a dataset, in the order of its rows; of another type they are converted.
+  /// Values of a dataset, in the order of its rows; other types are converted.
   [[nodiscard]] std::vector<double> numbers(const std::string& path) const;
   [[nodiscard]] std::vector<std::int64_t> integers(const std::string& path) const;
   [[nodiscard]] std::vector<std::uint8_t> bytes(const std::string& path) const;
@@ -110,7 +110,7 @@ class Hdf5File {
   /// A link to an object of another file, whose path is relative to this file's folder.
   void link(const std::string& path, const std::string& file, const std::string& object);
   void unlink(const std::string& path);
-  /// Where a link leads; none if the object is in this file.
+  /// Target of a link; none if the object is in this file.
   [[nodiscard]] std::optional<ObjectInFile> link_target(const std::string& path) const;
   void copy(const Hdf5File& from, const std::string& source, const std::string& path);
 

@@ -11,7 +11,7 @@
 namespace peristat {
 namespace {
 
-/// Where rows of numbers begin, ascending by their first two.
+/// Positions at which rows of numbers begin, sorted by the rows' first two numbers.
 std::vector<std::size_t> in_order(const std::vector<double>& rows, std::size_t width) {
   std::vector<std::size_t> begin;
   for (std::size_t at = 0; at < rows.size(); at += width) begin.push_back(at);

@@ -10,14 +10,14 @@
 
 namespace peristat {
 
-/// Points of a body along a line, in their order, for a probe that has one. Both outlive it.
+/// Points of a body along a probe's line, in their order. Probe and points must outlive it.
 class LineProbe {
  public:
   LineProbe(const ProbeSpecification& probe, const RecordedPoints& points);
 
   /// step, load_factor, point, distance from the begin of the line, x, y, z, and the values.
   [[nodiscard]] LineTable table() const;
-  /// A row per point, of all ranks; a call that all make.
+  /// A row per point, of all ranks. Collective.
   [[nodiscard]] std::vector<Row> rows(const StepRecord& record, const StepFields& fields) const;
 
  private:

@@ -14,7 +14,7 @@ namespace peristat {
 /// modified_energy [J], momentum_x … [kg m/s]; in other modes none.
 [[nodiscard]] std::vector<ProbeColumns> motion_columns(const Case& from);
 
-/// Their values in a state.
+/// Adds the values of these columns in a state.
 void add_motion_values(const StepRecord& record, int dimension,
                        std::map<std::string, std::vector<double>>& values);
 

@@ -14,20 +14,20 @@
 
 namespace peristat {
 
-/// Brings what ranks have of their points to rank 0, in the order of the whole body and in parts:
-/// nobody ever holds a value of all points.
+/// Gathers values of points on rank 0, in the order of the whole body and in parts: no rank ever
+/// holds the values of all points.
 class RowGathering {
  public:
-  /// @param most_rows of a part
+  /// @param most_rows largest number of rows of a part
   explicit RowGathering(const PartOfBody& part, std::int64_t most_rows = std::int64_t(1) << 20)
       : part_(part), most_rows_(most_rows) {}
 
   [[nodiscard]] const PartOfBody& part() const { return part_; }
   [[nodiscard]] std::uint64_t rows() const { return std::uint64_t(part_.whole()); }
 
-  /// A call that all ranks make.
+  /// Gathers values of the owned points on rank 0. Collective.
   /// @param mine as many values per owned point on all ranks
-  /// @param put called with rows that follow one another, at rank 0 only
+  /// @param put called with consecutive rows, at rank 0 only
   template <class Value>
   void gather(const std::vector<Value>& mine, std::size_t values_per_row,
               const Hdf5File::PutRows<Value>& put) const {
@@ -47,8 +47,8 @@ class RowGathering {
     }
   }
 
-  /// Gives each rank the values of the points that it owns. A call that all ranks make.
-  /// @param take called for rows that follow one another, at rank 0 only
+  /// Gives each rank the values of the points that it owns. Collective.
+  /// @param take called for consecutive rows, at rank 0 only
   template <class Value, class Take>
   [[nodiscard]] std::vector<Value> scatter(std::size_t values_per_row, const Take& take) const {
     std::vector<Value> mine;
@@ -69,10 +69,10 @@ class RowGathering {
     return mine;
   }
 
-  /// Brings items to rank 0 in their order and in parts. A call that all ranks make.
+  /// Gathers items on rank 0 in their order and in parts. Collective.
   /// @tparam Item of plain bytes
-  /// @param order_of an item: two whole numbers, from 0 to `most_order` the first one
-  /// @param put called with items that follow one another, at rank 0 only
+  /// @param order_of returns two whole numbers for an item, the first from 0 to `most_order`
+  /// @param put called with consecutive items, at rank 0 only
   template <class Item, class OrderOf, class Put>
   void gather_in_order(std::vector<Item> mine, std::int64_t most_order, const OrderOf& order_of,
                        const Put& put) const {
@@ -96,8 +96,8 @@ class RowGathering {
     }
   }
 
-  /// What is told of bonds, as they come on one rank: ascending by their `first_point`, and then
-  /// those to points before those to each kind of images (`second_image`), by `second_point`.
+  /// Gathers items of bonds in the order of a single rank: ascending by `first_point`, then bonds
+  /// to points before those to each kind of images (`second_image`), then by `second_point`.
   template <class Item, class Put>
   void gather_of_bonds(std::vector<Item> mine, const Put& put) const {
     gather_in_order(
@@ -109,8 +109,8 @@ class RowGathering {
         put);
   }
 
-  /// Adds up a count per owned point over the points of the whole body in their order.
-  /// @return the sum before each owned point, and that of all. A call that all ranks make.
+  /// Adds up a count per owned point over the points of the whole body in their order. Collective.
+  /// @return the sum before each owned point, and the total
   [[nodiscard]] std::pair<std::vector<std::int64_t>, std::int64_t> counted_before(
       const std::vector<std::int64_t>& counts) const {
     const std::vector<GlobalIndex>& number = part_.number();
@@ -131,7 +131,7 @@ class RowGathering {
  private:
   using Number = std::vector<GlobalIndex>::const_iterator;
 
-  /// Of the points of a part: the sum before each of them, and behind the last one; on all ranks.
+  /// Sums before each point of a part, and behind the last one; on all ranks.
   [[nodiscard]] std::vector<std::int64_t> sums_before(const std::vector<std::int64_t>& counts,
                                                       std::int64_t first, Number next, Number end,
                                                       std::int64_t sum) const {
@@ -163,7 +163,7 @@ class RowGathering {
     return items;
   }
 
-  /// Rows with their places behind `first`.
+  /// Packs rows with their positions relative to `first`.
   template <class Value>
   struct Packed {
     std::int64_t first;
@@ -197,16 +197,16 @@ class RowGathering {
   std::int64_t most_rows_;
 };
 
-/// Where values per point come from: a file, of a body that is whole here, or given out by rank 0
-/// in parts. Calls that all ranks make.
+/// Source of values per point: a file, or for a distributed body rank 0, which sends them out in
+/// parts. All calls are collective.
 class RowSource {
  public:
-  /// @param file null on ranks that rank 0 reads for
-  /// @param gathering null: the body is whole
+  /// @param file null on all ranks but 0
+  /// @param gathering null for a whole body
   RowSource(const Hdf5File* file, const RowGathering* gathering)
       : file_(file), gathering_(gathering) {}
 
-  /// What rank 0 finds.
+  /// Result of `find` on rank 0, on all ranks.
   template <class Find>
   [[nodiscard]] bool all_agree(const Find& find) const {
     const bool is_found = file_ && find();
@@ -214,7 +214,7 @@ class RowSource {
     return gathering_->part().ranks().max(is_found ? 1.0 : 0.0) > 0.0;
   }
 
-  /// Of the points that are owned here.
+  /// Reads the values of the points that this rank owns.
   template <class Value>
   [[nodiscard]] std::vector<Value> read(const std::string& path, std::size_t values_per_row) const {
     if (!gathering_) return file_->some_rows<Value>(path, 0, file_->count_of_rows(path));
@@ -229,7 +229,7 @@ class RowSource {
   const RowGathering* gathering_;
 };
 
-/// Where values per point go: into a file, of a body that is whole here, or gathered from ranks.
+/// Destination of values per point: a file, directly for a whole body or gathered from ranks.
 class RowSink {
  public:
   /// @param rows points of the body
@@ -258,9 +258,9 @@ class RowSink {
   }
 
   /// Values of bonds, see RowGathering::gather_of_bonds.
-  /// @param first_point, second_point, second_image, values of the bonds that are told here; a body
-  ///        without images has no `second_image`
-  /// @param count of all
+  /// @param first_point, second_point, second_image, values of the bonds that this rank reports; a
+  ///        body without images has no `second_image`
+  /// @param count of bonds on all ranks
   template <class Value>
   void write_of_bonds(const std::string& path, const std::vector<Index>& first_point,
                       const std::vector<Index>& second_point,

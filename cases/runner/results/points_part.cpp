@@ -31,7 +31,7 @@ std::vector<std::uint8_t> flags(const Points& points, const std::vector<Index>& 
   return flags;
 }
 
-/// Whether all numbers are the same to the last bit.
+/// True if all numbers are the same to the last bit.
 bool are_same(const std::vector<double>& some, const std::vector<double>& others) {
   return std::equal(some.begin(), some.end(), others.begin(), others.end(), [](double a, double b) {
     return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
@@ -51,7 +51,7 @@ std::vector<double> neighbour_shares(const Points& points) {
   return shares;
 }
 
-/// Whether a group has the given neighbours of points, or none as they have.
+/// True if a group holds the given neighbours of the points, or neither has any.
 bool holds_neighbours(const Hdf5File& file, const std::string& group, const Points& points) {
   const std::string place = group + "/given_neighbours";
   if (file.has(place) == points.neighbours.empty()) return false;
@@ -62,7 +62,7 @@ bool holds_neighbours(const Hdf5File& file, const std::string& group, const Poin
          are_same(file.numbers(place + "/shares"), neighbour_shares(points));
 }
 
-/// How each kind of images follows its sources.
+/// Writes how each kind of images follows its sources.
 void write_image_kinds(Hdf5File& file, const Points& points) {
   const std::vector<ImageKind>& kinds = points.images.kinds;
   if (kinds.empty()) return;
@@ -85,7 +85,7 @@ std::string flags_of(const std::string& set) { return "/points/sets/" + name_of_
 
 namespace {
 
-/// All arrays with a row per point.
+/// Writes all arrays with a row per point.
 void write_rows_of(const Points& points, const std::vector<PointCounts>& counts,
                    const std::vector<GlobalIndex>& number, const RowSink& sink) {
   const auto dimension = static_cast<std::uint64_t>(points.dimension);

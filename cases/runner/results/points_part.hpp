@@ -11,7 +11,7 @@
 
 namespace peristat {
 
-/// Pure numbers of every point that do not change, e.g. counts of neighbours.
+/// Dimensionless constants of every point, e.g. counts of neighbours.
 struct PointCounts {
   std::string name;  ///< of the dataset in /points
   std::string description;
@@ -22,23 +22,22 @@ struct PointCounts {
 [[nodiscard]] std::string flags_of(const std::string& set);
 
 /// Writes the group /points.
-/// @param gathering null: the points are all; otherwise they, and the counts, are those that this
-///        rank owns, and while rank 0 writes all others send_points
+/// @param gathering null: points of the whole body; otherwise points and counts are those that this
+///        rank owns, and all ranks but 0 call send_points at the same time
 void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts,
                   const RowGathering* gathering = nullptr);
 void send_points(const Points& points, const std::vector<PointCounts>& counts,
                  const RowGathering& gathering);
 
-/// Bytes of what it writes.
+/// Number of bytes that write_points writes.
 /// @param rows points of the body
 [[nodiscard]] std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts,
                                      std::uint64_t rows);
 
-/// Whether a group that write_points has written is of these points and sets, to the last bit.
-/// @param file      null on ranks that rank 0 reads for
-/// @param gathering null: the points are all; otherwise they are those that this rank owns, which
-/// is
-///                  what it is told of by this call that all ranks make
+/// True if a group written by write_points holds these points and sets, to the last bit.
+/// @param file      null on all ranks but 0
+/// @param gathering null: points of the whole body; otherwise those that this rank owns, to which
+///        the result refers. Collective
 [[nodiscard]] bool holds_points(const Hdf5File* file, const std::string& group,
                                 const Points& points, const RowGathering* gathering);
 

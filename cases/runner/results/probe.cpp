@@ -38,7 +38,7 @@ const std::vector<double>& values_of(const ProbeField& field, const StepFields& 
   return *(fields.*members.at(field.name));
 }
 
-/// From row by row to column by column.
+/// Reorders values from row by row to column by column.
 std::vector<double> by_columns(const std::vector<double>& rows, std::size_t columns) {
   const std::size_t count = rows.size() / columns;
   std::vector<double> result(rows.size());
@@ -48,8 +48,8 @@ std::vector<double> by_columns(const std::vector<double>& rows, std::size_t colu
   return result;
 }
 
-/// Rows of all ranks that have the same least squares as theirs: of a body in parts, where a set
-/// may be large, as many as there are columns in their place.
+/// Rows of all ranks with the same least squares. With several ranks, where a set may be large,
+/// each rank condenses its rows to as many as there are columns.
 std::vector<double> rows_of_all(std::vector<double> mine, std::size_t columns,
                                 const Communicator& ranks) {
   if (ranks.count() == 1) return mine;
@@ -82,8 +82,8 @@ double fitted_poisson_ratio(const ProbeSpecification& probe, const RecordedPoint
       by_columns(rows_of_all(std::move(mine), columns, points.ranks()), columns);
   const std::size_t rows = all.size() / columns;
   if (rows == 0) return 0.0;
-  // Of full rank for any set of two or more points in every direction, by the smallest solution for
-  // others.
+  // The matrix has full rank for any set of two or more points in every direction; for others the
+  // smallest solution is taken.
   const std::span<const double> positions = std::span(all).first(rows * (width + 1));
   const std::vector<double> gradient =
       least_squares(positions, int(rows), std::span(all).last(rows * width));
@@ -97,12 +97,12 @@ double fitted_poisson_ratio(const ProbeSpecification& probe, const RecordedPoint
 }
 
 /// Means over the members of a set, on all ranks.
-/// @param values_of of a member, as many numbers as there are columns
+/// @param values_of returns the values of a member, one per column
 template <class ValuesOf>
 std::vector<double> mean_of(const RecordedPoints& points, const std::string& set,
                             std::size_t columns, const ValuesOf& values_of) {
   const std::span<const Index> members = points.members(set);
-  std::vector<double> sums(columns + 1, -0.0);  // which changes no number, not even the sign of 0
+  std::vector<double> sums(columns + 1, -0.0);  // neutral, even for the sign of 0
   for (const Index point : members) {
     const std::vector<double> values = values_of(point);
     for (std::size_t c = 0; c < columns; ++c) sums[c] += values[c];
@@ -114,7 +114,7 @@ std::vector<double> mean_of(const RecordedPoints& points, const std::string& set
   return sums;
 }
 
-/// The largest of each column.
+/// Largest value of each column, on all ranks.
 template <class ValuesOf>
 std::vector<double> largest_of(const RecordedPoints& points, const std::string& set,
                                std::size_t columns, const ValuesOf& values_of) {
@@ -149,7 +149,7 @@ double divergence_at(const std::vector<double>& gradients, int dimension, Index 
   return divergence;
 }
 
-/// Root mean square, or the largest, of the lengths of what separates a set from expected values.
+/// Root mean square, or the largest, of the lengths of a set's differences from expected values.
 double error_over_set(const ProbeSpecification& probe, const RecordedPoints& points,
                       const StepFields& fields, const LoadValues& loads) {
   std::vector<Expression> expected;
@@ -186,7 +186,7 @@ std::vector<double> over_set(const ProbeSpecification& probe, const RecordedPoin
   return found;
 }
 
-/// Of the point nearest to a place, which its rank tells all others.
+/// Values at the point nearest to a place, which its rank sends to all others.
 std::vector<double> at_place(const ProbeSpecification& probe, const RecordedPoints& points,
                              const StepFields& fields) {
   const std::optional<Index> nearest = nearest_recorded(points, *probe.at).here;

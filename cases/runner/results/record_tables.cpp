@@ -75,7 +75,7 @@ const std::vector<Column>& step_columns() {
   return columns;
 }
 
-/// Those that stand behind reactions and probes: scripts know the others' places.
+/// Columns behind reactions and probes: scripts rely on the places of the others.
 const std::vector<Column>& later_step_columns() {
   static const std::vector<Column> columns{
       {number, "numerical_work", "J",

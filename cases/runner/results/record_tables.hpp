@@ -28,8 +28,8 @@ namespace peristat {
 [[nodiscard]] Row make_row(const StepRecord& record, const std::vector<std::string>& support_sets,
                            const std::vector<ProbeColumns>& probes);
 
-/// The records that rows were made of.
-/// @throws std::exception if a row is none of these columns
+/// Reads the records that rows were made of.
+/// @throws std::exception if a row does not have these columns
 [[nodiscard]] IterationRecord read_iteration(const Row& row);
 [[nodiscard]] DecisionRecord read_decision(const Row& row);
 [[nodiscard]] StepRecord read_step(const Row& row, const std::vector<std::string>& support_sets,

@@ -82,7 +82,7 @@ void Recorder::add_motion(std::span<const double> velocity, Fields& made) const 
 }
 
 void Recorder::accepted(StepRecord record, const AcceptedState& state) {
-  unwritten_.reset();  // before there are as many fields again
+  unwritten_.reset();  // freed before new fields are made
   const StateView at = state.trial.at();
   std::vector<double> force = state.trial.gradient;
   const Constraints& constraints = body_.conditions->constraints();
@@ -192,8 +192,7 @@ void Recorder::find_growth(const EarlierResults& earlier,
   if (!last_) return;
   for (const ProbeSpecification& probe : case_.probes) {
     if (probe.field != "crack_resistance") continue;
-    // A step that grew without dissipation is told as 0, too: it changes what is looked for in
-    // nothing.
+    // A step that grew without dissipation has the value 0, too, but does not change the result.
     double dissipated = 0.0;
     for (const Row& row : earlier.history) {
       const StepRecord record = read_step(row, support_sets, probes);
@@ -209,7 +208,7 @@ void Recorder::decided(DecisionRecord record) {
       body_.conditions->control() != nullptr || case_.solver.mode == Mode::arc_length;
   const bool has_failed = record.outcome != name(Outcome::converged) &&
                           (record.action == Decision::cut || record.action == Decision::stop);
-  // What a search that failed has left of the load may be any number.
+  // A failed search may have left any value of the load.
   if (finds_loads && has_failed) record.load_factor = last_ ? last_->load_factor : 0.0;
   decisions_.push_back(record);
   results_.add(record);

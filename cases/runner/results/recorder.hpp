@@ -21,8 +21,8 @@
 
 namespace peristat {
 
-/// Turns accepted equilibria into rows, fields and probes of the results folder, and tells what
-/// happens. Of a body that ranks have parts of, all make the same calls.
+/// Turns accepted equilibria into rows, fields and probes of the results folder, and prints
+/// progress. For a distributed body all calls are collective.
 class Recorder {
  public:
   Recorder(const Case& from, const Body& body, Assembler& assembler, Results& results,
@@ -46,18 +46,18 @@ class Recorder {
     }
   }
 
-  /// Knows what it knew when the checkpoint was made.
+  /// Restores its state at the time of the checkpoint.
   void go_on(const Checkpoint& checkpoint, const EarlierResults& earlier,
              const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes);
 
   void iteration(const IterationRecord& record);
   void accepted(StepRecord record, const AcceptedState& state);
-  /// Where the load is found, one that failed stands at the load of the state before it.
+  /// If the load is an unknown, a failed search is recorded at the load of the last accepted state.
   void decided(DecisionRecord record);
   /// A linear solver has given way to the next one.
   void changed_solver(const std::string& reason);
 
-  /// What the run can go on from: all but its costs.
+  /// State that the run can be resumed from, without its costs.
   [[nodiscard]] Checkpoint checkpoint(const PathState& path) const;
 
   /// Writes the fields of the last accepted state, whatever output.every says.
@@ -74,35 +74,35 @@ class Recorder {
     double max_damage = 0.0, max_stretch = 0.0;
     std::optional<BondHistories> histories;
     std::optional<StressFields> stress;  ///< where a probe or the results need it
-    /// @param with_stress whether strain and stress are shown
+    /// @param with_stress include strain and stress
     [[nodiscard]] StepFields view(bool with_stress) const;
   };
 
   /// Fields of a state.
-  /// @param force minus its gradient [N], of more than these points
+  /// @param force minus its gradient [N]; may have more points than these
   [[nodiscard]] Fields fields(const StateView& at, std::vector<double> force,
                               std::span<const std::int32_t> piece,
                               std::span<const double> velocity) const;
   /// Adds velocity and kinetic energy.
   void add_motion(std::span<const double> velocity, Fields& made) const;
-  /// The bonds that have broken since it was asked last.
+  /// Bonds that have broken since the last call.
   [[nodiscard]] std::vector<BondEnds> newly_broken(const History& history);
   /// Adds the bonds that have broken since the last step to the results.
   void record_broken_bonds(const StepRecord& record, const History& history);
-  /// What a probe is told of the cracks.
-  /// Whether any point has, on any rank.
+  /// True if any point has moved, on any rank.
   [[nodiscard]] bool moves(std::span<const double> displacement) const;
+  /// State of the cracks for a probe.
   [[nodiscard]] CrackState crack_state(const StepRecord& record, const std::string& probe) const;
-  /// Keeps in growth_ what an accepted step has grown.
+  /// Updates growth_ by an accepted step.
   void note_growth(const StepRecord& record);
-  /// Finds growth_ of the steps that there were.
+  /// Restores growth_ from earlier steps.
   void find_growth(const EarlierResults& earlier, const std::vector<std::string>& support_sets,
                    const std::vector<ProbeColumns>& probes);
 
   const Case& case_;
   const Points& points_;
   const RecordedPoints recorded_;
-  std::size_t own_;  // how many these are
+  std::size_t own_;  // number of recorded points
   Assembler& assembler_;
   Results& results_;
   Progress& progress_;
@@ -113,10 +113,10 @@ class Recorder {
   DamageHistories written_histories_;  // in the last state that was written with fields
   std::vector<double> density_;        // per point, of a body in motion [kg/m3]
   std::vector<LineProbe> lines_;
-  /// By pre-cracks, and broken until the last accepted state: bonds that are told here.
+  /// Bonds cut by pre-cracks, or broken up to the last accepted state, that this rank reports.
   std::vector<BondEnds> separated_;
-  std::size_t cut_ = 0;                        // of these by pre-cracks
-  std::map<std::string, CrackGrowth> growth_;  // of the probes of resistance to cracks
+  std::size_t cut_ = 0;                        // number of these cut by pre-cracks
+  std::map<std::string, CrackGrowth> growth_;  // per probe of crack_resistance
   double relative_residual_ = 0.0;
   std::optional<StepRecord> last_;
   std::vector<DecisionRecord> decisions_;

@@ -30,12 +30,12 @@ namespace peristat {
 namespace {
 
 constexpr std::size_t master_growth = 1 << 18;  // bytes
-// A generous bound of what HDF5 needs for the groups of a step [byte].
+// Generous bound of what HDF5 needs for the groups of a step [byte].
 constexpr std::uint64_t room_for_step = 1 << 14;
 
 using Clock = std::chrono::steady_clock;
 
-/// Room for summary.json [byte]: its fixed members, and what it tells of a support or a probe.
+/// Room for summary.json [byte]: fixed members, and those of supports and probes.
 std::uint64_t room_for_summary(const std::vector<std::string>& sets,
                                const std::vector<ProbeColumns>& probes) {
   std::uint64_t room = 4096;
@@ -44,7 +44,7 @@ std::uint64_t room_for_summary(const std::vector<std::string>& sets,
   return room;
 }
 
-/// What results.xdmf shows of every point beside the fields of the steps.
+/// Constant fields of points in results.xdmf.
 std::vector<XdmfSeries::Field> constant_fields(const Points& points) {
   std::vector<XdmfSeries::Field> fields{{"volume", "/points/volume"}};
   for (const auto& [name, members] : points.sets) {
@@ -58,7 +58,7 @@ std::string version_of(const CaseText& text) {
   return version == text.versions.end() ? "" : version->second;
 }
 
-/// Of a run whose further tables are files of its own, too.
+/// Identity of a run, with the files of its lines.
 RunIdentity identity(const CaseText& text, const FurtherOutput& further) {
   RunIdentity run{version_of(text), text.title, text.file, {}};
   for (const LineTable& line : further.lines) run.files.push_back(file_of_line(line.name));
@@ -72,8 +72,8 @@ std::string name_in(const ResultsFolder& folder, const std::filesystem::path& fi
   return file.lexically_relative(folder.directory).generic_string();
 }
 
-/// Largest resident memory since the program was started: getrusage would also count what was
-/// there before it, of whoever started it.
+/// Largest resident memory since the program was started [byte]. getrusage would also count the
+/// memory of the process that started it.
 std::int64_t peak_memory_bytes() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;) {
@@ -94,7 +94,8 @@ void write_dossier(const RowSink& sink, const std::vector<double>& residual,
              {"m", "displacement of the state in which the last search ended"});
 }
 
-/// The parts of a results folder; the one that was opened last stays open, as one may hold many.
+/// Reads the parts of a results folder. The part that was opened last stays open, as it may hold
+/// many steps.
 class PartReader {
  public:
   explicit PartReader(const ResultsFolder& folder) : folder_(folder) {}
@@ -127,7 +128,7 @@ void copy_checkpoint(const std::filesystem::path& from, Hdf5File& file) {
       });
 }
 
-/// What results begin with: nothing but a folder, or those of an earlier run.
+/// Start of results: an empty folder, or the results of an earlier run.
 struct Beginning {
   ClaimedFolder folder;
   const EarlierResults* earlier = nullptr;
@@ -162,7 +163,7 @@ struct Results::Files {
   void publish_summary(const Summary& summary) const;
   void gather_parts();
 
-  /// On ranks the largest of what the others have had when the run ended.
+  /// Largest peak memory among all ranks when the run ended.
   std::int64_t peak_memory_of_others = 0;
 
   const RowGathering* gathering;
@@ -269,8 +270,8 @@ void Results::Files::describe(const CaseText& text) {
   if (shape.has_views()) master.make_group("/xdmf");
 }
 
-/// Takes up what an earlier run has left. Its checkpoint is written before the results that link to
-/// it, so that a kill between leaves the earlier run as it was.
+/// Takes over the results of an earlier run. The checkpoint is written before results.h5 is
+/// published, so that a kill in between leaves the earlier run as it was.
 void Results::Files::go_on(const EarlierResults& earlier, const Checkpoint& checkpoint,
                            StateNumbering* numbering) {
   master.append("/history", history_header, earlier.history);
@@ -355,7 +356,7 @@ void Results::Files::add(const StepRecord& record, const std::optional<StepField
   totals.add(record);  // accepted: results.h5 has it, whatever becomes of the tables
   history.append(row);
   convergence.accept(record.step);
-  // Its length grows with the steps, so that a run of quick steps would mostly write this file.
+  // The file grows with the steps, so that a run of quick steps would mostly write this file.
   if (Clock::now() - xdmf_time >= std::chrono::seconds(1)) publish_xdmf();
 }
 
@@ -427,7 +428,7 @@ void Results::Files::gather_parts() {
     }
     if (!checkpoint.empty()) copy_checkpoint(checkpoint, file);
     file.close();
-    if (safe_copy.is_due()) sync_file(gathered);  // the parts go
+    if (safe_copy.is_due()) sync_file(gathered);  // the parts are removed next
     rename_file(gathered, folder.results());
   } catch (const std::runtime_error& error) {
     std::error_code ignored;
@@ -439,7 +440,7 @@ void Results::Files::gather_parts() {
   remove_parts(folder);
 }
 
-/// What a rank has that writes nothing.
+/// State of a rank that only sends.
 struct Results::Sender {
   const RowGathering& gathering;
   StepShape shape;
@@ -451,7 +452,7 @@ struct Results::Sender {
     StepPart(shape, fields, &gathering).send();
     last_with_fields = record.step;
   }
-  /// In the place of rank 0, which waits for this one.
+  /// Writes the summary in the place of rank 0, which waits for this rank.
   void publish_summary(const Summary& summary) const {
     publish_reserved_file(ResultsFolder{directory}.summary(),
                           summary_json(summary, totals, peak_memory_bytes()));

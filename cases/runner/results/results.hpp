@@ -24,10 +24,10 @@ struct CaseText {
   std::string title{};
   std::map<std::string, std::string> versions{};  ///< "peristat", "hdf5", ... -> "1.0.0"
   std::filesystem::path file{};  ///< absolute; a later run of the same file may replace this one
-  Settings settings{};           ///< what `--set` has given
+  Settings settings{};           ///< values given by `--set`
 };
 
-/// What a run writes beside what every run does.
+/// Optional output of a run.
 struct FurtherOutput {
   bool has_stress = false;  ///< tensors are among the fields
   std::vector<LineTable> lines{};
@@ -42,20 +42,20 @@ struct FurtherOutput {
 /// complete new file over the old one. `close` gathers the parts into one self-contained
 /// results.h5. The destructor alone leaves what is published.
 ///
-/// Every number handed in is finite: anything else is a bug of the caller and throws
-/// std::logic_error that names it, before anything is written. What can't be written later (disk
-/// full, folder gone) throws OutputError, a std::runtime_error that names the file and the reason;
-/// what was published before stays readable.
+/// Every number handed in must be finite: anything else is a bug of the caller and throws
+/// std::logic_error that names it, before anything is written. If later data can't be written (disk
+/// full, folder gone), OutputError is thrown, a std::runtime_error that names the file and the
+/// reason; what was published before stays readable.
 ///
-/// Of a body that ranks have parts of, all make the same calls with what is theirs: rank 0 writes,
+/// For a distributed body all calls are collective, each rank with its own values: rank 0 writes,
 /// the others send (RowGathering). Records are the same on all ranks.
 class Results {
  public:
   /// Creates the folder and its files; an earlier run of the same case file is replaced, other
   /// files are left alone.
   /// @param points and counts of all points, or with `gathering` of those that the rank owns
-  /// @param gathering null: the body is whole
-  /// @param overwrite also an earlier run of another case is replaced
+  /// @param gathering null for a whole body
+  /// @param overwrite also replaces an earlier run of another case
   /// @throws InputError ("directory") if the folder can't be written or must be left
   ///         alone, see claim_results_folder; (key "probe") if a probe's name is the name of
   ///         another column
@@ -64,10 +64,10 @@ class Results {
           const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes,
           const std::vector<PointCounts>& counts = {}, bool overwrite = false,
           const FurtherOutput& further = {}, const RowGathering* gathering = nullptr);
-  /// Goes on with the results of an earlier run from its checkpoint. What it holds beyond that, and
-  /// what tells how it ended, is dropped.
-  /// @param earlier what it holds up to there; its files are named anew where they move
-  /// @param numbering null: the body is whole
+  /// Continues the results of an earlier run from its checkpoint. Later results, and files on how
+  /// it ended, are dropped.
+  /// @param earlier its results up to the checkpoint; names of files that move are updated
+  /// @param numbering null for a whole body
   /// @throws OutputError
   Results(EarlierRun& run, EarlierResults& earlier, const Points& points, const CaseText& text,
           const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes,
@@ -78,43 +78,44 @@ class Results {
 
   void add(const IterationRecord& record);
   void add(const DecisionRecord& record);
-  /// Bonds that the step added next has broken; of ranks those that are told here.
+  /// Adds the bonds that the step added next has broken; with several ranks, those that this rank
+  /// reports.
   void add(const std::vector<BrokenBondRecord>& records);
-  /// Rows of a line of the step added next.
+  /// Adds rows of a line for the step added next.
   void add_line(const std::string& name, const std::vector<Row>& rows);
   /// Adds an accepted step and publishes it, together with the iterations and decisions so far.
   /// `fields` is empty for steps that only enter the history. Step numbers ascend; the record holds
   /// a reaction of every support set and every probe.
   void add(const StepRecord& record, const std::optional<StepFields>& fields);
 
-  /// Publishes what a run can go on from, once it has added the path's last step; its rows are
-  /// counted here. Now and then it sees to it that all this has reached the disk, as seldom as that
-  /// takes a hundredth of the time.
-  /// @param numbering null: the body is whole
+  /// Publishes a checkpoint after the path's last step has been added; fills in its counts of rows.
+  /// Now and then makes sure that all files have reached the disk, so seldom that it takes a
+  /// hundredth of the time.
+  /// @param numbering null for a whole body
   void add_checkpoint(Checkpoint checkpoint, StateNumbering* numbering = nullptr);
 
   /// Publishes the fields of the step added last, unless they were added with it: for the end of a
   /// run whose last step was one that only enters the history.
   void add_fields(const StepRecord& record, const StepFields& fields);
 
-  /// Adds what is known of a search that failed: dossier.txt, and in results.h5 its residual [N]
-  /// and the displacement [m] of the state it ended in (points x dimension, on ranks of those that
-  /// are owned).
+  /// Adds the report on a search that failed: dossier.txt, and in results.h5 its residual [N] and
+  /// the displacement [m] of the state it ended in (points x dimension; with several ranks, owned
+  /// points).
   void add_dossier(const std::string& text, const std::vector<double>& residual,
                    const std::vector<double>& displacement);
 
   /// Writes summary.json (counts and energies are taken from the last step record, sums of
   /// iterations from all) and gathers the parts. Nothing can be added afterwards. If the parts
-  /// can't be gathered, summary.json tells it (status "failed") and everything stays readable where
+  /// can't be gathered, summary.json says so (status "failed") and everything stays readable where
   /// it is.
   /// @throws OutputError
   void close(Summary summary);
 
   /// Ends a run that failed: writes summary.json, if it can be, with status "failed" and the
-  /// reason, into room that was set aside at the start. What was published stays where it is.
+  /// reason, into room that was set aside at the start. Published files stay where they are.
   void fail(Summary summary, const std::string& reason) noexcept;
 
-  /// What a person finds of the run, in a sentence.
+  /// Sentence on what is left of the run.
   [[nodiscard]] std::string what_is_left() const;
 
   [[nodiscard]] double seconds_spent() const;  ///< wall time inside this class [s]
@@ -123,7 +124,7 @@ class Results {
   struct Files;
   struct Sender;
   std::unique_ptr<Files> files_;
-  std::unique_ptr<Sender> sender_;  ///< in the place of files, on ranks after the first one
+  std::unique_ptr<Sender> sender_;  ///< in the place of files_, on all ranks but 0
 };
 
 }  // namespace peristat

@@ -41,7 +41,7 @@ bool is_part(const fs::path& file) {
   return digits >= 6 && (rest == ".h5" || rest == ".h5.tmp");
 }
 
-/// Whether results.h5 has been written by this program: the one sign that version 1 left.
+/// True if results.h5 was written by this program: the only sign that version 1 left.
 bool has_own_results(const ResultsFolder& folder) {
   if (!fs::is_regular_file(fs::symlink_status(folder.results()))) return false;
   try {
@@ -57,7 +57,7 @@ bool holds_files(const fs::path& directory) {
       [](const auto& entry) { return entry.path().filename() != ResultsMarker::name; });
 }
 
-/// What an earlier run has left, by names.
+/// Names of what an earlier run has left.
 struct Leftovers {
   std::vector<std::string> files, pictures;
 };
@@ -101,7 +101,7 @@ Leftovers leftovers(const ResultsFolder& folder, const ResultsMarker* earlier,
   return {earlier->files(), listed_pictures(folder)};
 }
 
-/// Refuses what would lead out of the folder, or is not what its name says.
+/// Refuses links out of the folder, and entries of the wrong type.
 void require_plain(const ResultsFolder& folder, const Leftovers& old) {
   for (const fs::path& path : {folder.parts(), folder.plots()}) {
     if (fs::exists(fs::symlink_status(path)) && !is_real_folder(path)) {
@@ -182,7 +182,7 @@ bool is_name_of_results(const fs::path& file, const fs::path& folder) {
 void go_on_in_results_folder(const ResultsFolder& folder, ResultsMarker& marker, RunIdentity run) {
   run.files.insert(run.files.end(), own_files.begin(), own_files.end());
   marker.write(run);
-  std::error_code ignored;  // what can't be removed is written anew at the end
+  std::error_code ignored;  // files that can't be removed are overwritten at the end
   for (const fs::path& file : {folder.summary(), folder.dossier(), folder.convergence()}) {
     fs::remove(file, ignored);
   }

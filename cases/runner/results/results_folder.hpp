@@ -42,10 +42,10 @@ struct ResultsFolder {
   return "line_" + name + ".csv";
 }
 
-/// Whether a path is the folder or leads into it; both resolved.
+/// True if a path is the folder or leads into it; both resolved.
 [[nodiscard]] bool is_below(const std::filesystem::path& path, const std::filesystem::path& folder);
 
-/// Whether a run that writes the folder may put a file of its own in the place of this one; both
+/// True if a run that writes the folder may put a file of its own in the place of this one; both
 /// resolved.
 [[nodiscard]] bool is_name_of_results(const std::filesystem::path& file,
                                       const std::filesystem::path& folder);
@@ -57,11 +57,11 @@ struct ClaimedFolder {
 };
 
 /// Makes the folder ready for a new run: creates it, or removes the files of an earlier run of the
-/// same case from it, and creates parts/. The marker's list says what the earlier run's files are,
-/// plots/.pictures which pictures; nothing else is removed, and no link is followed below the
-/// folder.
-/// @param run   its list of files holds those of its own, and is completed
-/// @param overwrite also an earlier run of another case, or of version 1, which left no marker
+/// same case from it, and creates parts/. The marker lists the files of the earlier run,
+/// plots/.pictures its pictures; nothing else is removed, and no link is followed below the folder.
+/// @param run   its list of files holds additional ones, and is completed
+/// @param overwrite also removes an earlier run of another case, or of version 1, which left no
+///        marker
 /// @throws InputError ("directory") before anything is changed: the folder can't be
 ///         written, holds files but no earlier run (it may be somebody's home folder), an earlier
 ///         run of another case, or links in place of our folders, or another run is writing it
@@ -69,8 +69,8 @@ struct ClaimedFolder {
 [[nodiscard]] ClaimedFolder claim_results_folder(const std::filesystem::path& directory,
                                                  RunIdentity run, bool overwrite);
 
-/// Makes the folder of an earlier run ready for a run that goes on from it: its tables, fields and
-/// pictures stay; what tells how it ended is removed.
+/// Prepares the folder of an earlier run for resuming: its tables, fields and pictures stay; files
+/// on how it ended are removed.
 /// @param marker of the folder
 /// @throws OutputError
 void go_on_in_results_folder(const ResultsFolder& folder, ResultsMarker& marker, RunIdentity run);

@@ -99,7 +99,7 @@ std::optional<ResultsMarker> ResultsMarker::find(const fs::path& folder) {
     throw RefusedFolder("another run is writing it" +
                         (process.empty() ? "" : " (process " + process + ")") +
                         "; wait for its end or name another folder");
-  }  // A file system without locks can't tell; then nothing speaks against this run.
+  }  // Without locks in the file system, another run can't be detected.
   marker.text_ = read_all(marker.descriptor_, file);
   if (!marker.is_blank() && !marker.text_.starts_with(first_lines)) throw foreign();
   return marker;

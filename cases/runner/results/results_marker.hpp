@@ -8,13 +8,13 @@
 
 namespace peristat {
 
-/// A results folder that a run must leave alone; says why and what to do.
+/// Thrown for a results folder that a run must leave alone; the message says why and what to do.
 class RefusedFolder : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What a run tells about itself in its folder.
+/// Identity of a run, as written in its folder.
 struct RunIdentity {
   std::string program;              ///< version
   std::string title;                ///< of the case
@@ -41,16 +41,16 @@ class ResultsMarker {
   ResultsMarker& operator=(ResultsMarker&&) = delete;
   ~ResultsMarker();
 
-  /// Whether it tells nothing: its run was killed before it had touched anything.
+  /// True if it is empty: its run was killed before it had touched anything.
   [[nodiscard]] bool is_blank() const { return text_.empty(); }
-  /// Whether the earlier run is one of this case file.
+  /// True if the earlier run is one of this case file.
   [[nodiscard]] bool is_of(const std::filesystem::path& case_file) const;
   /// Case file of the earlier run, for a person.
   [[nodiscard]] std::string case_file() const;
   /// Names of the earlier run's files; never a path that leads elsewhere.
   [[nodiscard]] std::vector<std::string> files() const;
 
-  /// Tells the run that owns the folder from now on.
+  /// Writes the run that owns the folder from now on.
   /// @throws OutputError
   void write(const RunIdentity& run);
 

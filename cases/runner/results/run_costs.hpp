@@ -4,7 +4,7 @@
 
 namespace peristat {
 
-/// What a run has cost, in all its sessions.
+/// Costs of a run, in all its sessions.
 struct RunCosts {
   std::int64_t factorisations = 0, linear_iterations = 0;
   /// Wall times [s].

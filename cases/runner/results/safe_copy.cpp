@@ -21,7 +21,7 @@ void link_as(const fs::path& file, const fs::path& name) {
   rename_file(temporary(name), name);
 }
 
-/// In place of what carries the name, which may be a link.
+/// Copies a file in the place of any entry of that name, which may be a link.
 void put_copy(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::remove(to, error);

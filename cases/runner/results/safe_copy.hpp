@@ -10,16 +10,16 @@
 
 namespace peristat {
 
-/// The state of a run that survives a loss of power: what is written reaches the disk when the
-/// system likes, and the newest files may be lost or empty. Now and then all files are written
-/// through, and results.h5 and the checkpoint get second names that no later step replaces.
+/// Copy of a run's state that survives a loss of power. The system delays writing to the disk, so
+/// that the newest files may be lost or empty. Now and then all files are synchronised with the
+/// disk, and results.h5 and the checkpoint get second names that no later step replaces.
 class SafeCopy {
  public:
   explicit SafeCopy(const ResultsFolder& folder) : folder_(folder) {}
 
-  /// Whether writing through takes a hundredth of the time since the start, at most.
+  /// True if synchronising takes at most a hundredth of the time since the start.
   [[nodiscard]] bool is_due() const;
-  /// Writes through. The folder is as a run can go on from it.
+  /// Synchronises all files with the disk. A run must be able to resume from the folder as it is.
   /// @param points file that holds the points, in the folder
   /// @param steps written so far
   /// @param checkpoint file that was written last
@@ -33,7 +33,7 @@ class SafeCopy {
   const ResultsFolder& folder_;
   Clock::time_point start_ = Clock::now();
   double seconds_spent_ = 0.0;
-  double seconds_expected_ = 0.02;  ///< of the next time; first that of a slow disk
+  double seconds_expected_ = 0.02;  ///< of the next time; at first that of a slow disk
   std::size_t safe_steps_ = 0;
 };
 

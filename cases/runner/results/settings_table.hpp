@@ -5,7 +5,7 @@
 
 namespace peristat {
 
-/// Writes what `--set` has given as the table /case/settings.
+/// Writes the values given by `--set` as the table /case/settings.
 void write_settings(Hdf5File& file, const Settings& settings);
 
 [[nodiscard]] Settings read_settings(const Hdf5File& file);

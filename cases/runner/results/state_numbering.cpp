@@ -80,7 +80,7 @@ std::optional<std::size_t> StateNumbering::size_here(Rows rows, std::int64_t who
   if (rows == Rows::free_dofs) number_free_dofs();
   const Extent of = extent(rows);
   const std::int64_t beyond = whole - of.whole * of.width;
-  // One rank has values of images, too, which parts of a body don't tell.
+  // A checkpoint of one rank also has values of images, which parts of a body do not report.
   const auto handles = std::int64_t(prescribed_.size()) - of.here * of.width;
   constexpr std::int64_t most_beyond = 1 << 16;
   const bool is_known =

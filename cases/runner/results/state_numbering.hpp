@@ -12,57 +12,59 @@
 
 namespace peristat {
 
-/// Where the values of a path's state stand in the arrays of the whole body, for a part of it.
-/// Points and their degrees of freedom are in the order of their numbers in the whole body, bonds
-/// in that of their lower and then of their upper point, as on one rank; each value is told by one
-/// rank. All calls are ones that all ranks make.
+/// Maps the values of a path's state on this rank to the arrays of the whole body. Points and their
+/// degrees of freedom are in the order of their numbers in the whole body, bonds in that of their
+/// lower and then of their upper point, as on one rank. Each value is reported by one rank. All
+/// calls are collective.
 class StateNumbering {
  public:
-  /// What arrays are of outlives it.
+  /// All arguments must outlive this object.
   StateNumbering(const RecordedPoints& points, const RowGathering& gathering, const Model& model,
                  const std::vector<char>& prescribed);
 
   [[nodiscard]] const RowGathering& gathering() const { return gathering_; }
 
-  /// Of an array of the whole body, or of its part here.
+  /// Size of an array of the whole body, from that of its part here.
   [[nodiscard]] std::int64_t whole_size(Rows rows, std::size_t here);
-  /// Nothing if no array of the body has the size.
+  /// Size of the part here of an array; nothing if no array of the body has the size.
   [[nodiscard]] std::optional<std::size_t> size_here(Rows rows, std::int64_t whole);
 
-  /// A value that is told here.
+  /// Positions of a value that this rank reports.
   struct Place {
     std::int64_t whole;
     std::size_t here;
   };
-  /// Ascending; of arrays of a size that one of the above has told.
+  /// Positions of all values that this rank reports, ascending. The size must come from one of the
+  /// functions above.
   [[nodiscard]] std::vector<Place> places(Rows rows, std::size_t size_here) const;
 
-  /// Gives what others tell to those that have it, too: ghosts, and bonds between parts.
+  /// Sends values to other ranks that have them: ghosts, and bonds between parts.
   void give_to_others(Rows rows, std::vector<double>& values) const;
 
-  /// Numbers of the points that ranks list, ascending, and of such numbers the owned points.
+  /// Numbers of the points that all ranks list, ascending; and the owned points of such numbers.
   [[nodiscard]] std::vector<Index> numbers_of_all(const std::vector<Index>& points) const;
   [[nodiscard]] std::vector<Index> points_here(const std::vector<Index>& numbers) const;
 
-  /// What is solved for besides what is prescribed: Rows::free_dofs are of these.
+  /// Sets the pins: Rows::free_dofs are neither prescribed nor pinned.
   void pin(const FragmentPins& pins);
 
  private:
-  /// How many rows the whole body has, and this part, and values of a row. What an array has beyond
-  /// them is the same on all ranks, or means nothing; rank 0 has the free handles.
+  /// Number of rows of the whole body and of this part, and of values per row. Further values of an
+  /// array are the same on all ranks, or without meaning; rank 0 has the free generalised degrees
+  /// of freedom (handles).
   struct Extent {
     std::int64_t whole = 0, here = 0, width = 1;
   };
   [[nodiscard]] Extent extent(Rows rows) const;
-  /// Histories are of points or of bonds.
+  /// Replaces Rows::histories by points or bonds.
   [[nodiscard]] Rows named(Rows rows) const {
     return rows == Rows::histories ? rows_of_histories_ : rows;
   }
-  /// Finds the numbers of free degrees of freedom, once for these pins.
+  /// Numbers the free degrees of freedom, once for these pins.
   void number_free_dofs();
   void visit_rows(Rows rows, const std::function<void(std::int64_t, std::size_t)>& visit) const;
   void visit_bonds(const std::function<void(std::int64_t, std::size_t)>& visit) const;
-  /// The bonds of an owned point that are told here, ascending by their other points.
+  /// Bonds of an owned point that this rank reports, ascending by their other points.
   [[nodiscard]] std::vector<Offset> told_bonds(Index point) const;
   void give_to_ghosts(std::vector<double>& values, std::size_t width) const;
   void give_to_images(std::vector<double>& values) const;

@@ -8,8 +8,8 @@
 namespace peristat {
 namespace {
 
-/// How many numbers a point has of a field: one, one per axis, one per pair of axes, or the latter
-/// without those that symmetry repeats.
+/// Number of values per point of a field: one, one per axis, one per pair of axes, or one per
+/// symmetric pair.
 enum class Rank { scalar, vector, tensor, symmetric };
 
 /// A field that a step may have.
@@ -27,7 +27,7 @@ struct FieldKind {
     if (rank == Rank::symmetric) return {points, d * (d + 1) / 2};
     return {points};
   }
-  /// Whether results.xdmf needs a view of it.
+  /// True if results.xdmf needs a view of it.
   [[nodiscard]] bool has_view(StepShape of) const {
     return rank == Rank::tensor || (rank == Rank::vector && of.dimension < 3);
   }
@@ -121,9 +121,9 @@ void check(const FieldKind& kind, const std::vector<double>& values, StepShape s
   }
 }
 
-/// The histories of bonds that have changed, in the group `path`.
-/// @param count of all ranks
-/// @param has_images whether one of them has any of a body with images
+/// Writes the histories of bonds that have changed, in the group `path`.
+/// @param count of changed bonds on all ranks
+/// @param has_images true if any rank has values of `second_image`
 void write_histories(const RowSink& sink, const std::string& path, const BondHistories& changed,
                      std::uint64_t count, bool has_images) {
   const auto write = [&](const std::string& name, const auto& values, const DatasetLabel& label) {
@@ -234,7 +234,7 @@ std::vector<XdmfSeries::Field> shown_fields(const WrittenStep& step, StepShape s
   std::vector<XdmfSeries::Field> shown;
   for (const std::string& name : step.fields) {
     const FieldKind& kind = kind_of(name);
-    if (kind.rank == Rank::symmetric) continue;  // shown as the tensor that it is of
+    if (kind.rank == Rank::symmetric) continue;  // shown by its tensor
     const std::string group = kind.has_view(shape) ? "/xdmf/" : "/steps/";
     shown.push_back({name, group + step.name() + "/" + name, kind.rank == Rank::vector, false,
                      kind.rank == Rank::tensor});

@@ -11,13 +11,13 @@
 
 namespace peristat {
 
-/// How the fields of all steps are shaped.
+/// Shape of the fields of all steps.
 struct StepShape {
   Index points = 0;
   int dimension = 0;
   bool has_tensors = false;
 
-  /// Whether vectors need views of three components (see XdmfSeries), or tensors of nine.
+  /// True if vectors need views of three components (see XdmfSeries), or tensors of nine.
   [[nodiscard]] bool has_views() const { return dimension < 3 || has_tensors; }
 };
 
@@ -38,16 +38,15 @@ struct WrittenStep {
 class StepPart {
  public:
   /// @param fields outlive it
-  /// @param gathering null: the fields are of all points; otherwise of those that this rank owns,
-  /// and
-  ///        while rank 0 writes all others send; a call that all ranks make
+  /// @param gathering null: fields of all points; otherwise of those that this rank owns: rank 0
+  ///        writes while all others send. Collective
   /// @throws std::logic_error that names a field of the wrong size, or with values that are not
   ///         finite
   StepPart(StepShape shape, const StepFields& fields, const RowGathering* gathering = nullptr);
 
   [[nodiscard]] bool is_empty() const { return names_.empty(); }
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
-  /// Of the values that are written.
+  /// Number of bytes of the values that are written.
   [[nodiscard]] std::uint64_t bytes() const;
   /// Writes the groups `step.group` and, where there are views, `step.views`.
   void write(Hdf5File& file, const WrittenStep& step) const;
@@ -60,8 +59,8 @@ class StepPart {
   const StepFields& fields_;
   const RowGathering* gathering_;
   std::vector<std::string> names_;
-  std::uint64_t changed_bonds_ = 0;  // whose histories are told, of all ranks
-  bool have_images_ = false;         // whether they tell of images
+  std::uint64_t changed_bonds_ = 0;  // whose histories are written, on all ranks
+  bool have_images_ = false;         // any rank has values of `second_image`
 };
 
 /// Names of the fields that a step's group holds.
@@ -71,7 +70,7 @@ class StepPart {
 void write_views(Hdf5File& file, const std::string& views, const std::string& group,
                  const std::vector<std::string>& fields, StepShape shape);
 
-/// What results.xdmf shows of a step.
+/// Fields of a step in results.xdmf.
 [[nodiscard]] std::vector<XdmfSeries::Field> shown_fields(const WrittenStep& step, StepShape shape);
 
 }  // namespace peristat

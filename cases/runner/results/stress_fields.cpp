@@ -16,7 +16,7 @@ std::vector<std::array<std::size_t, 2>> upper_half(std::size_t dimension) {
   return {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
 }
 
-/// Of the tensors' symmetric parts.
+/// Upper halves of the tensors' symmetric parts.
 std::vector<double> symmetric(const std::vector<double>& tensors, std::size_t d) {
   const auto entries = upper_half(d);
   std::vector<double> halves;
@@ -29,8 +29,8 @@ std::vector<double> symmetric(const std::vector<double>& tensors, std::size_t d)
   return halves;
 }
 
-/// Stress across a plane body over the sum of those in it. Model "cpd" is purely two-dimensional:
-/// nothing is across it.
+/// Ratio of the stress across a plane body to the sum of the in-plane normal stresses. Model "cpd"
+/// is purely two-dimensional: 0.
 std::vector<double> out_of_plane(const Body& body) {
   const MaterialModel model = body.specification.material.model;
   const bool is_plane_strain = model != MaterialModel::cpd && body.points.dimension == 2 &&

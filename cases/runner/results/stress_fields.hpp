@@ -9,12 +9,12 @@
 
 namespace peristat {
 
-/// Strain and stress of a state as results tell them, of the points that stand for
-/// themselves, and of a part of a body of those that are owned.
+/// Strain and stress of a state for the results, at the body's own points; in a part of a body at
+/// owned points.
 struct StressFields {
   Stress found;
-  std::vector<double> strain, stress;  ///< without what symmetry repeats: xx, yy, zz, xy, yz, xz
-  /// Share of a neighbourhood inside the lattice that a point lacks; 1 where its bonds give no F.
+  std::vector<double> strain, stress;  ///< upper halves: xx, yy, zz, xy, yz, xz
+  /// Share of an interior point's neighbourhood that a point lacks; 1 where its bonds give no F.
   std::vector<double> missing_neighbourhood;
 
   void show_in(StepFields& fields) const;

@@ -9,7 +9,7 @@
 
 namespace peristat {
 
-/// What summary.json needs of the accepted steps.
+/// Totals of the accepted steps for summary.json.
 struct StepTotals {
   int steps = 0;
   std::int64_t newton_iterations = 0, relaxation_iterations = 0;

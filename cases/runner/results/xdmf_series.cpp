@@ -15,7 +15,7 @@ constexpr const char* double_type = "NumberType=\"Float\" Precision=\"8\"";
 
 constexpr const char* flag_type = "NumberType=\"UChar\" Precision=\"1\"";
 
-/// A text as XML wants it.
+/// Escapes a text for XML.
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -46,7 +46,8 @@ std::string XdmfSeries::attribute(const Field& field) const {
 
 void XdmfSeries::add(int step, double load_factor, const std::string& mode,
                      const std::vector<Field>& fields) {
-  // Readers of both generations (XDMF 2 and 3) keep to explicit connectivity and three components.
+  // Readers of both generations (XDMF 2 and 3) understand explicit connectivity and three
+  // components.
   grids_ += "<Grid Name=\"body\" GridType=\"Uniform\">\n<Time Value=\"" + std::to_string(step) +
             "\"/>\n<Information Name=\"load_factor\" Value=\"" + number_text(load_factor) +
             "\"/>\n<Information Name=\"mode\" Value=\"" + mode +
