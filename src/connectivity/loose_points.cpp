@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -132,6 +133,8 @@ struct LooseWeb {
   std::vector<double> number;  // in the whole body
   std::vector<double> positions;
   std::vector<Support> support;
+  std::vector<FreeHandle>
+      slides;  // their degrees of freedom are numbered after those of the points
   Bonds bonds;
 
   [[nodiscard]] Index row_of(double of_body) const {
@@ -139,7 +142,19 @@ struct LooseWeb {
   }
 };
 
+/// Slides of the loose points that this rank owns.
+std::vector<FreeHandle> own_slides(const std::vector<Index>& loose,
+                                   const std::vector<FreeHandle>& handles) {
+  std::vector<FreeHandle> found;
+  for (const FreeHandle& handle : handles) {
+    const bool is_own = std::binary_search(loose.begin(), loose.end(), handle.moved_by.member);
+    if (handle.is_slide && is_own) found.push_back(handle);
+  }
+  return found;
+}
+
 LooseWeb gather_loose_points(const Web& web, const std::vector<Index>& loose,
+                             const std::vector<FreeHandle>& own_slides,
                              const std::vector<Support>& support, const Sharing& sharing) {
   constexpr std::size_t width = 13;  // number, place, support
   const std::vector<double> number = whole_numbers(sharing, support.size(), web.dimension());
@@ -156,8 +171,14 @@ LooseWeb gather_loose_points(const Web& web, const std::vector<Index>& loose,
       ends.push_back(number[std::size_t(j)]);
     });
   }
+  std::vector<double> slides;  // number of the point, direction
+  for (const FreeHandle& slide : own_slides) {
+    slides.push_back(number[std::size_t(slide.moved_by.member)]);
+    slides.insert(slides.end(), slide.moved_by.along.begin(), slide.moved_by.along.end());
+  }
   points = all_together(sharing.ranks(), points);
   ends = all_together(sharing.ranks(), ends);
+  slides = all_together(sharing.ranks(), slides);
   std::vector<const double*> rows;
   for (std::size_t k = 0; k < points.size(); k += width) rows.push_back(&points[k]);
   std::sort(rows.begin(), rows.end(), [](const double* a, const double* b) { return *a < *b; });
@@ -168,6 +189,10 @@ LooseWeb gather_loose_points(const Web& web, const std::vector<Index>& loose,
     Support of_point;
     std::copy_n(row + 4, 9, of_point[0].data());
     found.support.push_back(of_point);
+  }
+  for (std::size_t k = 0; k < slides.size(); k += 4) {
+    const HeldMotion along{found.row_of(slides[k]), {slides[k + 1], slides[k + 2], slides[k + 3]}};
+    found.slides.push_back({found.positions.size() + k / 4, along, true});
   }
   std::set<BondEnds> bonds;
   for (std::size_t k = 0; k < ends.size(); k += 2) {
@@ -250,19 +275,29 @@ void pin_loose_points(const Web& web, const std::vector<Index>& loose,
                       const std::vector<FreeHandle>& handles, std::vector<Support> support,
                       const Sharing* sharing, std::vector<char>& pinned) {
   if (sharing == nullptr) return pin_all(web, loose, handles, std::move(support), pinned);
-  const LooseWeb all = gather_loose_points(web, loose, support, *sharing);
+  const std::vector<FreeHandle> mine = own_slides(loose, handles);
+  const LooseWeb all = gather_loose_points(web, loose, mine, support, *sharing);
   if (all.number.empty()) return;
   const auto d = std::size_t(web.dimension());
   Web among(all.bonds, {}, web.dimension(), all.positions);
   among.find_lower_partners();
   std::vector<Index> rows(all.number.size());
   std::iota(rows.begin(), rows.end(), Index(0));
-  std::vector<char> pins(all.positions.size(), 0);
-  pin_all(among, rows, {}, all.support, pins);
+  std::vector<char> pins(all.positions.size() + all.slides.size(), 0);
+  pin_all(among, rows, all.slides, all.support, pins);
   for (const Index i : loose) {
     const auto row = std::size_t(all.row_of(double(sharing->number()[std::size_t(i)])));
     std::copy_n(pins.begin() + std::ptrdiff_t(row * d), d,
                 pinned.begin() + std::ptrdiff_t(std::size_t(i) * d));
+  }
+  // The slides of a point, which are all of one rank, keep their order.
+  std::map<Index, std::size_t> first;  // per row, to be looked at
+  for (const FreeHandle& slide : mine) {
+    const Index row = all.row_of(double(sharing->number()[std::size_t(slide.moved_by.member)]));
+    std::size_t k = first[row];
+    while (all.slides[k].moved_by.member != row) ++k;
+    pinned[slide.dof] = pins[all.slides[k].dof];
+    first[row] = k + 1;
   }
 }
 

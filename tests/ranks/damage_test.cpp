@@ -1,10 +1,12 @@
 #include "assembly/terms/damage.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -170,8 +172,25 @@ double chance(const Ends& ends, std::uint64_t seed) {
   return double((bits ^ (bits >> 31)) >> 11) * 0x1p-53;
 }
 
-void expect_same_fragments(const Both& both, const Broken& broken,
-                           const std::vector<char>& prescribed, const std::vector<double>& u) {
+/// Each of these points slides along a direction of its own. Its degree of freedom stands behind
+/// those of the points, in the order given.
+std::vector<FreeHandle> slides_of(const std::vector<GlobalIndex>& numbers, std::size_t dofs,
+                                  const std::vector<GlobalIndex>& among) {
+  std::vector<FreeHandle> slides;
+  for (const GlobalIndex number : among) {
+    const auto place = std::find(numbers.begin(), numbers.end(), number);
+    if (place == numbers.end()) continue;
+    const double angle = 0.3 + 0.1 * double(number);
+    const HeldMotion motion{Index(place - numbers.begin()), {std::cos(angle), std::sin(angle), 0}};
+    slides.push_back({dofs + slides.size(), motion, true});
+  }
+  return slides;
+}
+
+/// @param sliding numbers of points on rollers
+void expect_same_fragments(const Both& both, const Broken& broken, std::vector<char> prescribed,
+                           const std::vector<double>& u,
+                           const std::vector<GlobalIndex>& sliding = {}) {
   const auto d = std::size_t(both.whole.dimension);
   std::vector<char> prescribed_here;
   for (const GlobalIndex number : both.part.number) {
@@ -179,12 +198,27 @@ void expect_same_fragments(const Both& both, const Broken& broken,
       prescribed_here.push_back(prescribed[std::size_t(number) * d + c]);
     }
   }
-  const Fragments expected = find_fragments(both.whole, both.of_whole.bonds(), broken.of_whole,
-                                            prescribed, u, {prescribed});
+  Holding holding{prescribed}, holding_here{prescribed_here};
+  std::vector<GlobalIndex> all(both.whole.volume.size());
+  std::iota(all.begin(), all.end(), GlobalIndex(0));
+  holding.handles = slides_of(all, prescribed.size(), sliding);
+  holding_here.handles = slides_of(both.part.number, prescribed_here.size(), sliding);
+  prescribed.resize(prescribed.size() + holding.handles.size());
+  prescribed_here.resize(prescribed_here.size() + holding_here.handles.size());
+  const Fragments expected =
+      find_fragments(both.whole, both.of_whole.bonds(), broken.of_whole, prescribed, u, holding);
   const Fragments found =
       find_fragments(both.part.points, both.of_part.bonds(), broken.of_part, prescribed_here,
-                     both.of_points_here(u), {prescribed_here}, both.sharing.get());
+                     both.of_points_here(u), holding_here, both.sharing.get());
   EXPECT_EQ(found.count, expected.count);
+  for (const FreeHandle& slide : holding_here.handles) {
+    if (slide.moved_by.member >= both.part.owned) continue;
+    const GlobalIndex number = both.part.number[std::size_t(slide.moved_by.member)];
+    for (const FreeHandle& there : holding.handles) {
+      if (there.moved_by.member != Index(number)) continue;
+      EXPECT_EQ(int(found.pinned[slide.dof]), int(expected.pinned[there.dof])) << number;
+    }
+  }
   std::vector<Index> loose;
   for (Index i = 0; i < both.part.owned; ++i) {
     const auto there = std::size_t(both.part.number[std::size_t(i)]);
@@ -225,6 +259,10 @@ TEST(FragmentsOnRanks, are_those_of_one_rank) {
         return char((a < at) != (b < at));
       };
     };
+    std::vector<GlobalIndex> upper_points;
+    for (std::size_t i = 0; i < both.whole.volume.size(); ++i) {
+      if (held[i * d] == 0) upper_points.push_back(GlobalIndex(i));
+    }
     const auto unbroken = [](const Points&, Index, Index, const Ends&) { return char(0); };
     {
       SCOPED_TRACE(body.name + ", whole and held");
@@ -246,6 +284,7 @@ TEST(FragmentsOnRanks, are_those_of_one_rank) {
       expect_same_fragments(both, Broken(both, at_random), held, u);
       expect_same_fragments(both, Broken(both, at_random), held,
                             std::vector<double>(u.size(), 0.0));
+      if (d == 2) expect_same_fragments(both, Broken(both, at_random), held, u, upper_points);
     }
   }
 }
