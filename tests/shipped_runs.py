@@ -10,7 +10,7 @@ import pathlib
 import shutil
 import typing
 
-from tests.reference.program import PROGRAM, ROOT, peristat
+from tests.reference.program import PROGRAM, ROOT, peristat, settings
 
 RUNS = pathlib.Path(PROGRAM).parent / "shipped_runs"
 
@@ -46,7 +46,7 @@ def shipped_run(case, *changes, threads=1, seconds=900):
     build = _build()
     _remove_runs_of_other_builds(build)
     path = ROOT / "cases" / f"{case}.toml"
-    words = [word for change in changes for word in ("--set", change)]
+    words = settings(*changes)
     key = hashlib.sha256("\0".join([path.read_text(), *words, str(threads)]).encode()).hexdigest()[:16]
     folder = RUNS / f"{path.stem}_{key}"
     with open(RUNS / f".{folder.name}.lock", "w") as lock:

@@ -2,7 +2,8 @@
 
 import numpy
 
-from tests.acceptance.motions import BAR, SQUARE, Folder, columns, fields, peristat
+from tests.acceptance.folder import Folder
+from tests.acceptance.motions import BAR, SQUARE, columns, fields
 from tests.reference.motion import Motion
 
 # A pulse that travels to the right at sqrt(4 / 2) m/s, over a layer from x = 6 m to the end.
@@ -17,11 +18,11 @@ def layer(rate, where="x > 6"):
 
 class Absorbed(Folder):
     def test_a_layer_swallows_a_pulse_that_an_end_sends_back(self):
-        open_end = columns(self.run_case(PULSE, "open"))
+        open_end = columns(self.run_case(PULSE, name="open"))
         rate = 3 * 2**0.5 / 3 * numpy.log(1e2)  # of docs/theory.md, for a reflection of 1e-2
         for name, scheme in (("explicit", "time_step = 0.02"), ("implicit", 'scheme = "newmark"\ntime_step = 0.02')):
             text = PULSE.replace("time_step = 0.02", scheme) + layer(f"{rate}*((x - 6)/3)^2")
-            rows = columns(self.run_case(text, name))
+            rows = columns(self.run_case(text, name=name))
             left = (rows["kinetic_energy"] + rows["stored_energy"])[-1] / rows["external_work"][0]
             self.assertLess(left, 0.01)  # the pulse is dispersed: some of it travels left at first
             self.assertGreater((open_end["kinetic_energy"] + open_end["stored_energy"])[-1], 0.99 * open_end["external_work"][0])
@@ -30,7 +31,7 @@ class Absorbed(Folder):
     def test_energies_balance_to_the_schemes_order(self):
         errors = []
         for step in (0.04, 0.02, 0.01):
-            rows = columns(self.run_case(PULSE.replace("time_step = 0.02", f"time_step = {step}") + layer("5"), f"step_{step}"))
+            rows = columns(self.run_case(PULSE.replace("time_step = 0.02", f"time_step = {step}") + layer("5")))
             errors.append(abs(rows["balance_error"]).max())
             missing = rows["modified_energy"] + rows["drained_energy"]
             self.assertLess(abs(missing - missing[0]).max(), 1e-11 * missing[0] if step == 0 else 0.02 * missing[0])
@@ -52,7 +53,7 @@ class Absorbed(Folder):
     def test_a_free_body_slows_down_exactly(self):
         text = BAR.replace('"1e-3*exp(-(x - 1.4)^2/0.09)"', "0").replace('"1e-3*sin(x)"', "0.5") + '[[absorbing]]\nrate = "0.7"\n'
         for name, scheme in (("explicit", "time_step = 0.02"), ("implicit", 'scheme = "newmark"\ntime_step = 0.5')):
-            at = fields(self.run_case(text.replace("time_step = 0.02", scheme), name))
+            at = fields(self.run_case(text.replace("time_step = 0.02", scheme), name=name))
             for state in at.values():
                 numpy.testing.assert_allclose(state["velocity"], 0.5 * numpy.exp(-0.7 * state["time"]), rtol=1e-9)
 
@@ -62,7 +63,7 @@ class Absorbed(Folder):
         for scheme in ("time_step = 0.02", 'scheme = "newmark"\ntime_step = 0.02'):
             for rate in (10.0, 1e3, 1e4):
                 case = text.replace("time_step = 0.02", scheme) + f"[[absorbing]]\nrate = {rate}\n"
-                folder = self.run_case(case, f"rate_{rate}_{len(scheme)}")
+                folder = self.run_case(case, name=f"rate_{rate}_{len(scheme)}")
                 for state in fields(folder).values():
                     t = state["time"]
                     lost = -numpy.expm1(-rate * t)
@@ -73,11 +74,12 @@ class Absorbed(Folder):
 
     def test_layers_add_up_and_goes_on_to_the_last_bit(self):
         text = SQUARE.replace("step_share = 0.5", "step_share = 0.2") + '[[absorbing]]\nrate = "1"\n' + layer("x^2", "x > 0")
-        whole, part = self.run_case(text, "whole"), self.run_case(text, "part", "--stop-after", 2, code=130)
-        ended = peristat("resume", part, "--threads", 1, "--quiet")
-        self.assertEqual(ended.returncode, 0, ended.stderr)
+        whole = self.run_case(text, name="whole")
+        part = self.run_case(text, name="part", words=("--stop-after", 2), code=130)
+        self.resume(part)
         self.assertEqual((whole / "history.csv").read_text(), (part / "history.csv").read_text())
-        one = columns(self.run_case(SQUARE.replace("step_share = 0.5", "step_share = 0.2") + '[[absorbing]]\nrate = "1 + x^2*(x > 0)"\n', "one"))
+        text = SQUARE.replace("step_share = 0.5", "step_share = 0.2") + '[[absorbing]]\nrate = "1 + x^2*(x > 0)"\n'
+        one = columns(self.run_case(text))
         numpy.testing.assert_allclose(columns(whole)["kinetic_energy"], one["kinetic_energy"], rtol=1e-12)
 
 

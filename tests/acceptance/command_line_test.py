@@ -1,24 +1,19 @@
 """The program as a person meets it: exit codes, messages, and what is on disk after each ending."""
 
-import csv
 import json
-import os
-import pathlib
 import random
-import resource
 import signal
-import subprocess
-import tempfile
 import time
 import unittest
 
 import h5py
 import numpy
 
+from tests.acceptance.folder import Folder
 from tests.acceptance.strip import PULLED
+from tests.reference.program import PROGRAM, ROOT, limited_by_shell
+from tests.reference.results import table
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = os.environ["PERISTAT_PROGRAM"]
 # Cases in whose deformation one of many bonds is so close to the kink of its law that steps are too short for an order.
 CLOSE_TO_KINKS = {"crack_branching", "kalthoff_winkler", "toughness"}
 
@@ -49,38 +44,16 @@ set = "right"
 """
 
 
-class CommandLine(unittest.TestCase):
+class CommandLine(Folder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_acceptance_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-        self.case = self.write("strip.toml", STRIP)
+        super().setUp()
+        self.strip = self.write("strip.toml", STRIP)
 
-    def write(self, name, text):
-        path = self.folder / name
-        path.write_text(text)
-        return path
+    def long_run(self):
+        return self.start([PROGRAM, "run", self.strip, "--output", "out", "--set", "loading.steps=100000"])
 
-    def peristat(self, *arguments, **options):
-        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True, timeout=120,
-                              stdin=subprocess.DEVNULL, capture_output=True, **options)  # fmt: skip
-
-    def start(self, *arguments):
-        process = subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, text=True,
-                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE)  # fmt: skip
-        self.addCleanup(process.communicate)
-        self.addCleanup(process.kill)
-        return process
-
-    def assert_refused(self, run, *fragments):
-        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
-        for fragment in fragments:
-            self.assertIn(fragment, run.stderr)
-
-    def history(self, folder):
-        with open(self.folder / folder / "history.csv", newline="") as file:
-            return [row for row in csv.DictReader(file) if row["step"] != "0"]
+    def history(self):
+        return [row for row in table(self.folder / "out/history.csv") if row["step"] > 0]
 
     # ---- bad input --------------------------------------------------------------------------------
 
@@ -118,25 +91,25 @@ class CommandLine(unittest.TestCase):
     def test_a_missing_file_and_wrong_options_are_refused(self):
         self.assert_refused(self.peristat("run", "missing.toml"), "missing.toml")
         self.assert_refused(self.peristat("run", self.folder), str(self.folder))
-        self.assert_refused(self.peristat("run", self.case, "--set", "loading.steps"), "key=value")
-        self.assert_refused(self.peristat("run", self.case, "--set", "loading.stepps=3"), "--set loading.stepps=3", "steps")
-        self.assertEqual(self.peristat("run").returncode, 2)
-        self.assertEqual(self.peristat("rum", self.case).returncode, 2)
-        self.assertEqual(self.peristat("run", self.case, "--threads", "0").returncode, 2)
+        self.assert_refused(self.peristat("run", self.strip, "--set", "loading.steps"), "key=value")
+        self.assert_refused(self.peristat("run", self.strip, "--set", "loading.stepps=3"), "--set loading.stepps=3", "steps")
+        self.assert_refused(self.peristat("run"))
+        self.assert_refused(self.peristat("rum", self.strip))
+        self.assert_refused(self.peristat("run", self.strip, "--threads", "0"))
 
     def test_a_folder_that_cant_be_written_is_refused(self):
         self.write("occupied", "not a folder")
-        self.assert_refused(self.peristat("run", self.case, "--output", "occupied"), "output.directory", "occupied")
-        self.assert_refused(self.peristat("run", self.case, "--output", "/proc/peristat"), "output.directory")
+        self.assert_refused(self.peristat("run", self.strip, "--output", "occupied"), "output.directory", "occupied")
+        self.assert_refused(self.peristat("run", self.strip, "--output", "/proc/peristat"), "output.directory")
         self.assertEqual((self.folder / "occupied").read_text(), "not a folder")
 
     def test_what_cant_fit_is_refused_with_its_estimate_before_memory_is_taken(self):
         for spacing in ("1e-6", "1e-8", "1e-10"):
             begin = time.monotonic()
-            run = self.peristat("run", self.case, "--set", f"lattice.spacing={spacing}",
-                                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (2**30, 2**30)))  # fmt: skip
-            self.assertEqual(run.returncode, 4, run.stderr)
-            self.assertIn("needs about", run.stderr)
+            command = [PROGRAM, "run", self.strip, "--set", f"lattice.spacing={spacing}"]
+            run = self.execute(limited_by_shell("ulimit -v 1048576", command))
+            self.assert_code(run, 4)
+            self.assertIn("needs about", run.errors)
             self.assertLess(time.monotonic() - begin, 10.0)
         self.assertFalse((self.folder / "results").exists())
 
@@ -152,25 +125,22 @@ class CommandLine(unittest.TestCase):
                 text = lines[:line] + [f"{key}= {number}"] + lines[line + 1 :]
                 self.write("odd.toml", "\n".join(text))
                 run = self.peristat("run", "odd.toml", "--quiet", "--output", "odd", "--threads", "1")
-                self.assertIn(run.returncode, (0, 2, 3, 4), f"{key}= {number}\n{run.stderr}")
-                if run.returncode == 0:
+                self.assertIn(run.code, (0, 2, 3, 4), f"{key}= {number}\n{run.said}")
+                if run.code == 0:
                     content = (self.folder / "odd/history.csv").read_text()
                     self.assertNotRegex(content, r"\b(nan|inf)\b")
 
     # ---- results ----------------------------------------------------------------------------------
 
     def test_a_run_leaves_what_the_contract_says(self):
-        run = self.peristat("run", self.case, "--output", "out", "--set", "loading.steps=4",
-                            "--set", "output.every=3", "--log", "log.txt", "--threads", "1")  # fmt: skip
-        self.assertEqual(run.returncode, 0, run.stderr)
-        out = self.folder / "out"
+        out = self.run_case(self.strip, "loading.steps=4", "output.every=3", words=("--log", "log.txt"))
         self.assertEqual((out / "history.csv").read_text().splitlines()[0], ",".join(HISTORY_COLUMNS))
         self.assertEqual((out / "iterations.csv").read_text().splitlines()[0], ",".join(ITERATION_COLUMNS))
-        rows = self.history("out")
-        self.assertEqual([float(row["load_factor"]) for row in rows], [0.25, 0.5, 0.75, 1.0])
-        pull = float(rows[-1]["reaction_x:right"])
+        rows = self.history()
+        self.assertEqual([row["load_factor"] for row in rows], [0.25, 0.5, 0.75, 1.0])
+        pull = rows[-1]["reaction_x:right"]
         self.assertGreater(pull, 0.0)
-        self.assertAlmostEqual(float(rows[-1]["reaction_x:left"]) / pull, -1.0, delta=1e-8)
+        self.assertAlmostEqual(rows[-1]["reaction_x:left"] / pull, -1.0, delta=1e-8)
         summary = json.loads((out / "summary.json").read_text())
         self.assertLessEqual(SUMMARY_KEYS, set(summary))
         self.assertEqual((summary["status"], summary["steps"], summary["threads"]), ("completed", 4, 1))
@@ -186,20 +156,18 @@ class CommandLine(unittest.TestCase):
                 self.assertTrue({"unit", "description"} <= set(last[name].attrs))
         self.assertTrue((out / "results.xdmf").exists())
         self.assertIn("iteration", (self.folder / "log.txt").read_text())
-        again = self.peristat("run", self.case, "--output", "out", "--quiet")
-        self.assertEqual((again.returncode, again.stdout), (0, ""))
-        self.assertEqual(len(self.history("out")), 1)
+        again = self.peristat("run", self.strip, "--output", "out", "--quiet")
+        self.assertEqual((again.code, again.output), (0, ""))
+        self.assertEqual(len(self.history()), 1)
 
     def test_a_run_that_does_not_converge_keeps_what_it_reached(self):
-        self.write("column.toml", STRIP.replace("1e-5*load", "-8e-3*load"))
-        run = self.peristat("run", "column.toml", "--output", "out", "--set", "loading.steps=40",
-                            "--set", "loading.smallest_step=1e-3", "--set", "output.every=7",
-                            "--set", "solver.projection=never")  # or it finds the buckled state # fmt: skip
-        self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
-        self.assertIn("negative pivots", run.stderr)
+        self.run_case(STRIP.replace("1e-5*load", "-8e-3*load"), "loading.steps=40", "loading.smallest_step=1e-3",
+                      "output.every=7", "solver.projection=never",  # or it finds the buckled state
+                      threads=2, code=3)  # fmt: skip
+        self.assertIn("negative pivots", self.ended.errors)
         summary = json.loads((self.folder / "out/summary.json").read_text())
         self.assertEqual(summary["status"], "not_converged")
-        rows = self.history("out")
+        rows = self.history()
         self.assertGreater(len(rows), 1)
         decisions = (self.folder / "out/decisions.csv").read_text()
         self.assertIn(",stop,", decisions)  # from an unstable state no smaller step helps
@@ -207,16 +175,13 @@ class CommandLine(unittest.TestCase):
             self.assertIn(f"{int(rows[-1]['step']):06d}", file["steps"])
 
     def test_a_step_that_fails_is_cut(self):
-        run = self.peristat("run", self.case, "--output", "out", "--set", "solver.max_iterations=1",
-                            "--set", "loading.smallest_step=0.1")  # fmt: skip
-        self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
-        self.assertIn("solver.max_iterations", run.stderr)
-        decisions = (self.folder / "out/decisions.csv").read_text().splitlines()[1:]
-        self.assertEqual([row.split(",")[4] for row in decisions], ["cut", "cut", "cut", "stop"])
+        out = self.run_case(self.strip, "solver.max_iterations=1", "loading.smallest_step=0.1", threads=2, code=3)
+        self.assertIn("solver.max_iterations", self.ended.errors)
+        self.assertEqual([row["action"] for row in table(out / "decisions.csv")], ["cut", "cut", "cut", "stop"])
 
     def test_an_interrupt_closes_the_results(self):
         for sent in (signal.SIGINT, signal.SIGTERM):
-            process = self.start("run", self.case, "--output", "out", "--set", "loading.steps=100000")
+            process = self.long_run()
             while "step" not in process.stdout.readline():
                 self.assertIsNone(process.poll())
             process.send_signal(sent)
@@ -224,13 +189,13 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(process.returncode, 130)
             self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["status"], "interrupted")
             with h5py.File(self.folder / "out/results.h5") as file:
-                self.assertEqual(len(file["steps"]), len(self.history("out")))
+                self.assertEqual(len(file["steps"]), len(self.history()))
 
     def test_a_kill_at_any_moment_leaves_every_accepted_step(self):
         chance = random.Random(1)
         announced_in_all = 0
         for kill in range(15):
-            process = self.start("run", self.case, "--output", "out", "--set", "loading.steps=100000")
+            process = self.long_run()
             first = ""
             while kill % 5 and not first.startswith("step "):  # the others may die before
                 first = process.stdout.readline()
@@ -255,10 +220,9 @@ class CommandLine(unittest.TestCase):
     # ---- the other commands -----------------------------------------------------------------------
 
     def test_check_tells_counts_memory_and_time_and_solves_nothing(self):
-        run = self.peristat("check", self.case)
-        self.assertEqual(run.returncode, 0, run.stderr)
+        run = self.assert_completed(self.command("check", self.strip))
         for word in ("260 in 2D", "bonds", "supports", "memory", "time"):
-            self.assertIn(word, run.stdout)
+            self.assertIn(word, run.output)
         self.assertFalse((self.folder / "results").exists())
 
     def test_no_shipped_case_is_warned_of(self):
@@ -267,9 +231,8 @@ class CommandLine(unittest.TestCase):
         self.assertGreaterEqual(len(cases), 40)
         for case in cases:
             with self.subTest(case=case.name):
-                run = self.peristat("check", case)
-                self.assertEqual(run.returncode, 0, run.stderr)
-                self.assertEqual([line for line in run.stdout.splitlines() if line.startswith("warning:")], [])
+                run = self.assert_completed(self.command("check", case))
+                self.assertEqual([line for line in run.output.splitlines() if line.startswith("warning:")], [])
 
     def test_tangents_of_all_shipped_cases_pass_the_finite_difference_check(self):
         # But for the plate of a million points, of which branching_2d is a cut.
@@ -277,9 +240,8 @@ class CommandLine(unittest.TestCase):
         self.assertGreaterEqual(len(cases), 4)
         for case in cases:
             with self.subTest(case=case.name):
-                run = self.peristat("check-tangent", case)
-                self.assertEqual(run.returncode, 0, run.stderr)
-                told = json.loads(run.stdout)
+                run = self.assert_completed(self.command("check-tangent", case))
+                told = run.json()
                 self.assertGreater(told["residual_norm"], 0.0)
                 if case.parent.name == "fcbm":  # convolutions have no entries
                     self.assertIsNone(told["tangent_frobenius_norm"])
@@ -289,7 +251,7 @@ class CommandLine(unittest.TestCase):
                     self.assertLess(told["tangent_error"], 1e-12)
                     self.assertGreater(told["asymmetry"], 1e-5)  # of the largest entry: of motions, inertia
                     self.assertIsNone(told["residual_error"])
-                    self.assertIn("the asymmetry is meant", run.stderr)
+                    self.assertIn("the asymmetry is meant", run.errors)
                     continue
                 self.assertLess(abs(told["residual_error"]), 1e-7)
                 self.assertLess(abs(told["tangent_error"]), 1e-7)
@@ -308,10 +270,10 @@ class CommandLine(unittest.TestCase):
                 self.assertAlmostEqual(told["tangent_order"], 2.0, delta=0.1)
 
     def test_check_tangent_takes_a_deformation(self):
-        run = self.peristat("check-tangent", self.case, "--deformation", "x; y")
-        self.assertEqual(json.loads(run.stdout)["energy"], 0.0)
-        self.assert_refused(self.peristat("check-tangent", self.case, "--deformation", "x"), "--deformation")
-        self.assert_refused(self.peristat("check-tangent", self.case, "--deformation", "0; q"), "--deformation", "q")
+        run = self.peristat("check-tangent", self.strip, "--deformation", "x; y")
+        self.assertEqual(run.json()["energy"], 0.0)
+        self.assert_refused(self.peristat("check-tangent", self.strip, "--deformation", "x"), "--deformation")
+        self.assert_refused(self.peristat("check-tangent", self.strip, "--deformation", "0; q"), "--deformation", "q")
 
 
 if __name__ == "__main__":

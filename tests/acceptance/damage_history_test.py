@@ -1,17 +1,14 @@
 """Bonds driven up and down: force, energy and dissipation of every accepted step in closed form."""
 
 import collections
-import pathlib
-import tempfile
 import unittest
 
 import numpy
 
+from tests.acceptance.folder import Folder
 from tests.reference.case import Case
 from tests.reference.clouds import toml, write_points
 from tests.reference.laws import Law
-from tests.reference.program import peristat
-from tests.reference.results import Results
 from tests.reference.verify import Verification
 
 LAWS = (
@@ -33,29 +30,21 @@ def random_path(random, reach):
     return f"{reach:.4f}*({' + '.join(waves)})"
 
 
-class DamageHistory(unittest.TestCase):
+class DamageHistory(Folder):
+    threads = 2
+
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_history_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.random = numpy.random.default_rng(31)
 
-    def case(self, dimension, reference, sets, law, mode, supports):
+    def tables(self, dimension, reference, sets, law, mode, supports):
         volume = self.random.uniform(0.5, 1.4, len(reference))
         write_points(self.folder / "points.csv", reference, volume, sets)
-        tables = {
+        return {
             "dimension": dimension, "points": {"file": "points.csv", "horizon": 1.6},
             "material": {"micromodulus": 100.0, "damage": law}, "support": supports,
             "loading": {"steps": 25}, "solver": {"mode": mode}, "relaxation": {"steps": 25},
         }  # fmt: skip
-        path = self.folder / "case.toml"
-        path.write_text(toml(tables))
-        return path
-
-    def run_case(self, path):
-        run = peristat("run", path, "--quiet", "--output", self.folder / "out")
-        self.assertIn(run.code, (0, 3), run.said)
-        return run
 
     def test_one_bond_follows_its_closed_form(self):
         seen = collections.Counter()
@@ -70,11 +59,11 @@ class DamageHistory(unittest.TestCase):
         sets = {"left": numpy.array([True, False]), "right": numpy.array([False, True])}
         supports = [{"set": "left", "displacement": [0]},
                     {"set": "right", "displacement": [random_path(self.random, 0.04)]}]  # fmt: skip
-        path = self.case(1, reference, sets, law, mode, supports)
-        self.assertEqual(self.run_case(path).code, 0)
-        results = Results(self.folder / "out")
+        tables = self.tables(1, reference, sets, law, mode, supports)
+        results = self.results(tables)
         weight = 100.0 * results.volume.prod()  # c w; the length is 1
-        formula, largest, past = Law.of_table(Case(path.read_text())["material"]["damage"] | {"rate": law.get("rate", 3.0)}), 0.0, 0.0
+        formula = Law.of_table(Case(toml(tables))["material"]["damage"] | {"rate": law.get("rate", 3.0)})
+        largest = past = 0.0
         rows = results.table("history")[1:]  # without step 0, at rest
         self.assertGreaterEqual(len(rows), 25)
         for row, step in zip(rows, results.steps, strict=True):
@@ -116,10 +105,9 @@ class DamageHistory(unittest.TestCase):
         turned = ["free", *(random_path(self.random, 0.02) for _ in range(dimension - 1))]
         supports = [{"set": "a", "displacement": still}, {"set": "b", "displacement": moved},
                     {"set": "c", "displacement": turned}]  # fmt: skip
-        path = self.case(dimension, reference, sets, law, mode, supports)
-        run = self.run_case(path)
-        verification = Verification(self.folder / "out", path.read_text(), self.folder)
-        self.assertEqual(verification.run(), [], run.said)
+        tables = self.tables(dimension, reference, sets, law, mode, supports)
+        verification = Verification(self.run_case(tables, code=(0, 3)), toml(tables), self.folder)
+        self.assertEqual(verification.run(), [], self.ended.said)
         mechanics, history = verification.mechanics, verification.mechanics.no_history()
         self.assertEqual(len(mechanics.body.bonds), 6)
         for step in verification.results.steps:

@@ -4,69 +4,43 @@ overwritten, every accepted step is kept and readable, and the exit code says wh
 import csv
 import json
 import os
-import pathlib
 import shutil
 import signal
-import subprocess
-import tempfile
 import time
 import unittest
 
 import h5py
 
+from tests.acceptance.folder import Folder
 from tests.acceptance.strip import PULLED
+from tests.reference.program import PROGRAM, execute, limited_by_shell
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = os.environ["PERISTAT_PROGRAM"]
 PLAIN = {"results.h5", "results.xdmf", "history.csv", "iterations.csv", "decisions.csv", "broken_bonds.csv",
          "convergence.csv", "summary.json", "peristat.json"}  # fmt: skip
 
 STRIP = 'title = "Strip"\n' + PULLED
 LONG = ["--set", "loading.steps=20000"]  # a run that lasts until something happens to it
-CAN_MOUNT = subprocess.run(["unshare", "-rm", "sh", "-c", "mount -t tmpfs tmpfs /mnt"],
-                           capture_output=True).returncode == 0  # fmt: skip
+CAN_MOUNT = execute(["unshare", "-rm", "sh", "-c", "mount -t tmpfs tmpfs /mnt"]).code == 0
 CANNOT_MOUNT = "this machine lets nobody mount a small disk: not tried what a full one does"
 # root may write everywhere: a run without that right meets a read-only folder
 AS_ANYBODY = (["setpriv", "--bounding-set=-dac_override", "--inh-caps=-dac_override"]
               if os.geteuid() == 0 else [])  # fmt: skip
 
 
-class Faults(unittest.TestCase):
+class Faults(Folder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_faults_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name).resolve()
-        self.case = self.write("strip.toml", STRIP)
+        super().setUp()
+        self.strip = self.write("strip.toml", STRIP)
         self.out = self.folder / "out"
 
-    def write(self, name, text):
-        path = self.folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        return path
+    def words(self, *arguments, case=None):
+        return [PROGRAM, "run", case or self.strip, "--output", self.out, "--threads", "1", *arguments]
 
-    def command(self, *arguments, case=None):
-        words = ["run", case or self.case, "--output", self.out, "--threads", "1", *arguments]
-        return [PROGRAM, *map(str, words)]
-
-    def execute(self, command, **options):
-        options = {"stdin": subprocess.DEVNULL, "capture_output": True} | options
-        return subprocess.run([*map(str, command)], cwd=self.folder, text=True, timeout=300, **options)
-
-    def peristat(self, *arguments, **options):
-        return self.execute(self.command(*arguments, **options))
+    def run_strip(self, *arguments, **options):
+        return self.execute(self.words(*arguments, **options))
 
     def limited(self, limits, *arguments):
-        """A run under limits of the shell."""
-        return self.execute(["bash", "-c", f'{limits}; exec "$@"', "bash", *self.command(*arguments)])
-
-    def start(self, command=None, **options):
-        options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | options
-        process = subprocess.Popen(command or self.command(*LONG), cwd=self.folder, text=True,
-                                   stdin=subprocess.DEVNULL, **options)  # fmt: skip
-        self.addCleanup(process.communicate)
-        self.addCleanup(process.kill)
-        return process
+        return self.execute(limited_by_shell(limits, self.words(*arguments)))
 
     def wait_for_steps(self, process, count=5):
         until = time.monotonic() + 60
@@ -80,9 +54,6 @@ class Faults(unittest.TestCase):
             return len((folder or self.out).joinpath("history.csv").read_text().splitlines()) - 2  # header, step 0
         except OSError:
             return 0
-
-    def assert_code(self, run, code):
-        self.assertEqual(run.returncode, code, (run.stdout or "") + run.stderr)
 
     def assert_readable(self, folder=None, at_least=0):
         """Every accepted step can be read; gives their number."""
@@ -121,16 +92,16 @@ class Faults(unittest.TestCase):
             self.write(f"out/{name}", "mine")
             before = self.contents(self.out)
             for option in [[], ["--overwrite"]]:
-                self.assert_code(self.peristat(*option), 2)
+                self.assert_code(self.run_strip(*option), 2)
                 self.assertEqual(self.contents(self.out), before)
 
     def test_a_new_run_of_the_case_removes_what_the_last_one_has_written_and_nothing_else(self):
-        self.assert_code(self.peristat(), 0)
+        self.assert_code(self.run_strip(), 0)
         self.write("out/plots/.pictures", "deformed.png\ngone.png\n../notes.txt\n")
         for name in ["notes.txt", "plots/mine.png", "plots/crack.gif", "parts/mine.txt", "sweep.json"]:
             self.write(f"out/{name}", "mine")
         self.write("out/plots/deformed.png", "ours")
-        self.assert_code(self.peristat("--set", "loading.steps=3"), 0)
+        self.assert_code(self.run_strip("--set", "loading.steps=3"), 0)
         self.assertEqual(self.assert_readable(), 3)
         for name in ["notes.txt", "plots/mine.png", "plots/crack.gif", "parts/mine.txt", "sweep.json"]:
             self.assertEqual((self.out / name).read_text(), "mine")
@@ -145,8 +116,8 @@ class Faults(unittest.TestCase):
         before = self.contents(folder)
         refused = run(second)
         self.assert_code(refused, 2)
-        self.assertIn(str(first), refused.stderr)
-        self.assertIn("--overwrite", refused.stderr)
+        self.assertIn(str(first), refused.errors)
+        self.assertIn("--overwrite", refused.errors)
         self.assertEqual(self.contents(folder), before)
         self.assert_code(run(second, "--overwrite", "--set", "loading.steps=2"), 0)
         self.assertEqual(self.assert_readable(folder), 2)
@@ -156,22 +127,22 @@ class Faults(unittest.TestCase):
         self.assert_code(run(self.folder / "way/strip.toml", "--output", folder), 0)
 
     def test_results_of_version_1_are_replaced_on_demand_only(self):
-        self.assert_code(self.peristat(), 0)
+        self.assert_code(self.run_strip(), 0)
         (self.out / "peristat.json").unlink()
         self.write("out/plots/deformed.png", "ours")
         self.write("out/plots/mine.png", "mine")
         before = self.contents(self.out)
-        refused = self.peristat()
+        refused = self.run_strip()
         self.assert_code(refused, 2)
-        self.assertIn("--overwrite", refused.stderr)
+        self.assertIn("--overwrite", refused.errors)
         self.assertEqual(self.contents(self.out), before)
-        self.assert_code(self.peristat("--overwrite"), 0)
+        self.assert_code(self.run_strip("--overwrite"), 0)
         self.assertFalse((self.out / "plots/deformed.png").exists())
         self.assertEqual((self.out / "plots/mine.png").read_text(), "mine")
-        self.assert_code(self.peristat(), 0)
+        self.assert_code(self.run_strip(), 0)
 
     def test_links_in_the_folder_are_replaced_and_not_followed(self):
-        self.assert_code(self.peristat(), 0)
+        self.assert_code(self.run_strip(), 0)
         victim = self.write("victim", "mine")
         for name in sorted(PLAIN - {"peristat.json"}):
             for link in [self.out / name, self.out / f"{name}.tmp"]:
@@ -179,7 +150,7 @@ class Faults(unittest.TestCase):
                 link.symlink_to(victim)
         self.write("out/plots/.pictures", "deformed.png\n")
         (self.out / "plots/deformed.png").symlink_to(victim)
-        self.assert_code(self.peristat(), 0)
+        self.assert_code(self.run_strip(), 0)
         self.assertEqual(victim.read_text(), "mine")
         self.assertEqual({path.name for path in self.out.iterdir()}, PLAIN | {"plots"})
         self.assertFalse(any(path.is_symlink() for path in self.out.rglob("*")))
@@ -187,7 +158,7 @@ class Faults(unittest.TestCase):
     def test_folders_and_a_marker_that_are_links_are_refused(self):
         for name in ["parts", "plots", "peristat.json"]:
             shutil.rmtree(self.out, ignore_errors=True)
-            self.assert_code(self.peristat("--overwrite"), 0)
+            self.assert_code(self.run_strip("--overwrite"), 0)
             elsewhere = self.folder / f"elsewhere_{name}"
             if name == "peristat.json":
                 (self.out / name).rename(elsewhere)
@@ -197,32 +168,32 @@ class Faults(unittest.TestCase):
             (self.out / name).symlink_to(elsewhere)
             before = self.contents(self.folder)
             for option in [[], ["--overwrite"]]:
-                self.assert_code(self.peristat(*option), 2)
+                self.assert_code(self.run_strip(*option), 2)
                 self.assertEqual(self.contents(self.folder), before, name)
 
     def test_the_folder_itself_may_be_a_link(self):
         (self.folder / "big_disk").mkdir()
         self.out.symlink_to(self.folder / "big_disk")
         for _ in range(2):
-            self.assert_code(self.peristat(), 0)
+            self.assert_code(self.run_strip(), 0)
         self.assert_readable(self.folder / "big_disk", 1)
 
     def test_a_folder_has_one_writer(self):
-        first = self.start()
+        first = self.start(self.words(*LONG))
         self.wait_for_steps(first)
         for option in [[], ["--overwrite"]]:
-            second = self.peristat(*option)
+            second = self.run_strip(*option)
             self.assert_code(second, 2)
-            self.assertIn(f"process {first.pid}", second.stderr)
+            self.assertIn(f"process {first.pid}", second.errors)
         self.assertIsNone(first.poll())
         first.send_signal(signal.SIGINT)
         first.communicate()
         self.assertEqual(first.returncode, 130)
         self.assert_readable(at_least=5)
-        self.assert_code(self.peristat(), 0)
+        self.assert_code(self.run_strip(), 0)
 
     def test_of_runs_that_start_at_once_one_gets_the_folder(self):
-        runs = [self.start() for _ in range(4)]
+        runs = [self.start(self.words(*LONG)) for _ in range(4)]
         for run in runs:
             run.wait_until = time.monotonic() + 60
         while sum(run.poll() is None for run in runs) > 1:
@@ -240,56 +211,51 @@ class Faults(unittest.TestCase):
 
     def test_closed_streams_get_into_no_file(self):
         for closed in ["<&-", ">&-", "2>&-", ">&- 2>&-", "<&- >&- 2>&-"]:
-            run = self.execute(["sh", "-c", f'exec "$@" {closed}', "sh", *self.command("--set", "loading.steps=3")])
+            run = self.limited(f"exec {closed}", "--set", "loading.steps=3")
             self.assert_code(run, 0)
             self.assertEqual(self.assert_readable(), 3)
             summary = json.loads((self.out / "summary.json").read_text())
             self.assertEqual(summary["status"], "completed")
-            for table in self.out.glob("*.csv"):
-                columns = {line.count(",") for line in table.read_text().splitlines()}
-                self.assertTrue(table.name == "decisions.csv" or len(columns) == 1, table)
+            for path in self.out.glob("*.csv"):
+                columns = {line.count(",") for line in path.read_text().splitlines()}
+                self.assertTrue(path.name == "decisions.csv" or len(columns) == 1, path)
 
     def test_who_stops_reading_does_not_stop_the_run(self):
-        command = self.command("--set", "loading.steps=200")
-        run = self.start(["bash", "-c", '"$@" | head -1; exit "${PIPESTATUS[0]}"', "bash", *command])
-        said, complaints = run.communicate(timeout=120)
-        self.assertEqual(run.returncode, 0, complaints)
-        self.assertEqual(len(said.splitlines()), 1)
-        self.assertEqual(complaints.count("standard output can't be written"), 1, complaints)
+        command = self.words("--set", "loading.steps=200")
+        run = self.execute(["bash", "-c", '"$@" | head -1; exit "${PIPESTATUS[0]}"', "bash", *command])
+        self.assert_completed(run)
+        self.assertEqual(len(run.output.splitlines()), 1)
+        self.assertEqual(run.errors.count("standard output can't be written"), 1, run.errors)
         self.assertEqual(self.assert_readable(), 200)
 
     def test_a_full_disk_under_standard_output(self):
-        with open("/dev/full", "w") as full:
-            run = self.execute(self.command(), capture_output=False, stdout=full, stderr=subprocess.PIPE)
-            self.assert_code(run, 0)
-            self.assertIn("No space left", run.stderr)
-            # What a command gives is nothing but what it prints.
-            check = self.execute([PROGRAM, "check", self.case], capture_output=False, stdout=full,
-                                 stderr=subprocess.PIPE)  # fmt: skip
-            self.assert_code(check, 5)
-            self.assertIn("No space left", check.stderr)
+        # What a command other than run gives is nothing but what it prints.
+        for command, code in ((self.words(), 0), ([PROGRAM, "check", self.strip], 5)):
+            ended = self.execute(limited_by_shell("exec >/dev/full", command))
+            self.assert_code(ended, code)
+            self.assertIn("No space left", ended.errors)
 
     def test_a_log_that_cannot_be_written_is_told_and_stops_nothing(self):
-        run = self.peristat("--log", "/dev/full")
+        run = self.run_strip("--log", "/dev/full")
         self.assert_code(run, 0)
-        self.assertEqual(run.stderr.count("the log can't be written"), 1, run.stderr)
+        self.assertEqual(run.errors.count("the log can't be written"), 1, run.errors)
 
     def test_a_log_replaces_nothing_but_logs(self):
-        self.assert_code(self.peristat(), 0)
+        self.assert_code(self.run_strip(), 0)
         foreign = self.write("notes.txt", "mine")
         (self.folder / "linked").symlink_to(foreign)
         (self.folder / "nowhere").symlink_to(self.folder / "new")
         os.link(self.out / "history.csv", self.folder / "second_name")
-        places = [self.case, foreign, "linked", "nowhere", "second_name", "out/history.csv", "out/new.txt", "out/parts/000001.h5"]
+        places = [self.strip, foreign, "linked", "nowhere", "second_name", "out/history.csv", "out/new.txt", "out/parts/000001.h5"]
         before = self.contents(self.folder)
         for log in places:
-            for command in (self.command("--log", log), [PROGRAM, "resume", self.out, "--log", log]):
+            for command in (self.words("--log", log), [PROGRAM, "resume", self.out, "--log", log]):
                 run = self.execute(command)
                 self.assert_code(run, 2)
-                self.assertIn("--log", run.stderr)
+                self.assertIn("--log", run.errors)
                 self.assertEqual(self.contents(self.folder), before, log)
         for again in range(2):
-            self.assert_code(self.peristat("--log", "log.txt"), 0)
+            self.assert_code(self.run_strip("--log", "log.txt"), 0)
             self.assertEqual((self.folder / "log.txt").read_text().count("# log of peristat\n"), 1)
 
     def test_a_log_does_not_take_the_place_of_an_input(self):
@@ -298,29 +264,29 @@ class Faults(unittest.TestCase):
             self.write("cloud.toml", '[points]\nfile = "' + points + '"\nspacing = 1.0\n' + STRIP[STRIP.index("[material]"):])
             self.write("points.csv", "x, y, volume\n0, 0, 1\n1, 0, 1\n")
             before = self.contents(self.folder)
-            run = self.peristat("--log", points, case=self.folder / "cloud.toml")
+            run = self.run_strip("--log", points, case=self.folder / "cloud.toml")
             self.assert_code(run, 2)
             self.assertEqual(self.contents(self.folder), before)
 
     def test_results_do_not_take_the_place_of_other_files(self):
         """Of an input with the name of a result, and of a table that no earlier run has written."""
-        self.assert_code(self.peristat(), 0)
+        self.assert_code(self.run_strip(), 0)
         line = '[[probe]]\nname = "cut"\nfrom = [0.0, 0.0]\nto = [1.0, 0.0]\n'
         self.write("strip.toml", STRIP + line)
         self.write("out/line_cut.csv", "mine")
         before = self.contents(self.folder)
-        run = self.peristat("--overwrite")
+        run = self.run_strip("--overwrite")
         self.assert_code(run, 2)
-        self.assertIn("line_cut.csv", run.stderr)
+        self.assertIn("line_cut.csv", run.errors)
         self.write("out/decisions.csv", STRIP)
-        run = self.peristat("--overwrite", case=self.out / "decisions.csv")
+        run = self.run_strip("--overwrite", case=self.out / "decisions.csv")
         self.assert_code(run, 2)
-        self.assertIn("would take its place", run.stderr)
+        self.assertIn("would take its place", run.errors)
         self.assertEqual({name: text for name, text in self.contents(self.folder).items() if "decisions" not in str(name)},
                          {name: text for name, text in before.items() if "decisions" not in str(name)})
 
     def test_a_closed_terminal_interrupts(self):
-        run = self.start()
+        run = self.start(self.words(*LONG))
         self.wait_for_steps(run)
         run.send_signal(signal.SIGHUP)
         run.communicate(timeout=60)
@@ -329,7 +295,7 @@ class Faults(unittest.TestCase):
         self.assertEqual((summary["status"], summary["steps"]), ("interrupted", self.assert_readable(at_least=5)))
 
     def test_nohup_is_respected(self):
-        run = self.start(["nohup", *self.command(*LONG)])
+        run = self.start(["nohup", *self.words(*LONG)])
         self.wait_for_steps(run)
         run.send_signal(signal.SIGHUP)
         self.wait_for_steps(run, self.steps() + 10)
@@ -338,13 +304,13 @@ class Faults(unittest.TestCase):
         self.assertEqual(run.returncode, 130)
 
     def test_a_killed_run_can_be_read_and_replaced(self):
-        run = self.start()
+        run = self.start(self.words(*LONG))
         self.wait_for_steps(run)
         run.kill()
         run.communicate()
         self.assert_readable(at_least=5)
         self.assertFalse((self.out / "summary.json").exists())
-        self.assert_code(self.peristat(), 0)
+        self.assert_code(self.run_strip(), 0)
         self.assertEqual({path.name for path in self.out.iterdir()}, PLAIN)
 
     # ---- disks and limits -------------------------------------------------------------------------
@@ -354,7 +320,7 @@ class Faults(unittest.TestCase):
         disk = self.folder / "disk"
         disk.mkdir(exist_ok=True)
         shutil.rmtree(self.out, ignore_errors=True)
-        words = [disk if word == str(self.out) else word for word in self.command(*arguments)]
+        words = [disk if word == self.out else word for word in self.words(*arguments)]
         script = (f'mount -t tmpfs -o size={size} tmpfs "{disk}" && "$@"; code=$?; '
                   f'cp -r "{disk}" "{self.out}"; exit $code')  # fmt: skip
         return self.execute(["unshare", "-rm", "sh", "-c", script, "sh", *words])
@@ -365,10 +331,10 @@ class Faults(unittest.TestCase):
         for size in ["300k", "600k", "1m", "1500k"]:
             run = self.on_small_disk(size, *LONG)
             self.assert_code(run, 5)
-            self.assertIn("No space left on device", run.stderr)
+            self.assertIn("No space left on device", run.errors)
             self.assert_failed()
             counts.append(self.assert_readable())
-            self.assertIn(f"{counts[-1]} accepted step", run.stderr)
+            self.assertIn(f"{counts[-1]} accepted step", run.errors)
         self.assertGreater(counts[-1], counts[0])
 
     @unittest.skipUnless(CAN_MOUNT, CANNOT_MOUNT)
@@ -376,13 +342,13 @@ class Faults(unittest.TestCase):
         for size in ["4k", "16k", "64k"]:
             run = self.on_small_disk(size, *LONG)
             self.assert_code(run, 5)
-            self.assertIn("No space left on device", run.stderr)
+            self.assertIn("No space left on device", run.errors)
 
     @unittest.skipUnless(CAN_MOUNT, CANNOT_MOUNT)
     def test_steps_that_cannot_be_gathered_stay_in_parts(self):
         for size in range(160, 1200, 40):  # somewhere the steps fit once but not twice
             run = self.on_small_disk(f"{size}k", "--set", "loading.steps=6")
-            if run.returncode == 0:
+            if run.code == 0:
                 break
             self.assert_code(run, 5)
             if (self.out / "summary.json").exists():
@@ -396,7 +362,7 @@ class Faults(unittest.TestCase):
             shutil.rmtree(self.out, ignore_errors=True)
             run = self.limited(f"ulimit -f {blocks}", "--set", "loading.steps=2000")
             self.assert_code(run, 5)
-            self.assertIn("File too large", run.stderr)
+            self.assertIn("File too large", run.errors)
         self.assert_failed()
         self.assert_readable(at_least=2)
 
@@ -405,11 +371,11 @@ class Faults(unittest.TestCase):
         for count in [4, 5, 6, 7, 8, 9, 10, 12, 16, 24]:
             shutil.rmtree(self.out, ignore_errors=True)
             run = self.limited(f"ulimit -n {count}", "--set", "loading.steps=3")
-            codes.add(run.returncode)
-            self.assertIn(run.returncode, (0, 5), run.stderr)
-            if run.returncode == 5:
-                self.assertIn("Too many open files", run.stderr)
-            if (self.out / "summary.json").exists() and run.returncode == 5:
+            codes.add(run.code)
+            self.assertIn(run.code, (0, 5), run.errors)
+            if run.code == 5:
+                self.assertIn("Too many open files", run.errors)
+            if (self.out / "summary.json").exists() and run.code == 5:
                 self.assert_failed()
         self.assertEqual(codes, {0, 5})
 
@@ -419,20 +385,20 @@ class Faults(unittest.TestCase):
         for megabytes in [50, 100, 150, 200, *range(300, 560, 4), 600, 700, 900, 1200, 2000]:
             for linear in ["cholesky", "pcg"]:
                 started = time.monotonic()
-                words = [PROGRAM, "run", self.case, "--threads", "2", "--set", f"solver.linear={linear}"]
-                run = self.execute(["bash", "-c", f'ulimit -v {megabytes * 1000}; exec "$@"', "bash", *words])
+                words = [PROGRAM, "run", self.strip, "--threads", "2", "--set", f"solver.linear={linear}"]
+                run = self.execute(limited_by_shell(f"ulimit -v {megabytes * 1000}", words))
                 self.assertLess(time.monotonic() - started, 60)
-                if megabytes == 50 and run.returncode == 127:  # the loader's own message; see launcher_test
+                if megabytes == 50 and run.code == 127:  # the loader's own message; see launcher_test
                     continue
-                self.assertIn(run.returncode, (0, 4), f"{megabytes} MB: {run.stderr}")
-                codes[megabytes, linear] = run.returncode
-                if run.returncode == 4:
-                    self.assertRegex(run.stderr, r"address space|needs about .* are available|out of memory")
+                self.assertIn(run.code, (0, 4), f"{megabytes} MB: {run.errors}")
+                codes[megabytes, linear] = run.code
+                if run.code == 4:
+                    self.assertRegex(run.errors, r"address space|needs about .* are available|out of memory")
         self.assertEqual({codes[100, "pcg"], codes[300, "cholesky"]}, {4})
         self.assertEqual({codes[2000, "pcg"], codes[2000, "cholesky"]}, {0})
 
     def test_a_folder_that_is_removed_in_mid_run(self):
-        run = self.start()
+        run = self.start(self.words(*LONG))
         self.wait_for_steps(run)
         self.out.rename(self.folder / "moved")
         complaints = run.communicate(timeout=60)[1]
@@ -442,13 +408,13 @@ class Faults(unittest.TestCase):
 
     def test_a_folder_that_is_read_only_from_the_start(self):
         self.out.mkdir(mode=0o500)
-        for words in [self.command(), [*self.command()[:4], self.out / "below"]]:
+        for words in [self.words(), [*self.words()[:4], self.out / "below"]]:
             run = self.execute([*AS_ANYBODY, *words])
             self.assert_code(run, 2)
-            self.assertIn("can't be written", run.stderr)
+            self.assertIn("can't be written", run.errors)
 
     def test_a_folder_that_becomes_read_only(self):
-        run = self.start([*AS_ANYBODY, *self.command(*LONG)])
+        run = self.start([*AS_ANYBODY, *self.words(*LONG)])
         self.wait_for_steps(run)
         for folder in [self.out / "parts", self.out]:
             folder.chmod(0o500)
@@ -461,11 +427,11 @@ class Faults(unittest.TestCase):
         (self.out / "parts").chmod(0o700)
 
     def test_more_threads_than_make_sense(self):
-        run = self.execute([PROGRAM, "run", self.case], env=os.environ | {"OMP_NUM_THREADS": "999999"})
-        self.assert_code(run, 0)
-        run = self.peristat("--threads", "100000")
+        run = self.peristat("run", self.strip, environment={"OMP_NUM_THREADS": "999999"}, limited=False)
+        self.assert_completed(run)
+        run = self.run_strip("--threads", "100000")
         self.assert_code(run, 2)
-        self.assertIn("--threads", run.stderr)
+        self.assertIn("--threads", run.errors)
 
 
 if __name__ == "__main__":

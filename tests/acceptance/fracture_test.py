@@ -1,23 +1,22 @@
 """Fracture through the command line: cracks, the three modes, fragments and probes."""
 
-import csv
 import functools
 import itertools
 import json
 import math
-import os
 import pathlib
-import subprocess
 import tempfile
 import unittest
 
 import h5py
 import numpy
 
+from tests.acceptance.folder import Folder
 from tests.acceptance.strip import LATTICE
+from tests.reference.program import ROOT
+from tests.reference.results import table
 
-PROGRAM = os.environ["PERISTAT_PROGRAM"]
-CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
+CASES = ROOT / "cases"
 SQUARE = CASES / "plate_with_hole/square.toml"
 
 # 20 x 10 points, half cut at x = 10 mm, and a layer of three columns at either end.
@@ -95,21 +94,19 @@ def strip_places():
     return numpy.array([(10 * i + 5, 10 * j + 5) for i in range(-3, 23) for j in range(10)])
 
 
-class Ended:
-    """What a run has left."""
+class Run:
+    """How it ended, and what it has left."""
 
-    def __init__(self, process, folder):
-        self.code, self.said, self.folder = process.returncode, process.stdout + process.stderr, folder
+    def __init__(self, ended, folder):
+        self.code, self.said, self.folder = ended.code, ended.said, folder
 
     def table(self, name):
-        with open(self.folder / f"{name}.csv", newline="") as file:
-            return list(csv.DictReader(file))
+        return table(self.folder / f"{name}.csv")
 
     @functools.cached_property
     def history(self):
         """Without step 0: nothing acts at load 0."""
-        return [{key: value if key == "mode" else float(value) for key, value in row.items()}
-                for row in self.table("history") if row["step"] != "0"]  # fmt: skip
+        return [row for row in self.table("history") if row["step"] > 0]
 
     @functools.cached_property
     def summary(self):
@@ -120,8 +117,8 @@ class Ended:
 
     def last_iterations(self):
         """Of every accepted step."""
-        last = {int(row["step"]): row for row in self.table("iterations")}
-        return [last[int(row["step"])] for row in self.history]
+        last = {row["step"]: row for row in self.table("iterations")}
+        return [last[row["step"]] for row in self.history]
 
     def points(self, name):
         with h5py.File(self.folder / "results.h5") as file:
@@ -187,34 +184,25 @@ mode = "newton"
 """
 
 
-class Fracture(unittest.TestCase):
+class Fracture(Folder):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_acceptance_")
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
-        cls.count = itertools.count()
-        cls.ended = {}
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="peristat test ")))
+        cls.runs = {}
 
-    def run_case(self, case, *settings, threads=2):
-        """Runs a case, given by path or by text, once for all tests."""
-        key = (case, settings, threads)
-        if key not in self.ended:
-            number = next(self.count)
-            path = case
-            if isinstance(case, str):
-                path = self.folder / f"case_{number}.toml"
-                path.write_text(case)
-            words = [word for setting in settings for word in ("--set", setting)]
-            out = self.folder / f"out_{number}"
-            process = subprocess.run([PROGRAM, "run", str(path), "--output", str(out), "--quiet",
-                                      "--threads", str(threads), *words], cwd=self.folder, text=True,
-                                     timeout=300, stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
-            self.ended[key] = Ended(process, out)
-        return self.ended[key]
+    def setUp(self):
+        """All tests share a folder and the runs in it."""
 
-    def completed(self, case, *settings, **options):
-        run = self.run_case(case, *settings, **options)
+    def run_case(self, case, *changes, threads=2):
+        """Runs a case once for all tests, whatever its end."""
+        key = (case, changes, threads)
+        if key not in self.runs:
+            out = super().run_case(case, *changes, name=f"out_{len(self.runs)}", threads=threads, code=(0, 2, 3))
+            self.runs[key] = Run(self.ended, out)
+        return self.runs[key]
+
+    def completed(self, case, *changes, **options):
+        run = self.run_case(case, *changes, **options)
         self.assertEqual(run.code, 0, run.said)
         self.assertEqual(run.summary["status"], "completed")
         self.assertEqual(run.history[-1]["load_factor"], 1.0)

@@ -1,10 +1,7 @@
 """The histories of bonds in the results: with them a reader rebuilds every state from outside."""
 
-import csv
 import math
-import os
 import pathlib
-import subprocess
 import tempfile
 import tomllib
 import unittest
@@ -13,8 +10,9 @@ import h5py
 import numpy
 
 from tests.acceptance.strip import LATTICE
+from tests.reference.program import peristat, settings
+from tests.reference.results import table
 
-PROGRAM = os.environ["PERISTAT_PROGRAM"]
 NEVER_FAILS = -1.0
 
 # 20 x 10 points, half cut at x = 10 mm; a row along the upper edge never fails.
@@ -60,9 +58,8 @@ class Run:
                           | {"number": group.attrs["step"]} for group in file["steps"].values()]  # fmt: skip
             self.changes = [{name: item[...] for name, item in group["history"].items()}
                             for group in file["steps"].values()]  # fmt: skip
-        with open(folder / "broken_bonds.csv", newline="") as table:
-            self.broken = [(int(row["step"]), int(row["first_point"]), int(row["second_point"]))
-                           for row in csv.DictReader(table)]  # fmt: skip
+        self.broken = [(row["step"], row["first_point"], row["second_point"])
+                       for row in table(folder / "broken_bonds.csv")]  # fmt: skip
 
     def histories(self):
         """After each step with fields: bond -> largest stretch, of the bonds that are not as new."""
@@ -108,18 +105,14 @@ class Histories(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_histories_")
-        cls.addClassCleanup(folder.cleanup)
-        base = pathlib.Path(folder.name)
+        base = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="peristat test ")))
         (base / "strip.toml").write_text(STRIP)
         cls.runs = {}
-        for name, settings in cls.RUNS.items():
-            words = [word for setting in settings for word in ("--set", setting)]
-            ended = subprocess.run([PROGRAM, "run", "strip.toml", "--quiet", "--threads", "2", "--output", name, *words],
-                                   cwd=base, text=True, timeout=300, stdin=subprocess.DEVNULL,
-                                   capture_output=True)  # fmt: skip
+        for name, changes in cls.RUNS.items():
+            ended = peristat("run", base / "strip.toml", "--quiet", "--threads", 2, "--output", base / name,
+                             *settings(*changes), seconds=300)  # fmt: skip
             # Mode newton ends at the limit point, when 10 bonds are broken.
-            assert ended.returncode == (3 if name == "newton" else 0), (name, ended)
+            assert ended.code == (3 if name == "newton" else 0), f"{name}: {ended.said}"
             cls.runs[name] = Run(base / name)
 
     def test_replayed_they_give_the_broken_bonds_of_every_step(self):

@@ -3,18 +3,16 @@
 import itertools
 import json
 import math
-import pathlib
-import tempfile
 import unittest
 
 import h5py
 import numpy
 
+from tests.acceptance.folder import Folder
 from tests.acceptance.strip import PULLED
 from tests.reference.body import Body
 from tests.reference.case import Case
 from tests.reference.clouds import toml
-from tests.reference.program import peristat
 from tests.reference.verify import verify
 
 SQUARE = """\
@@ -78,24 +76,12 @@ displacement = ["1e-5*load", "free"]
 """
 
 
-class Cases(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_lattices_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+class Cases(Folder):
+    threads = 2
 
-    def command(self, name, text, settings=()):
-        path = self.folder / "case.toml"
-        path.write_text(text)
-        given = [word for setting in settings for word in ("--set", setting)]
-        return peristat(name, path, *(["--output", self.folder / "out", "--overwrite", "--quiet", "--no-plots"]
-                                      if name == "run" else []), *given)  # fmt: skip
-
-    def run_case(self, text, settings=()):
+    def solved(self, text, settings=()):
         """Places, volumes, displacements; the reference judges the run if it is elastic and small."""
-        ended = self.command("run", text, settings)
-        self.assertEqual(ended.code, 0, ended.said)
-        with h5py.File(self.folder / "out/results.h5") as file:
+        with h5py.File(self.run_case(text, *settings) / "results.h5") as file:
             step = file["steps"][sorted(file["steps"])[-1]]
             self.resolved = file["case/as_resolved"][()].decode()
             return file["points/reference"][:], file["points/volume"][:], step["displacement"][:]
@@ -104,11 +90,8 @@ class Cases(unittest.TestCase):
         """The run beside the reference."""
         self.assertEqual(verify(self.folder / "out", self.resolved, self.folder)[0], [])
 
-    def refusal(self, text, settings, *words):
-        ended = self.command("check", text, settings)
-        self.assertEqual(ended.code, 2, ended.said)
-        for word in words:
-            self.assertIn(word, ended.said)
+    def refuses(self, text, settings, *words):
+        self.assert_refused(self.command("check", text, *settings), *words)
 
 
 class PatchTest(Cases):
@@ -123,7 +106,7 @@ class PatchTest(Cases):
                                  displacement=json.dumps(displacement))  # fmt: skip
             for settings in lattices:
                 with self.subTest(settings=settings):
-                    places, _, found = self.run_case(text, [*settings, "lattice.horizon_ratio=3.1"])
+                    places, _, found = self.solved(text, [*settings, "lattice.horizon_ratio=3.1"])
                     inside = numpy.abs(places).max(axis=1) <= half - reach
                     self.assertGreater(inside.sum(), 4)
                     # The residual is at 1e-12 of what the frame's forces are.
@@ -141,7 +124,7 @@ class ByTheReference(Cases):
                     ["lattice.cell_perturbation=0.1", "lattice.angle=20", "quadrature.volume_correction=linear"])  # fmt: skip
         for lattice, correction in itertools.product(lattices, corrections):
             with self.subTest(lattice=lattice, correction=correction):
-                self.run_case(CUT, lattice + correction)
+                self.solved(CUT, lattice + correction)
                 self.judge()
 
     def test_runs_with_the_parts_of_cells(self):
@@ -150,7 +133,7 @@ class ByTheReference(Cases):
         kernels = itertools.cycle(("constant", "cubic", "piecewise_constant", "inverse"))
         for lattice, volume, surface in itertools.product(lattices, ("exact", "exact_centroids"), ("none", "volume", "energy")):
             with self.subTest(lattice=lattice, volume=volume, surface=surface):
-                self.run_case(CUT, [*lattice, f"quadrature.volume_correction={volume}", f"quadrature.surface_correction={surface}",
+                self.solved(CUT, [*lattice, f"quadrature.volume_correction={volume}", f"quadrature.surface_correction={surface}",
                                     f"material.influence={next(kernels)}"])  # fmt: skip
                 self.judge()
 
@@ -160,13 +143,13 @@ class ByTheReference(Cases):
         kernels = itertools.cycle(("constant", "cubic", "inverse"))
         for lattice, shape, surface in itertools.product(lattices, ("box", "diamond"), ("none", "volume", "energy")):
             with self.subTest(lattice=lattice, shape=shape, surface=surface):
-                self.run_case(CUT, [*lattice, f"quadrature.horizon_shape={shape}", f"quadrature.surface_correction={surface}",
+                self.solved(CUT, [*lattice, f"quadrature.horizon_shape={shape}", f"quadrature.surface_correction={surface}",
                                     f"material.influence={next(kernels)}"])  # fmt: skip
                 self.judge()
         text = SQUARE.format(dimension=3, low=[-0.35] * 3, high=[0.35] * 3, where="abs(x) > 0.25",
                              displacement=json.dumps(["1e-3*x*load", "2e-4*sin(9*x)", "1e-4*z*x"]))  # fmt: skip
         for shape in ("box", "diamond"):
-            self.run_case(text, [f"quadrature.horizon_shape={shape}", "lattice.horizon_ratio=2"])
+            self.solved(text, [f"quadrature.horizon_shape={shape}", "lattice.horizon_ratio=2"])
             self.judge()
 
     def test_runs_with_the_parts_of_cubes_and_of_intervals(self):
@@ -176,18 +159,18 @@ class ByTheReference(Cases):
             for volume in ("exact", "exact_centroids"):
                 with self.subTest(dimension=dimension, volume=volume):
                     settings = [f"quadrature.volume_correction={volume}", "lattice.horizon_ratio=2"]
-                    self.run_case(text, settings + (["lattice.spacing=[0.1, 0.1, 0.12]"] if dimension == 3 else []))
+                    self.solved(text, settings + (["lattice.spacing=[0.1, 0.1, 0.12]"] if dimension == 3 else []))
                     self.judge()
 
     def test_equal_spacings_are_one_spacing_to_the_last_bit(self):
         for settings in ([], ["lattice.angle=15"]):
-            one = self.run_case(CUT, settings)
-            listed = self.run_case(CUT, [*settings, "lattice.spacing=[1e-3, 1e-3]"])
+            one = self.solved(CUT, settings)
+            listed = self.solved(CUT, [*settings, "lattice.spacing=[1e-3, 1e-3]"])
             for a, b in zip(one, listed):
                 numpy.testing.assert_array_equal(a, b)
 
     def test_whole_turns_change_nothing(self):
-        still, turned = self.run_case(CUT), self.run_case(CUT, ["lattice.angle=360"])
+        still, turned = self.solved(CUT), self.solved(CUT, ["lattice.angle=360"])
         for a, b in zip(still, turned):
             numpy.testing.assert_array_equal(a, b)
 
@@ -216,7 +199,7 @@ class Shapes(Cases):
                           "load": [{"set": "pulled", "body_force": ["1e3*load*y", 0]}]}  # fmt: skip
                 if cracks:
                     tables["crack"] = cracks
-                places, volume, _ = self.run_case(toml(tables))
+                places, volume, _ = self.solved(toml(tables))
                 self.assertEqual(len(places), count)
                 self.judge()
                 whole = Body(Case(tables | {"crack": []}), places, volume)
@@ -246,7 +229,7 @@ where = "x < 3e-3"
 set = "left"
 displacement = [0, 0]
 """
-        places, volumes, _ = self.run_case(text, settings)
+        places, volumes, _ = self.solved(text, settings)
         turn = numpy.radians(33)
         axes = numpy.array([[numpy.cos(turn), numpy.sin(turn)], [-numpy.sin(turn), numpy.cos(turn)]])
         line = (numpy.arange(200) + 0.5) / 200 - 0.5
@@ -271,7 +254,7 @@ class BlueNoise(Cases):
                          ["quadrature.volume_correction=linear", "material.influence=linear", "lattice.lloyd_steps=0"],
                          ['symmetry=[{axis="y", at=0.02}]']):  # fmt: skip
             with self.subTest(settings=settings):
-                _, volumes, _ = self.run_case(HOLED, settings)
+                _, volumes, _ = self.solved(HOLED, settings)
                 self.judge()
                 self.assertEqual(len(volumes), 772)  # 800 - pi 9
                 self.assertAlmostEqual(volumes.sum() / (1e-3 * (8e-4 - math.pi * 9e-6)), 1, delta=1e-11)
@@ -279,11 +262,7 @@ class BlueNoise(Cases):
     def test_points_do_not_depend_on_threads(self):
         found = []
         for threads in (1, 2):
-            path = self.folder / "case.toml"
-            path.write_text(HOLED)
-            ended = peristat("run", path, "--output", self.folder / "out", "--overwrite", "--quiet", "--no-plots", "--threads", threads)
-            self.assertEqual(ended.code, 0, ended.said)
-            with h5py.File(self.folder / "out/results.h5") as file:
+            with h5py.File(self.run_case(HOLED, threads=threads) / "results.h5") as file:
                 found.append((file["points/reference"][:].tobytes(), file["points/volume"][:].tobytes()))
         self.assertEqual(*found)
 
@@ -301,7 +280,7 @@ class BlueNoise(Cases):
                   5: {"linear": 1.009, "exact": 1.004, "exact_centroids": 0.994}}  # fmt: skip
         for ratio, off_place in ((3.015, 0.035), (5, 0.012)):
             for correction, seed in itertools.product(stored[ratio], (1, 2)):
-                places, volumes, found = self.run_case(text, [f"lattice.horizon_ratio={ratio}", f"lattice.seed={seed}",
+                places, volumes, found = self.solved(text, [f"lattice.horizon_ratio={ratio}", f"lattice.seed={seed}",
                                                               f"quadrature.volume_correction={correction}"])  # fmt: skip
                 with h5py.File(self.folder / "out/results.h5") as file:
                     step = file["steps"][sorted(file["steps"])[-1]]
@@ -314,18 +293,14 @@ class BlueNoise(Cases):
 
     def test_cracks_cut_and_grow(self):
         brittle = ['material.damage={law="critical_stretch", critical=5e-4}', "loading.steps=4", "solver.mode=adaptive"]
-        summary, broken = {}, {}
-        for cracks in ((), ("crack=[{from=[0.0201, 0.0], to=[0.0201, 0.007]}]",)):
-            ended = self.command("run", HOLED, [*brittle, *cracks])
-            self.assertEqual(ended.code, 0, ended.said)
-            summary[cracks] = json.loads((self.folder / "out/summary.json").read_text())
-        whole, cut = summary.values()
+        crack = "crack=[{from=[0.0201, 0.0], to=[0.0201, 0.007]}]"
+        whole, cut = (self.results(HOLED, *brittle, *cracks).summary for cracks in ((), (crack,)))
         # Bonds that cross a line of unit length: h^3/3 of each side of it per spacing, 2/3 (h/s)^3 in all.
         self.assertAlmostEqual((whole["bonds"] - cut["bonds"]) / (7 * 2 / 3 * 3.015**3), 1, delta=0.15)
         self.assertGreater(cut["broken_bonds"], 50)
 
     def test_cracks_have_no_area(self):
-        self.refusal(HOLED, ['probe=[{name="area", field="crack_area", set="left"}]'], "probe[0].field", "points on a lattice")
+        self.refuses(HOLED, ['probe=[{name="area", field="crack_area", set="left"}]'], "probe[0].field", "points on a lattice")
 
     def test_squares_may_have_exact_parts(self):
         """Cells that the body does not cut are polygons, as perturbed cells of a lattice are."""
@@ -334,7 +309,7 @@ class BlueNoise(Cases):
         for text in (box, perturbed):
             reaction = {}
             for correction in ("linear", "exact", "exact_centroids"):
-                self.run_case(text, [f"quadrature.volume_correction={correction}"])
+                self.solved(text, [f"quadrature.volume_correction={correction}"])
                 reaction[correction] = json.loads((self.folder / "out/summary.json").read_text())["reactions"]["right"][0]
             for correction in ("exact", "exact_centroids"):
                 self.assertNotEqual(reaction[correction], reaction["linear"])
@@ -342,11 +317,10 @@ class BlueNoise(Cases):
                 self.assertAlmostEqual(reaction[correction] / reaction["linear"], 1, delta=0.06)
 
 
-class HorizonShapes(unittest.TestCase):
+class HorizonShapes(Folder):
     def calibrate(self, dimension, shape, ratio, *options):
-        ended = peristat("calibrate", "--model", "bond", "--dimension", dimension, "--spacing", 1, "--horizon-ratio", ratio,
-                         "--horizon-shape", shape, "--youngs-modulus", 1, *options)  # fmt: skip
-        return json.loads(ended.said)
+        return self.peristat("calibrate", "--model", "bond", "--dimension", dimension, "--spacing", 1,
+                             "--horizon-ratio", ratio, "--horizon-shape", shape, "--youngs-modulus", 1, *options).json()  # fmt: skip
 
     def test_moduli_are_those_of_the_page(self):
         for shape, axis, diagonal in (("box", 0.85, 1.13), ("diamond", 1.13, 0.85)):
@@ -367,48 +341,48 @@ class Refusals(Cases):
     def test_what_does_not_hold_is_refused_with_its_key(self):
         cpd = 'material={model="cpd", youngs_modulus=1e9, poisson_ratio=0.4}'
         for settings, word in ((["lattice.perturbation=0.1"], "must be 0"), (["lattice.volumes=fractional"], "cells"), ([cpd], "whole cells")):
-            self.refusal(CUT, ["lattice.cell_perturbation=0.2", *settings], word)
-        self.refusal(CUT, ["lattice.cell_perturbation=0.25"], "lattice.cell_perturbation", "0.249")
+            self.refuses(CUT, ["lattice.cell_perturbation=0.2", *settings], word)
+        self.refuses(CUT, ["lattice.cell_perturbation=0.25"], "lattice.cell_perturbation", "0.249")
         oblong = "lattice.spacing=[1e-3, 1.5e-3]"
-        self.refusal(PULLED, [oblong, "quadrature.volume_correction=linear"], "volume_correction", "square")
-        self.refusal(PULLED, [oblong, cpd], "material.model", "square")
+        self.refuses(PULLED, [oblong, "quadrature.volume_correction=linear"], "volume_correction", "square")
+        self.refuses(PULLED, [oblong, cpd], "material.model", "square")
         for exact in ("exact", "exact_centroids"):
             correction = f"quadrature.volume_correction={exact}"
-            self.refusal(CUT, ["lattice.volumes=fractional", correction], "quadrature.volume_correction", "part of its cell")
-            self.refusal(CUT, ["lattice.perturbation=0.1", correction], "quadrature.volume_correction", "beside the lattice")
-            self.refusal(HOLED, [correction], "quadrature.volume_correction", "cuts Voronoi cells")
-            self.refusal(PULLED, [cpd, correction], "quadrature.volume_correction", "is for model \"bond\"")
+            self.refuses(CUT, ["lattice.volumes=fractional", correction], "quadrature.volume_correction", "part of its cell")
+            self.refuses(CUT, ["lattice.perturbation=0.1", correction], "quadrature.volume_correction", "beside the lattice")
+            self.refuses(HOLED, [correction], "quadrature.volume_correction", "cuts Voronoi cells")
+            self.refuses(PULLED, [cpd, correction], "quadrature.volume_correction", "is for model \"bond\"")
         box = "quadrature.horizon_shape=box"
         for correction in ("linear", "exact"):
-            self.refusal(CUT, [box, f"quadrature.volume_correction={correction}"], "quadrature.horizon_shape", "parts of cells")
-        self.refusal(PULLED, [cpd, box], "quadrature.horizon_shape", "is for model \"bond\"")
-        self.refusal(SQUARE.format(dimension=1, low=[0], high=[1], where="x > 0.5", displacement="[0]"),
+            self.refuses(CUT, [box, f"quadrature.volume_correction={correction}"], "quadrature.horizon_shape", "parts of cells")
+        self.refuses(PULLED, [cpd, box], "quadrature.horizon_shape", "is for model \"bond\"")
+        self.refuses(SQUARE.format(dimension=1, low=[0], high=[1], where="x > 0.5", displacement="[0]"),
                      [box], "quadrature.horizon_shape", "2D and 3D")  # fmt: skip
         fibres = "material.fibre={angle=0, transverse_modulus=1e8, shear_modulus=1e8}"
-        self.refusal(PULLED, [box, fibres], "quadrature.horizon_shape", "fibres")
-        self.refusal(CUT, ["lattice.volumes=fractional", cpd], "material.model", "whole cells")
-        self.refusal(PULLED, ["lattice.spacing=[1e-4, 2e-3]"], "lattice.horizon_ratio", "largest spacing")
-        self.refusal(PULLED, ["lattice.spacing=[1e-3]"], "lattice.spacing", "2 numbers")
-        self.refusal(PULLED, ["lattice.spacing=[1e-3, 0]"], "lattice.spacing[1]", "positive")
-        self.refusal(PULLED, ["lattice.angle=361"], "lattice.angle", "from -360 to 360")
-        self.refusal(PULLED, [oblong, "lattice.layer[0].where=y < 3*spacing"], "lattice.layer[0].where", "spacing_y")
+        self.refuses(PULLED, [box, fibres], "quadrature.horizon_shape", "fibres")
+        self.refuses(CUT, ["lattice.volumes=fractional", cpd], "material.model", "whole cells")
+        self.refuses(PULLED, ["lattice.spacing=[1e-4, 2e-3]"], "lattice.horizon_ratio", "largest spacing")
+        self.refuses(PULLED, ["lattice.spacing=[1e-3]"], "lattice.spacing", "2 numbers")
+        self.refuses(PULLED, ["lattice.spacing=[1e-3, 0]"], "lattice.spacing[1]", "positive")
+        self.refuses(PULLED, ["lattice.angle=361"], "lattice.angle", "from -360 to 360")
+        self.refuses(PULLED, [oblong, "lattice.layer[0].where=y < 3*spacing"], "lattice.layer[0].where", "spacing_y")
         for setting, word in (("angle=10", "angle"), ("spacing=[1e-3, 2e-3]", "one spacing"), ("origin=nodes", "origin"),
                               ("volumes=fractional", "volumes"), ("perturbation=0.1", "perturbation"),
                               ("cell_perturbation=0.1", "perturbation"), ('layer=[{name="a", side="x-"}]', "set of its points")):  # fmt: skip
-            self.refusal(HOLED, [f"lattice.{setting}"], "lattice.points", word)
-        self.refusal(HOLED, ["lattice.lloyd_steps=101"], "lattice.lloyd_steps", "0 to 100")
-        self.refusal(HOLED, ["lattice.points=lattice", "lattice.lloyd_steps=3"], "lattice.lloyd_steps", "blue_noise")
-        self.refusal(HOLED, ["lattice.points=white_noise"], "lattice.points", "blue_noise")
-        self.refusal(HOLED, ["lattice.spacing=1"], "lattice.shape", "half a cell")
-        self.refusal(HOLED, [cpd], "material.model", "whole cells")
-        self.refusal(HOLED, ["material.calibration=lattice"], "material.calibration", "lattice")
-        self.refusal(HOLED, ['load=[{set="right", pressure=1e5}]'], "load[0]", "blue noise")
-        self.refusal(SQUARE.format(dimension=1, low=[0], high=[1], where="x > 0.5", displacement="[0]"),
+            self.refuses(HOLED, [f"lattice.{setting}"], "lattice.points", word)
+        self.refuses(HOLED, ["lattice.lloyd_steps=101"], "lattice.lloyd_steps", "0 to 100")
+        self.refuses(HOLED, ["lattice.points=lattice", "lattice.lloyd_steps=3"], "lattice.lloyd_steps", "blue_noise")
+        self.refuses(HOLED, ["lattice.points=white_noise"], "lattice.points", "blue_noise")
+        self.refuses(HOLED, ["lattice.spacing=1"], "lattice.shape", "half a cell")
+        self.refuses(HOLED, [cpd], "material.model", "whole cells")
+        self.refuses(HOLED, ["material.calibration=lattice"], "material.calibration", "lattice")
+        self.refuses(HOLED, ['load=[{set="right", pressure=1e5}]'], "load[0]", "blue noise")
+        self.refuses(SQUARE.format(dimension=1, low=[0], high=[1], where="x > 0.5", displacement="[0]"),
                      ["lattice.points=blue_noise"], "lattice.points", "dimensions 2 and 3")  # fmt: skip
         disk = PULLED.replace('add = "box"', 'add = "disk"\ncentre = [0, 0]\nradius = 0.01')
         disk = disk.replace("min = [0.0, 0.0]\nmax = [0.02, 0.01]\n", "")
-        self.refusal(disk, ["lattice.angle=10"], "lattice.layer[0].side", "flat")
-        self.assertEqual(self.command("check", PULLED, [oblong, "lattice.layer[0].where=y < 3*spacing_y"]).code, 0)
+        self.refuses(disk, ["lattice.angle=10"], "lattice.layer[0].side", "flat")
+        self.assert_completed(self.command("check", PULLED, oblong, "lattice.layer[0].where=y < 3*spacing_y"))
 
 
 class GivenNeighbours(Cases):
@@ -440,7 +414,7 @@ displacement = ["1e-5*load", "free"]
                 set_name = "left" if x < 2.5e-3 else "right" if x > 8.5e-3 else ""
                 print(f"{x!r}, {y!r}, {random.uniform(0.8e-9, 1.2e-9)!r}, {set_name}", file=file)
 
-    def write(self, share, both_ways=False):
+    def write_pairs(self, share, both_ways=False):
         """Pairs within the horizon, with shares by a function of their distance."""
         with open(self.folder / "neighbours.txt", "w") as file:
             print("i j w_ij" if both_ways else "i j w_ij w_ji", file=file)
@@ -455,37 +429,36 @@ displacement = ["1e-5*load", "free"]
                     print(j + 1, i + 1, repr(back), repr(there), file=file)
 
     def test_whole_volumes_of_all_neighbours_are_those_that_are_found(self):
-        found = self.run_case(self.POINTS)[2]
-        self.write(lambda distance: 1.0)
-        numpy.testing.assert_allclose(self.run_case(self.GIVEN)[2], found, rtol=0, atol=1e-12 * numpy.abs(found).max())
+        found = self.solved(self.POINTS)[2]
+        self.write_pairs(lambda distance: 1.0)
+        numpy.testing.assert_allclose(self.solved(self.GIVEN)[2], found, rtol=0, atol=1e-12 * numpy.abs(found).max())
 
     def test_shares_weigh_bonds_as_the_reference_says(self):
         for both_ways in (False, True):
-            self.write(lambda distance: float(numpy.clip(1.2 - distance / 4e-3, 0.1, 1)), both_ways)
-            self.run_case(self.GIVEN)
+            self.write_pairs(lambda distance: float(numpy.clip(1.2 - distance / 4e-3, 0.1, 1)), both_ways)
+            self.solved(self.GIVEN)
             self.judge()
-            self.run_case(self.GIVEN, ["quadrature.surface_correction=energy"])
+            self.solved(self.GIVEN, ["quadrature.surface_correction=energy"])
             self.judge()
 
     def test_a_run_goes_on_with_the_same_neighbours_only(self):
-        self.write(lambda distance: 1.0)
-        self.assertEqual(self.command("run", self.GIVEN, ["loading.steps=4"]).code, 0)
-        self.assertEqual(peristat("resume", self.folder / "out", "--set", "loading.table=[0, 1, 2]").code, 0)
-        self.write(lambda distance: 0.9)
-        changed = peristat("resume", self.folder / "out", "--set", "loading.table=[0, 1, 2, 3]")
-        self.assertEqual(changed.code, 2, changed.said)
+        self.write_pairs(lambda distance: 1.0)
+        self.run_case(self.GIVEN, "loading.steps=4")
+        self.resume("out", "loading.table=[0, 1, 2]")
+        self.write_pairs(lambda distance: 0.9)
+        self.resume("out", "loading.table=[0, 1, 2, 3]", code=2)
 
     def test_what_does_not_go_with_them_is_refused(self):
-        self.write(lambda distance: 1.0)
+        self.write_pairs(lambda distance: 1.0)
         for correction in ("linear", "exact", "exact_centroids"):
-            self.refusal(self.GIVEN, [f"quadrature.volume_correction={correction}"], "volume_correction", "shares")
-        self.refusal(self.GIVEN, ["quadrature.surface_correction=volume"], "surface_correction", "energy")
-        self.refusal(self.GIVEN, ['material={model="cpd", youngs_modulus=1e9, poisson_ratio=0.4}'], "material.model")
-        self.refusal(self.GIVEN, ["solver.mode=adaptive", "solver.elastic_horizon_ratio=2"], "elastic_horizon_ratio")
+            self.refuses(self.GIVEN, [f"quadrature.volume_correction={correction}"], "volume_correction", "shares")
+        self.refuses(self.GIVEN, ["quadrature.surface_correction=volume"], "surface_correction", "energy")
+        self.refuses(self.GIVEN, ['material={model="cpd", youngs_modulus=1e9, poisson_ratio=0.4}'], "material.model")
+        self.refuses(self.GIVEN, ["solver.mode=adaptive", "solver.elastic_horizon_ratio=2"], "elastic_horizon_ratio")
         (self.folder / "neighbours.txt").write_text("i j w_ij\n1 2 1\n2 100 1\n")
-        self.refusal(self.GIVEN, [], "neighbours.txt:3", "from 1 to 72")
+        self.refuses(self.GIVEN, [], "neighbours.txt:3", "from 1 to 72")
         (self.folder / "neighbours.txt").unlink()
-        self.refusal(self.GIVEN, [], "points.neighbours", "no such file")
+        self.refuses(self.GIVEN, [], "points.neighbours", "no such file")
 
 
 if __name__ == "__main__":

@@ -1,18 +1,18 @@
 """The library: the page quotes the example, which is built against an installed peristat, and gives
 what the same case gives."""
 
-import csv
 import os
 import pathlib
 import re
 import shutil
-import subprocess
 import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from tests.acceptance.folder import Folder
+from tests.reference.program import PROGRAM, ROOT, execute
+from tests.reference.results import table
+
 EXAMPLES = ROOT / "docs/examples"
-PROGRAM = pathlib.Path(os.environ.get("PERISTAT_PROGRAM", ROOT / "build/release/peristat"))
 THE_SAME_CASE = """
 dimension = 2
 [lattice]
@@ -54,20 +54,16 @@ OTHERS_POINTS = "#error the program's own header was taken for peristat's\n"
 
 
 def run(*command, **options):
-    result = subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)
-    if result.returncode != 0:
-        raise AssertionError(f"{command} ends with {result.returncode}:\n{result.stdout}{result.stderr}")
-    return result.stdout
+    ended = execute(command, seconds=600, limited=False, **options)
+    assert ended.code == 0, f"{command} ends with {ended.code}:\n{ended.said}"
+    return ended.output
 
 
-class Library(unittest.TestCase):
+class Library(Folder):
     @classmethod
     def setUpClass(cls):
-        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="peristat_library_"))
-        cls.addClassCleanup(shutil.rmtree, cls.folder, ignore_errors=True)
-        cls.prefix = cls.folder / "prefix"
-        run("cmake", "--install", PROGRAM.parent, "--prefix", cls.prefix)
-        cls.environment = {**os.environ, "OMP_NUM_THREADS": "2", "OMP_WAIT_POLICY": "passive"}
+        cls.prefix = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="peristat library ")))
+        run("cmake", "--install", pathlib.Path(PROGRAM).parent, "--prefix", cls.prefix)
 
     def build(self, source, build):
         compiler = os.environ.get("PERISTAT_CXX", "c++")
@@ -83,18 +79,16 @@ class Library(unittest.TestCase):
 
     def test_the_example_gives_what_the_case_gives(self):
         self.build(EXAMPLES, self.folder / "build")
-        told = run(self.folder / "build/plate", env=self.environment)
+        told = run(self.folder / "build/plate", environment={"OMP_NUM_THREADS": "2", "OMP_WAIT_POLICY": "passive"})
         displacement, reaction = (float(value) for value in re.findall(r"(\S+) (?:m|N)\n", told))
 
-        case, results = self.folder / "plate.toml", self.folder / "results"
-        case.write_text(THE_SAME_CASE)
         # The installed program, which finds its module in the same prefix.
-        run(self.prefix / "bin/peristat", "run", case, "--output", results, "--threads", "2")
-        with open(results / "history.csv", encoding="utf-8") as file:
-            last = list(csv.DictReader(file))[-1]
+        results = self.folder / "results"
+        run(self.prefix / "bin/peristat", "run", self.case(THE_SAME_CASE), "--output", results, "--threads", 2)
+        last = table(results / "history.csv")[-1]
         # The same computation: what differs is the number of digits that are printed.
-        self.assertAlmostEqual(displacement / float(last["end_x"]), 1.0, delta=1e-12)
-        self.assertAlmostEqual(reaction / float(last["reaction_x:left"]), 1.0, delta=1e-12)
+        self.assertAlmostEqual(displacement / last["end_x"], 1.0, delta=1e-12)
+        self.assertAlmostEqual(reaction / last["reaction_x:left"], 1.0, delta=1e-12)
         # F L / (E w h) of the plate without its hole, which lets it give way by a tenth or so, as do
         # the ends that are pulled across three rows.
         whole = 12.8e3 * 0.15 / (192e9 * 0.05 * 1e-3)
@@ -102,8 +96,7 @@ class Library(unittest.TestCase):
 
     def test_headers_do_not_collide_with_a_program_s_own(self):
         source = self.folder / "other"
-        (source / "src/geometry").mkdir(parents=True)
-        (source / "src/geometry/points.hpp").write_text(OTHERS_POINTS)
+        self.write("other/src/geometry/points.hpp", OTHERS_POINTS)
         shutil.copy(EXAMPLES / "CMakeLists.txt", source)
         with open(source / "CMakeLists.txt", "a", encoding="utf-8") as file:
             file.write("target_include_directories(plate BEFORE PRIVATE ${CMAKE_SOURCE_DIR})\n")
@@ -119,10 +112,9 @@ class Library(unittest.TestCase):
         text = (source / "plate.cpp").read_text("utf-8").replace("horizon = 3.015e-3", "horizon = 3.015e-4")
         (source / "plate.cpp").write_text(text, "utf-8")
         self.build(source, self.folder / "wrong_build")
-        result = subprocess.run([self.folder / "wrong_build/plate"], capture_output=True, text=True)
-        self.assertEqual(result.returncode, 2)
-        self.assertEqual(result.stdout, "")
-        self.assertIn("horizon = 0.0003015: horizon smaller than the mean spacing", result.stderr)
+        ended = self.execute([self.folder / "wrong_build/plate"])
+        self.assert_refused(ended, "horizon = 0.0003015: horizon smaller than the mean spacing")
+        self.assertEqual(ended.output, "")
 
 
 if __name__ == "__main__":

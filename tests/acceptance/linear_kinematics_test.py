@@ -1,18 +1,16 @@
 """Linear kinematics, bond by bond and by convolutions, and points that fail by their energy density."""
 
-import csv
-import json
 import math
-import pathlib
-import tempfile
 import unittest
 
 import h5py
 import numpy
 
-from tests.reference.program import peristat
+from tests.acceptance.folder import Folder
+from tests.reference.program import ROOT
+from tests.reference.results import Results, table
 
-CASES = pathlib.Path(__file__).parents[2] / "cases"
+CASES = ROOT / "cases"
 STRIP = """\
 dimension = 2
 [lattice]
@@ -71,40 +69,22 @@ FAILING = 'material.damage={law="energy_density", fracture_energy=2.0, no_fail=[
 GLASS = ["lattice.spacing=4e-4", "lattice.horizon_ratio=3.1"]  # of branching_2d
 
 
-class Run:
+class Run(Results):
+    """With the last step's fields as its own."""
+
     def __init__(self, folder):
-        self.summary = json.loads((folder / "summary.json").read_text())
-        with h5py.File(folder / "results.h5") as file:
-            self.reference, self.volume = file["points/reference"][:], file["points/volume"][:]
-            step = file["steps"][sorted(file["steps"])[-1]]
-            self.fields = {name: step[name][:] for name in ("displacement", "damage", "force", "energy_density")}
-            self.sets = {name: file["points/sets"][name][:] for name in file["points/sets"]} if "sets" in file["points"] else {}
-        with open(folder / "history.csv") as rows:
-            self.loads = [float(row["load_factor"]) for row in csv.DictReader(rows)]
+        super().__init__(folder)
+        names = ("displacement", "damage", "force", "energy_density")
+        self.fields = {name: self.steps[-1].fields[name] for name in names}
+        self.loads = [row["load_factor"] for row in self.table("history")]
 
     def __getattr__(self, name):
         return self.fields[name]
 
 
-class CommandLine(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_linear_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def path_of(self, case):
-        if "\n" not in str(case):
-            return case
-        path = self.folder / "case.toml"
-        path.write_text(case)
-        return path
-
-    def results(self, case, *settings, threads=1):
-        given = [word for setting in settings for word in ("--set", setting)]
-        ended = peristat("run", self.path_of(case), "--output", self.folder / "out", "--overwrite", "--quiet", "--no-plots",
-                         "--threads", threads, *given)  # fmt: skip
-        self.assertEqual(ended.code, 0, ended.said)
-        return Run(self.folder / "out")
+class CommandLine(Folder):
+    def results(self, *arguments, **options):
+        return Run(self.run_case(*arguments, **options))
 
     def same(self, one, other, share=1e-11):
         # What is torn through is left with the round-off of what it bore.
@@ -263,9 +243,7 @@ solver = {operator = "fft"}
         failing = 'material.damage={law="energy_density", fracture_energy=2e3}'
         for case, settings in ((cube, []), (solid, []), (moving, []), (moving, [failing])):
             with self.subTest(case=case, settings=settings):
-                given = [word for setting in settings for word in ("--set", setting)]
-                ended = peristat("check", self.path_of(case), *given)
-                self.assertEqual(ended.code, 0, ended.said)
+                ended = self.assert_completed(self.command("check", case, *settings))
                 number, unit = ended.said.split("memory      about ")[1].split()[:2]
                 peak = self.results(case, *settings).summary["peak_memory_bytes"]
                 self.assertGreater(float(number) * {"MB": 1e6, "GB": 1e9}[unit], peak)
@@ -324,10 +302,7 @@ class Motions(CommandLine):
         at = dict(zip(zip(x, y), run.damage))
         for (x, y), damage in at.items():
             self.assertAlmostEqual(at[x, -y], damage, delta=1e-12)
-        lines = (self.folder / "out/history.csv").read_text().splitlines()
-        names = lines[0].split(",")
-        rows = [dict(zip(names, map(lambda word: float(word) if word[:1] in "-0123456789" else word, line.split(",")))) for line in lines[1:]]
-        tips = [row for row in rows if row["tip"] > 0.056]
+        tips = [row for row in table(self.folder / "out/history.csv") if row["tip"] > 0.056]
         grown = tips[-1]["tip"] - tips[0]["tip"]
         self.assertGreater(grown, 0.01)
         self.assertAlmostEqual((tips[-1]["dissipated_energy"] - tips[0]["dissipated_energy"]) / grown / 3.8, 1, delta=0.05)
@@ -335,20 +310,15 @@ class Motions(CommandLine):
     def test_steps_are_stable_up_to_the_stable_one(self):
         # 2 / omega_max of plane waves in the bulk, from the lattice's sums: no mask has a shorter one.
         bulk = 1e-3 * math.sqrt(2440 / 72e9) * self.bulk_step()
-        ended = peristat("check", self.path_of(WAVES))
-        self.assertEqual(ended.code, 0, ended.said)
+        ended = self.assert_completed(self.command("check", WAVES))
         stable = float(ended.said.split("stable time step ")[1].split()[0])
         self.assertLess(stable, bulk * (1 + 1e-5))
         self.assertGreater(stable, 0.98 * bulk)
-        self.results(WAVES)
-        lines = (self.folder / "out/history.csv").read_text().splitlines()
-        rows = [dict(zip(lines[0].split(","), line.split(","))) for line in lines[1:]]
-        modified = [float(row["modified_energy"]) for row in rows]
+        modified = [row["modified_energy"] for row in self.results(WAVES).table("history")]
         self.assertGreater(len(modified), 5)
         self.assertLess(max(modified) / min(modified) - 1, 1e-12)
-        ended = peristat("check", self.path_of(WAVES.replace("step_share = 0.99", f"time_step = {1.02 * bulk}")))
-        self.assertEqual(ended.code, 2, ended.said)
-        self.assertIn("longer than the stable step", ended.said)
+        longer = WAVES.replace("step_share = 0.99", f"time_step = {1.02 * bulk}")
+        self.assert_refused(self.command("check", longer), "longer than the stable step")
 
     @staticmethod
     def bulk_step(ratio=3.015):
@@ -381,14 +351,12 @@ class Torn(CommandLine):
         energy = self.results(pulled + 'displacement = ["2e-6*load", 0]\n', FAILING).summary["energy"]
         self.assertGreater(energy["drained"], 0.0)
         self.assertLess(abs(energy["balance_error"]), 1e-12 * energy["external_work"])
-        with open(self.folder / "out/decisions.csv") as rows:
-            self.assertIn("hold fragments", [row["action"] for row in csv.DictReader(rows)])
+        self.assertIn("hold fragments", [row["action"] for row in table(self.folder / "out/decisions.csv")])
 
     def test_a_dead_load_that_nobody_bears(self):
         loaded = STRIP[: STRIP.index('[[support]]\nset = "right"')] + STRIP[STRIP.index("[solver]") :]
         loaded += '[loading]\nsteps = 30\n[[load]]\nside = "x+"\ntraction = ["4e7*load", 0]\n'
-        ended = peristat("run", self.path_of(loaded), "--output", self.folder / "out", "--quiet", "--no-plots", "--set", FAILING)
-        self.assertEqual(ended.code, 3, ended.said)
+        self.run_case(loaded, FAILING, threads=2, code=3)
         self.assertIn("the body does not bear them", (self.folder / "out/decisions.csv").read_text())
 
     def test_what_is_torn_through_is_left_with_round_off(self):
@@ -398,7 +366,7 @@ class Torn(CommandLine):
         self.assertGreater(run.summary["energy"]["dissipated"], 1e-4)
 
     def test_torn_motions(self):
-        moving = pathlib.Path(self.path_of(STRIP)).read_text().replace("*load", "*t/1e-6") + "[dynamics]\nend_time = 2e-5\ntime_step = 2e-7\n"
+        moving = STRIP.replace("*load", "*t/1e-6") + "[dynamics]\nend_time = 2e-5\ntime_step = 2e-7\n"
         self.results(moving, FAILING, "solver.operator=fft", "solver.mode=dynamics", "dynamics.scheme=newmark", "material.density=2440.0")
 
 
@@ -446,11 +414,7 @@ class Refusals(CommandLine):
             ([FAILING, 'set=[{name="all", where="x > 0"}]', 'probe=[{name="area", field="crack_area", set="all"}]'], ("probe[0].field", "band")),
         ):  # fmt: skip
             with self.subTest(settings=settings):
-                given = [word for setting in settings for word in ("--set", setting)]
-                ended = peristat("check", self.path_of(STRIP), *given)
-                self.assertEqual(ended.code, 2, ended.said)
-                for word in words:
-                    self.assertIn(word, ended.said)
+                self.assert_refused(self.command("check", STRIP, *settings), *words)
 
 
 class SoonerOperator(CommandLine):
@@ -465,9 +429,7 @@ class SoonerOperator(CommandLine):
             (STRIP, ["material.model=green_bond", "material.kinematics=finite"], True),
         ):
             with self.subTest(settings=settings):
-                given = [word for setting in ["solver.operator=auto", *settings] for word in ("--set", setting)]
-                ended = peristat("check", self.path_of(case), *given)
-                self.assertEqual(ended.code, 0, ended.said)
+                ended = self.assert_completed(self.command("check", case, "solver.operator=auto", *settings))
                 self.assertEqual("summed by convolutions" in ended.said, convolved)
 
     def test_both_move_alike(self):
@@ -478,9 +440,7 @@ class SoonerOperator(CommandLine):
 
 class Calibration(CommandLine):
     def test_of_points_that_fail(self):
-        ended = peristat("calibrate", self.path_of(STRIP), "--set", FAILING)
-        self.assertEqual(ended.code, 0, ended.said)
-        told = json.loads(ended.said)["damage"]
+        told = self.assert_completed(self.command("calibrate", STRIP, FAILING)).json()["damage"]
         self.assertEqual(told["fracture_energy"], 2.0)
         self.assertAlmostEqual(told["energy_density"], 2.0 / (2 * 3.015e-3), delta=1e-9)
 

@@ -1,58 +1,47 @@
 """Linear solvers through the command line: their choice, their results, their refusals."""
 
-import csv
-import json
-import os
 import pathlib
 import re
 import shutil
-import subprocess
-import tempfile
 import unittest
 
-PROGRAM = os.environ["PERISTAT_PROGRAM"]
-CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
+from tests.acceptance.folder import Folder
+from tests.reference.program import PROGRAM, ROOT, settings
+from tests.reference.results import table
+
+CASES = ROOT / "cases"
 BEAM = CASES / "cantilever" / "beam.toml"
 PLATE = CASES / "plate_with_hole" / "elastic.toml"
 # A shorter and coarser beam: 20 x 5 x 5 points and the clamp.
 SMALL = ["lattice.spacing=0.02", "lattice.shape[0].max=[0.4, 0.05, 0.05]", "set[0].where='x > 0.4 - spacing'"]
 
 
-class LinearSolvers(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_acceptance_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+class LinearSolvers(Folder):
+    threads = 2
 
-    def peristat(self, command, case, *settings, overwrite=False):
-        words = ["--overwrite"] * overwrite + [word for setting in settings for word in ("--set", setting)]
-        return subprocess.run([PROGRAM, command, str(case), *words], cwd=self.folder, text=True, timeout=300,
-                              stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
-
-    def run_case(self, case, *settings):
-        run = self.peristat("run", case, "output.directory='out'", *settings, overwrite=True)
-        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
-        return run.stdout, json.loads((self.folder / "out/summary.json").read_text())
+    def solved(self, case, *changes):
+        """What a run prints, and its summary."""
+        summary = self.results(case, *changes).summary
+        return self.ended.output, summary
 
     def iterations(self):
-        with open(self.folder / "out/iterations.csv", newline="") as file:
-            return list(csv.DictReader(file))
+        return table(self.folder / "out/iterations.csv")
 
     def test_every_solver_and_preconditioner_gives_the_same_tip(self):
-        _, direct = self.run_case(BEAM, *SMALL, "solver.linear=cholesky")
+        _, direct = self.solved(BEAM, *SMALL, "solver.linear=cholesky")
         tip = direct["probes"]["tip"]
         counted = {}
         for linear in ("pcg", "minres", "gmres"):
             for preconditioner in ("auto", "jacobi", "block_jacobi", "rigid_pieces", "surrogate", "sines", "riluk",
                                    "chebyshev", "multigrid"):  # fmt: skip
                 with self.subTest(linear=linear, preconditioner=preconditioner):
-                    told, summary = self.run_case(BEAM, *SMALL, f"solver.linear={linear}",
-                                                  f"solver.preconditioner={preconditioner}")  # fmt: skip
+                    told, summary = self.solved(BEAM, *SMALL, f"solver.linear={linear}",
+                                                f"solver.preconditioner={preconditioner}")  # fmt: skip
                     for found, expected in zip(summary["probes"]["tip"], tip):
                         self.assertAlmostEqual(found, expected, delta=1e-9 * max(map(abs, tip)))
                     self.assertGreater(summary["linear_iterations"], 0)
-                    self.assertEqual(sum(int(row["linear_iterations"]) for row in self.iterations()),
-                                     summary["linear_iterations"])  # fmt: skip
+                    of_steps = sum(row["linear_iterations"] for row in self.iterations())
+                    self.assertEqual(of_steps, summary["linear_iterations"])
                     self.assertIn("(as the case asks)", told)
                     counted[linear, preconditioner] = summary["linear_iterations"]
         for better in ("rigid_pieces", "surrogate", "multigrid"):
@@ -60,54 +49,50 @@ class LinearSolvers(unittest.TestCase):
 
     def with_launcher(self, script):
         """A run that iterates, by a program without modules beside it and a stand-in for the launcher."""
-        house = self.folder / "a house"
-        house.mkdir(exist_ok=True)
-        shutil.copy(PROGRAM, house / "peristat")
-        (house / "launcher").write_text("#!/bin/sh\n" + script)
-        (house / "launcher").chmod(0o755)
-        words = [word for setting in [*SMALL, "solver.linear=pcg"] for word in ("--set", setting)]
-        return subprocess.run([house / "peristat", "run", BEAM, "--overwrite", "--output", "out", *words], cwd=self.folder,
-                              env=os.environ | {"PERISTAT_LAUNCHER": str(house / "launcher")}, text=True, timeout=300,
-                              stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
+        launcher = self.write("a house/launcher", "#!/bin/sh\n" + script)
+        launcher.chmod(0o755)
+        program = shutil.copy(PROGRAM, launcher.with_name("peristat"))
+        command = [program, "run", BEAM, "--output", "out", *settings(*SMALL, "solver.linear=pcg")]
+        return self.execute(command, environment={"PERISTAT_LAUNCHER": str(launcher)})
 
     def test_a_module_is_built_by_the_launcher_at_its_first_use(self):
         built = self.with_launcher(f'echo "built: $*"; ln -s "{pathlib.Path(PROGRAM).parent}/$2.so" "$(dirname "$0")"')
-        self.assertEqual(built.returncode, 0, built.stderr)
-        self.assertIn("built: build peristat_trilinos\n", built.stderr)
+        self.assert_completed(built)
+        self.assertIn("built: build peristat_trilinos\n", built.errors)
 
     def test_a_module_that_is_not_built_ends_the_run(self):
         ended = self.with_launcher("echo no compiler >&2; exit 1")
-        self.assertEqual(ended.returncode, 5, ended.stderr)
-        self.assertRegex(ended.stderr, "no compiler\n(.*\n)*.*Trilinos could not be built: see above")
+        self.assert_code(ended, 5)
+        self.assertRegex(ended.errors, "no compiler\n(.*\n)*.*Trilinos could not be built: see above")
 
     def test_stored_and_matrix_free_tangents_give_the_same(self):
-        stored, first = self.run_case(BEAM, *SMALL, "solver.linear=pcg", "solver.tangent=stored")
-        free, second = self.run_case(BEAM, *SMALL, "solver.linear=pcg", "solver.tangent=matrix_free")
+        stored, first = self.solved(BEAM, *SMALL, "solver.linear=pcg", "solver.tangent=stored")
+        free, second = self.solved(BEAM, *SMALL, "solver.linear=pcg", "solver.tangent=matrix_free")
         self.assertNotIn("matrix-free", stored)
         self.assertIn("tangent matrix-free", free)
         for one, other in zip(first["probes"]["tip"], second["probes"]["tip"]):
             self.assertAlmostEqual(one, other, delta=1e-9 * abs(first["probes"]["tip"][1]))
 
     def test_auto_says_what_it_chooses_and_why(self):
-        told = self.peristat("check", BEAM).stdout
+        told = self.command("check", BEAM).output
         self.assertRegex(told, r"solver +conjugate gradients preconditioned by rigid pieces \(auto: a factorisation "
                                r"is estimated at .* s, iterations at .* s a step\)")  # fmt: skip
-        told = self.peristat("check", PLATE, "lattice.spacing=2.5e-4").stdout
+        told = self.command("check", PLATE, "lattice.spacing=2.5e-4").output
         self.assertRegex(told, r"solver +conjugate gradients preconditioned by sines on 606 x 200 places \(auto: a "
                                r"factorisation is estimated at .* s, iterations at .* s a step\)")  # fmt: skip
-        told = self.peristat("check", CASES / "bar/tension.toml").stdout
+        told = self.command("check", CASES / "bar/tension.toml").output
         self.assertRegex(told, r"solver +CHOLMOD .* \(auto: .*\)")
-        told = self.peristat("check", CASES / "plate_with_hole/square.toml", "solver.mode=newton").stdout
+        told = self.command("check", CASES / "plate_with_hole/square.toml", "solver.mode=newton").output
         self.assertRegex(told, r"solver +CHOLMOD .* \(auto: its pivots tell whether the softening body is stable\)")
 
     def test_a_preconditioner_that_is_named_is_used(self):
-        told, _ = self.run_case(BEAM, *SMALL, "solver.preconditioner=surrogate")
+        told, _ = self.solved(BEAM, *SMALL, "solver.preconditioner=surrogate")
         self.assertIn("preconditioned by surrogate", told)
         self.assertIn("(as the case asks)", told)
 
     def test_newton_stays_quadratic_with_iterations(self):
         self.run_case(BEAM, *SMALL)
-        residuals = [float(row["relative_residual"]) for row in self.iterations()]
+        residuals = [row["relative_residual"] for row in self.iterations()]
         self.assertLess(residuals[-1], 1e-10)
         self.assertLessEqual(len(residuals), 6)
 
@@ -124,19 +109,15 @@ class LinearSolvers(unittest.TestCase):
              "solver.preconditioner = local_operator: is for models whose tangent is not"),
         ):
             with self.subTest(settings=settings):
-                run = self.peristat("check", BEAM, *settings)
-                self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
-                self.assertIn(fragment, run.stderr)
-        run = self.peristat("check", CASES / "cpd/square.toml", "solver.tangent=matrix_free")
-        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
-        self.assertIn('material.model = "bond"', run.stderr)
+                self.assert_refused(self.command("check", BEAM, *settings), fragment)
+        run = self.command("check", CASES / "cpd/square.toml", "solver.tangent=matrix_free")
+        self.assert_refused(run, 'material.model = "bond"')
 
     def test_sines_say_what_they_are_not_for(self):
-        pinned = self.folder / "pinned.toml"
         text = PLATE.read_text()
         left = text.index('[[support]]\nset = "left"')
         rigid = '[[rigid]]\nset = "left"\n\n'
-        pinned.write_text(text[:left] + rigid + text[text.index('[[support]]\nset = "right"'):])
+        pinned = self.write("pinned.toml", text[:left] + rigid + text[text.index('[[support]]\nset = "right"'):])
         for case, settings, fragment in (
             (PLATE, ("lattice.angle=30",), "is for lattices along the axes"),
             (pinned, (), "is for bodies without rigid sets"),
@@ -144,19 +125,15 @@ class LinearSolvers(unittest.TestCase):
         ):
             for command in ("check", "run"):
                 with self.subTest(case=case.name, command=command):
-                    run = self.peristat(command, case, "solver.preconditioner=sines", *settings)
-                    self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
-                    self.assertIn(fragment, run.stderr)
-                    self.assertIn("solver.preconditioner = sines", run.stderr)
-                    self.assertIn("rigid_pieces", run.stderr)
+                    run = self.command(command, case, "solver.preconditioner=sines", *settings)
+                    self.assert_refused(run, fragment, "solver.preconditioner = sines", "rigid_pieces")
 
     def test_auto_keeps_rigid_pieces_where_sines_are_no_good(self):
         fine = "lattice.spacing=2.5e-4"
         for settings in (("lattice.angle=90",), ("crack=[{from=[-0.01, 0.01], to=[0.01, 0.01]}]",)):
             with self.subTest(settings=settings):
-                told = self.peristat("check", PLATE, fine, *settings)
-                self.assertEqual(told.returncode, 0, told.stdout + told.stderr)
-                self.assertIn("preconditioned by rigid pieces", told.stdout)
+                told = self.assert_completed(self.command("check", PLATE, fine, *settings))
+                self.assertIn("preconditioned by rigid pieces", told.output)
 
     def beam_of(self, half_width):
         return [f"lattice.shape[0].min=[0, -{half_width}, -{half_width}]",
@@ -172,10 +149,10 @@ class LinearSolvers(unittest.TestCase):
                                (plate, []), (plate, ["solver.linear=cholesky"]),
                                (plate, ["solver.preconditioner=multigrid"])]:  # fmt: skip
             with self.subTest(case=case.name, settings=settings):
-                check = self.peristat("check", case, *settings)
-                told = re.search(r"^memory +about ([0-9.]+) (MB|GB)", check.stdout, re.MULTILINE)
+                check = self.command("check", case, *settings)
+                told = re.search(r"^memory +about ([0-9.]+) (MB|GB)", check.output, re.MULTILINE)
                 estimate = float(told[1]) * {"MB": 1e6, "GB": 1e9}[told[2]]
-                _, summary = self.run_case(case, *settings)
+                _, summary = self.solved(case, *settings)
                 self.assertLess(abs(estimate / summary["peak_memory_bytes"] - 1.0), 0.15)
 
     def test_memory_per_point_in_3d(self):
@@ -183,8 +160,8 @@ class LinearSolvers(unittest.TestCase):
             with self.subTest(tangent=tangent):
                 used = []
                 for half_width in (0.12, 0.24):  # so large that what libraries take says little
-                    _, summary = self.run_case(BEAM, *self.beam_of(half_width), "solver.linear=pcg",
-                                               f"solver.tangent={tangent}")  # fmt: skip
+                    _, summary = self.solved(BEAM, *self.beam_of(half_width), "solver.linear=pcg",
+                                             f"solver.tangent={tangent}")  # fmt: skip
                     used.append((summary["points"], summary["peak_memory_bytes"]))
                 (few, less), (many, more) = used
                 self.assertGreater(many, 3 * few)

@@ -1,20 +1,15 @@
 """The linear peridynamic solid through the command line: patch tests, known solutions, refusals."""
 
-import json
 import math
-import os
-import pathlib
-import subprocess
-import tempfile
 import unittest
 
 import numpy
 
+from tests.acceptance.folder import Folder
 from tests.reference import lps
-from tests.reference.results import Results
+from tests.reference.program import ROOT
 
-PROGRAM = os.environ["PERISTAT_PROGRAM"]
-CASES = pathlib.Path(__file__).resolve().parents[2] / "cases" / "lps"
+CASES = ROOT / "cases/lps"
 # Solutions of some hundred unknowns lose the condition of the system, 1e3, of round-off.
 EXACT = 1e-12
 NAMES = {"x-": "x_low", "x+": "x_high"}
@@ -60,29 +55,7 @@ poisson_ratio = {poisson}
     return text + loads + f"[loading]\nsteps = {steps}\n[solver]\nlinear = 'lu'\nrelative_tolerance = 1e-13\n{solver}\n"
 
 
-class CommandLine(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_lps_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def peristat(self, command, case, *settings, threads=1):
-        """case: a text, or a file."""
-        if isinstance(case, str):
-            (self.folder / "case.toml").write_text(case)
-            case = self.folder / "case.toml"
-        words = [word for setting in settings for word in ("--set", setting)]
-        words += ["--output", str(self.folder / "out"), "--overwrite"] if command == "run" else []
-        return subprocess.run([PROGRAM, command, str(case), *words, "--threads", str(threads)], text=True, timeout=300,
-                              stdin=subprocess.DEVNULL, capture_output=True, cwd=self.folder)  # fmt: skip
-
-    def results(self, case, *settings, threads=1):
-        ended = self.peristat("run", case, *settings, threads=threads)
-        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
-        return Results(self.folder / "out")
-
-
-class Patches(CommandLine):
+class Patches(Folder):
     """Linear displacements are found exactly."""
 
     def error(self, *arguments, **options):
@@ -211,7 +184,7 @@ class Patches(CommandLine):
             self.assertGreater(probes["error"] + probes["error_of_strain"], 0)
 
 
-class KnownSolutions(CommandLine):
+class KnownSolutions(Folder):
     # Root mean squares times the root of the area are the errors that tests/reference/lps.py has found
     # with systems of its own: 3.98e-2, 9.32e-2; 1.60e-2, 4.37e-2; 1.01e-2, 2.20e-2; 1.90e-3, 7.21e-2.
     ERRORS = {"manufactured": (3.98e-2, 9.32e-2, 256 * (math.pi / 16) ** 2), "hole": (1.60e-2, 4.37e-2, None),
@@ -289,28 +262,29 @@ def residual_of(found, case, normals_of=None):
             abs(solid.residual(still, force, tractions)).max())  # fmt: skip
 
 
-class Refusals(CommandLine):
-    def assert_refused(self, words, case, *settings):
-        for command in ("run", "check"):
-            ended = self.peristat(command, case, *settings)
-            self.assertEqual(ended.returncode, 2, ended.stdout + ended.stderr)
-            self.assertRegex(ended.stderr, words)
+class Refusals(Folder):
+    def assert_both_refuse(self, words, case, *changes):
+        """A run, and a check."""
+        self.assertRegex(self.refusal(case, *changes), words)
+        checked = self.command("check", case, *changes)
+        self.assert_refused(checked)
+        self.assertRegex(checked.errors, words)
 
     def test_bodies_that_are_not_held(self):
-        self.assert_refused("supports do not hold the body", patch(layers=()))
+        self.assert_both_refuse("supports do not hold the body", patch(layers=()))
 
     def test_too_few_neighbours(self):
-        self.assert_refused("the point at .* has 8 neighbours, of which no weights are exact to degree 4",
+        self.assert_both_refuse("the point at .* has 8 neighbours, of which no weights are exact to degree 4",
                             patch(ratio=1.5))  # fmt: skip
 
     def test_tractions_without_a_boundary(self):
         none = "there is no free boundary here"
         inside = '[[set]]\nname = "inside"\nwhere = "abs(x - 0.5) < 0.1 && abs(y - 0.5) < 0.1"\n'
-        self.assert_refused(r"load\[0\]\.set = \"inside\": " + none,
+        self.assert_both_refuse(r"load\[0\]\.set = \"inside\": " + none,
                             patch(loads=inside + '[[load]]\nset = "inside"\ntraction = [0, 1]\n'))  # fmt: skip
-        self.assert_refused(r"load\[0\]\.side = \"x-\": " + none,
+        self.assert_both_refuse(r"load\[0\]\.side = \"x-\": " + none,
                             patch(loads='[[load]]\nside = "x-"\ntraction = [0, 1]\n'))  # fmt: skip
-        self.assert_refused(r"load\[0\]\.boundary = \"hole\": " + none,
+        self.assert_both_refuse(r"load\[0\]\.boundary = \"hole\": " + none,
                             patch(loads='[[load]]\nboundary = "hole"\npressure = 1\n'))  # fmt: skip
 
     def test_tractions_that_would_be_lost(self):
@@ -318,27 +292,26 @@ class Refusals(CommandLine):
         neck = '[[lattice.shape]]\nsubtract = "box"\nmin = [0.4, -1.0]\nmax = [0.6, 0.25]\n'
         for value in ("traction = [0, 1]", "pressure = 1"):
             load = f'[[load]]\nside = "y+"\n{value}\n'
-            self.assert_refused(r"load\[0\]\..*less than two horizons apart", patch(loads=load, size=(1.0, 0.5), shapes=neck))
-            self.assertEqual(self.peristat("run", patch(loads=load, size=(1.0, 0.5))).returncode, 0)
-        both = self.peristat("run", patch(loads="[[load]]\npressure = 1\n", size=(1.0, 0.5), shapes=neck))
-        self.assertEqual(both.returncode, 0, both.stderr)
+            self.assert_both_refuse(r"load\[0\]\..*less than two horizons apart", patch(loads=load, size=(1.0, 0.5), shapes=neck))
+            self.run_case(patch(loads=load, size=(1.0, 0.5)))
+        self.run_case(patch(loads="[[load]]\npressure = 1\n", size=(1.0, 0.5), shapes=neck))
 
     def test_thin_bodies(self):
         """Their operator has eigenvalues of the other sign: cantilevers would bend as the load does not."""
         for rows in (1, 3, 6):
-            self.assert_refused(r"material.model = lps: needs bodies thicker than two horizons",
+            self.assert_both_refuse(r"material.model = lps: needs bodies thicker than two horizons",
                                 patch(size=(1.0, 0.05 * rows), layers=("x-",)))  # fmt: skip
 
     def test_other_depths(self):
         load = '[[load]]\nside = "y+"\ntraction = [0, 1]\ndepth = "row"\n'
-        self.assert_refused("depth .*of model lps is \"surface\"", patch(loads=load))
+        self.assert_both_refuse("depth .*of model lps is \"surface\"", patch(loads=load))
 
     def test_points_on_faces(self):
-        self.assert_refused(r"material.model = lps: .* stands on a face", patch('origin = "nodes"'))
-        self.assert_refused(r"stands on a face", patch("angle = 45"))
+        self.assert_both_refuse(r"material.model = lps: .* stands on a face", patch('origin = "nodes"'))
+        self.assert_both_refuse(r"stands on a face", patch("angle = 45"))
 
     def test_expressions_that_are_not_finite(self):
-        self.assert_refused(r"load\[0\]\.stress .*must be finite", patch(loads='[[load]]\nstress = ["1/(x-x)", 0, 0]\n'))
+        self.assert_both_refuse(r"load\[0\]\.stress .*must be finite", patch(loads='[[load]]\nstress = ["1/(x-x)", 0, 0]\n'))
 
     def test_lattices_that_are_none(self):
         (self.folder / "points.csv").write_text(
@@ -355,40 +328,39 @@ poisson_ratio = 0.3
 set = "held"
 displacement = [0, 0]
 """
-        self.assert_refused("needs a lattice of squares", cloud)
-        self.assert_refused("needs a lattice of squares", patch(), "lattice.spacing=[0.05, 0.1]")
+        self.assert_both_refuse("needs a lattice of squares", cloud)
+        self.assert_both_refuse("needs a lattice of squares", patch(), "lattice.spacing=[0.05, 0.1]")
 
     def test_what_needs_an_energy(self):
         for mode in ("adaptive", "relaxation"):
-            self.assertRegex(self.peristat("run", patch(), f"solver.mode={mode}").stderr,
-                             rf"solver.mode = {mode}: is for models with an energy")  # fmt: skip
-            self.assertEqual(self.peristat("run", patch(), f"solver.mode={mode}").returncode, 2)
+            said = self.refusal(patch(), f"solver.mode={mode}")
+            self.assertIn(f"solver.mode = {mode}: is for models with an energy", said)
         for linear in ("cholesky", "pcg", "minres"):
-            self.assert_refused("is for symmetric tangents", patch(), f"solver.linear={linear}")
+            self.assert_both_refuse("is for symmetric tangents", patch(), f"solver.linear={linear}")
 
     def test_what_does_not_go_with_it(self):
-        self.assert_refused("planes of symmetry", patch() + '[[symmetry]]\naxis = "y"\nat = 0.0\n')
-        self.assert_refused("lps has a quadrature of its own", patch(quadrature='surface_correction = "energy"'))
-        self.assert_refused("lps has a quadrature of its own", patch(quadrature='volume_correction = "linear"'))
-        self.assert_refused("not for the model lps",
+        self.assert_both_refuse("planes of symmetry", patch() + '[[symmetry]]\naxis = "y"\nat = 0.0\n')
+        self.assert_both_refuse("lps has a quadrature of its own", patch(quadrature='surface_correction = "energy"'))
+        self.assert_both_refuse("lps has a quadrature of its own", patch(quadrature='volume_correction = "linear"'))
+        self.assert_both_refuse("not for the model lps",
                             patch(material="thermal_expansion = 1e-5") + '[temperature]\nchange = "10"\n')  # fmt: skip
         rigid = patch() + '[[set]]\nname = "middle"\nwhere = "abs(x - 0.5) < 0.1"\n[[rigid]]\nset = "middle"\n'
-        self.assertRegex(self.peristat("run", rigid).stderr, "rigid sets, .* are for models with an energy")
+        self.assertRegex(self.refusal(rigid), "rigid sets, .* are for models with an energy")
 
     def test_expected_values(self):
         probe = '[[probe]]\nname = "e"\nset = "x_low"\n'
-        self.assert_refused("needs expected", patch() + probe + 'statistic = "rms_error"\n')
-        self.assert_refused("goes with statistic", patch() + probe + "expected = [0, 0]\n")
-        self.assert_refused("as many expressions as there are components: 2",
+        self.assert_both_refuse("needs expected", patch() + probe + 'statistic = "rms_error"\n')
+        self.assert_both_refuse("goes with statistic", patch() + probe + "expected = [0, 0]\n")
+        self.assert_both_refuse("as many expressions as there are components: 2",
                             patch() + probe + 'statistic = "max_error"\nexpected = [0]\n')  # fmt: skip
 
 
-class Told(CommandLine):
+class Told(Folder):
     def test_check(self):
-        told = self.peristat("check", CASES / "inclusion.toml").stdout
+        told = self.command("check", CASES / "inclusion.toml").output
         self.assertIn("constants of inclusion: lambda 0.8 Pa, mu 0.8 Pa", told)
         self.assertIn("quadrature  exact to degree 5; 1 of 900 neighbourhoods solved for, 0 weights below 0", told)
-        told = self.peristat("check", patch(quadrature="degree = 8")).stdout
+        told = self.command("check", patch(quadrature="degree = 8")).output
         self.assertRegex(told, r"at \d+ points only to a lower degree")
 
     def test_errors_over_a_set(self):
@@ -433,7 +405,7 @@ relative_tolerance = 1e-13
 """
 
 
-class Solids(CommandLine):
+class Solids(Folder):
     """Linear displacements of a cube that is held at one face, with five faces, eight edges and four corners."""
 
     def error(self, form="full", perturbation=0.0):
@@ -535,7 +507,7 @@ steps = 6
 """
 
 
-class Motions(CommandLine):
+class Motions(Folder):
     def test_quadratic_in_time(self):
         """Newmark's mean acceleration is exact for motions quadratic in time, whatever the step."""
         tractions = [f"t*t*({value!r})" for value in stress(0.3)]
@@ -557,7 +529,7 @@ class Motions(CommandLine):
         numpy.testing.assert_allclose(one.displacement, two.displacement, atol=1e-12 * abs(one.displacement).max())
 
 
-class SuboptimalRates(CommandLine):
+class SuboptimalRates(Folder):
     ABOVE = ("lattice.shape[0].max=[2.945243112740431, 1.5707963267948966]", "set[0].where=abs(x) < pi/2 && y > -pi/2",
              "set[1].where=abs(x) > pi/2 || y < -pi/2")  # fmt: skip
 
@@ -634,10 +606,7 @@ every = 500
 """
 
 
-class ThinBodies(CommandLine):
-    def summary(self):
-        return json.loads((self.folder / "out" / "summary.json").read_text())
-
+class ThinBodies(Folder):
     def test_cantilevers_bend_as_the_page_tells(self):
         """Deflections over those of Timoshenko's beam, and what of the weight no reaction bears."""
         def beam(height):
@@ -645,48 +614,45 @@ class ThinBodies(CommandLine):
             return bending + 1e-5 * height * 3.0**2 / (2 * 5 / 6 * height / 2.2)
 
         for rows, told in ((2, 1.02), (3, 0.98), (4, 1.00), (7, 0.90), (10, 0.89), (20, 0.92)):
-            self.results(CANTILEVER.format(height=0.05 * rows) + WEIGHT, "quadrature.form=energy")
-            self.assertAlmostEqual(self.summary()["probes"]["tip"] / beam(0.05 * rows), told, delta=0.006)
+            summary = self.results(CANTILEVER.format(height=0.05 * rows) + WEIGHT, "quadrature.form=energy").summary
+            self.assertAlmostEqual(summary["probes"]["tip"] / beam(0.05 * rows), told, delta=0.006)
         gaps = {}
         for rows, told in ((7, 0.23), (8, 0.43), (10, 0.75), (14, 1.01), (20, 1.09), (28, 1.09)):
             height = 0.05 * rows
-            self.results(CANTILEVER.format(height=height) + WEIGHT)
-            self.assertAlmostEqual(self.summary()["probes"]["tip"] / beam(height), told, delta=0.006)
-            gaps[rows] = self.summary()["unbalanced_force"] / (3.0 * 1e-5 * height)
+            summary = self.results(CANTILEVER.format(height=height) + WEIGHT).summary
+            self.assertAlmostEqual(summary["probes"]["tip"] / beam(height), told, delta=0.006)
+            gaps[rows] = summary["unbalanced_force"] / (3.0 * 1e-5 * height)
         for rows, told in ((7, 1.13), (14, 0.46), (28, 0.06)):
             self.assertAlmostEqual(gaps[rows], told, delta=0.006)
 
     def test_motions_that_gain_energy_end(self):
         strip = CANTILEVER.replace("[3.0, {height}]", "[4.0, {height}]")
-        ended = self.peristat("run", strip.format(height=0.35) + PUSH)
-        self.assertEqual(ended.returncode, 3, ended.stderr)
-        self.assertRegex((self.folder / "out" / "decisions.csv").read_text(), "the motion holds .* J, and no more than .* J have been put in")
+        decisions = self.run_case(strip.format(height=0.35) + PUSH, code=3) / "decisions.csv"
+        self.assertRegex(decisions.read_text(), "the motion holds .* J, and no more than .* J have been put in")
         for rows, gained in ((8, 1.22), (10, 1.04)):
-            self.results(strip.format(height=0.05 * rows) + PUSH)
-            energy = self.summary()["energy"]
+            energy = self.results(strip.format(height=0.05 * rows) + PUSH).summary["energy"]
             self.assertAlmostEqual(1 - energy["balance_error"] / energy["external_work"], gained, delta=0.006)
 
 
-class Iterations(CommandLine):
+class Iterations(Folder):
     def test_they_depend_on_neither_size_nor_perturbation(self):
         """Of GMRES with the operator between neighbours of the unperturbed lattice, in all solves of the step."""
         for poisson, most in ((0.3, 35), (0.49, 120)):
             for sides in (16, 48):
                 for perturbation in (0, 0.2):
                     with self.subTest(poisson=poisson, sides=sides, perturbation=perturbation):
-                        self.results(CASES / "manufactured.toml", "solver.linear=gmres", f"lattice.spacing={math.pi / sides!r}",
-                                     f"material.poisson_ratio={poisson}", f"lattice.perturbation={perturbation}")  # fmt: skip
-                        summary = json.loads((self.folder / "out" / "summary.json").read_text())
-                        self.assertLessEqual(summary["linear_iterations"], most)
+                        changes = f"lattice.spacing={math.pi / sides!r}", f"lattice.perturbation={perturbation}"
+                        found = self.results(CASES / "manufactured.toml", "solver.linear=gmres",
+                                             f"material.poisson_ratio={poisson}", *changes)  # fmt: skip
+                        self.assertLessEqual(found.summary["linear_iterations"], most)
 
 
-class LoadSteps(CommandLine):
+class LoadSteps(Folder):
     def test_a_strip_tears(self):
         """What a straight crack dissipates is its area times the fracture energy, but for the ends of its path."""
         found = self.results(STRIP)
-        summary = json.loads((self.folder / "out" / "summary.json").read_text())
         area = 0.028  # for a metre of thickness
-        self.assertAlmostEqual(summary["energy"]["dissipated"] / (3.8 * area), 1.0, delta=0.1)
+        self.assertAlmostEqual(found.summary["energy"]["dissipated"] / (3.8 * area), 1.0, delta=0.1)
         moved = found.steps[-1].displacement[:, 1]
         upper = found.reference[:, 1] > 0.01
         numpy.testing.assert_allclose(moved[upper], 3e-6, atol=1e-11)  # without stress

@@ -1,13 +1,11 @@
 """docs/materials.md: its tables are accepted, and its numbers are those of its formulas."""
 
-import json
-import pathlib
 import re
-import tempfile
 import tomllib
 import unittest
 
-from tests.reference.program import ROOT, peristat
+from tests.acceptance.folder import Folder
+from tests.reference.program import ROOT
 
 PAGE = (ROOT / "docs/materials.md").read_text()
 # A body of a few points on a lattice that resolves the strength of every material.
@@ -46,12 +44,7 @@ def row(name):
     return [cell.strip() for cell in line.strip("|").split("|")][1:]
 
 
-class MaterialsPage(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_materials_")
-        self.addCleanup(folder.cleanup)
-        self.case = pathlib.Path(folder.name) / "case.toml"
-
+class MaterialsPage(Folder):
     def test_has_a_dozen_materials_with_all_that_a_sheet_has(self):
         names = [name for name, *_ in sheets()]
         self.assertGreaterEqual(len(names), 12)
@@ -70,9 +63,7 @@ class MaterialsPage(unittest.TestCase):
                     size = largest / 4
                     body = BODY.format(dimension=dimension, spacing=size, low=[0.0] * dimension,
                                        high=[8 * size, 6 * size, 4 * size][:dimension], still=[0.0] * dimension)  # fmt: skip
-                    self.case.write_text(body + text)
-                    run = peristat("check", self.case)
-                    self.assertEqual(run.code, 0, run.said)
+                    run = self.assert_completed(self.command("check", body + text))
                     told = re.search(r"fracture energy (\S+) J/m2.*strength (\S+) Pa", run.output)
                     material = tomllib.loads(text)["material"]["damage"]
                     self.assertAlmostEqual(float(told[1]) / material["fracture_energy"], 1.0, delta=1e-5)  # as printed
@@ -101,10 +92,11 @@ class MaterialsPage(unittest.TestCase):
                 self.assertEqual(float(of_toughness) * 1e6 if of_toughness else None, toughness)
                 self.assertAlmostEqual(float(strength) * 1e6, damage["strength"], delta=1.0)
                 self.assertEqual(float(energy), damage["fracture_energy"])
-                run = peristat("calibrate", "--model", "bond", "--dimension", "2", "--spacing", "1e-6", "--horizon-ratio", "3.015",
-                               "--youngs-modulus", str(material["youngs_modulus"]), "--law", "linear",
-                               "--fracture-energy", str(damage["fracture_energy"]), "--strength", str(damage["strength"]))  # fmt: skip
-                told = json.loads(run.output)["damage"]
+                run = self.peristat("calibrate", "--model", "bond", "--dimension", 2, "--spacing", "1e-6",
+                                    "--horizon-ratio", 3.015, "--youngs-modulus", material["youngs_modulus"],
+                                    "--law", "linear", "--fracture-energy", damage["fracture_energy"],
+                                    "--strength", damage["strength"])  # fmt: skip
+                told = run.json()["damage"]
                 self.assertEqual(f"{told['characteristic_length'] * 1e3:.3g}", length)
                 self.assertEqual(f"{told['largest_spacing'] * 1e3:.3g}", spacing)
 

@@ -1,18 +1,14 @@
 """What the program says to wrong, extreme and long input, and to an interrupt."""
 
 import json
-import os
-import pathlib
 import signal
-import subprocess
-import tempfile
 import time
 import unittest
 
 import h5py
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = os.environ["PERISTAT_PROGRAM"]
+from tests.acceptance.folder import Folder
+from tests.reference.program import PROGRAM
 
 # A plate of 40 x 12 points with a cut of 10 columns from its left edge.
 PLATE = """\
@@ -59,26 +55,13 @@ field = "crack_length"
 SPACING = 1e-3
 
 
-class Messages(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat messages ")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def peristat(self, *arguments, **options):
-        return subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
-                              stdin=subprocess.DEVNULL, timeout=600, **options)  # fmt: skip
-
-    def write(self, text, name="case.toml"):
-        path = self.folder / name
-        path.write_text(text.replace("LIFT", "1e-6"))
-        return path
+class Messages(Folder):
+    def case(self, text):
+        return super().case(text.replace("LIFT", "1e-6"))
 
     def assert_refused(self, run, *words):
-        self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
-        for word in words:
-            self.assertIn(word, run.stderr)
-        self.assertLess(len(run.stderr), 4000)
+        super().assert_refused(run, *words)
+        self.assertLess(len(run.errors), 4000)
 
     def test_a_long_line_is_read_in_time_that_grows_with_it(self):
         corners = [(0.04 * k / 20000, 0.01) for k in range(20000)] + [(0.04, 0.0), (0.0, 0.0)]
@@ -86,95 +69,89 @@ class Messages(unittest.TestCase):
         text = PLATE.replace('add = "box"\nmin = [0.0, 0.0]\nmax = [0.04, 0.012]', f'add = "polygon"\nvertices = [{vertices}]')
         start = time.monotonic()
         # unknown, so that nothing but reading is done
-        self.assert_refused(self.peristat("check", self.write(text), "--set", "lattice.spacin=1"), "lattice.spacin")
+        self.assert_refused(self.command("check", text, "lattice.spacin=1"), "lattice.spacin")
         # Quadratic reading took 13 s for a fifth of the vertices.
         self.assertLess(time.monotonic() - start, 30.0)
 
     def test_a_first_shape_that_subtracts_is_wrong_input(self):
-        run = self.peristat("run", self.write(PLATE.replace('add = "box"', 'subtract = "box"')))
+        run = self.command("run", PLATE.replace('add = "box"', 'subtract = "box"'))
         self.assert_refused(run, "lattice.shape[0]", "the first shape must be added")
 
     def test_a_load_without_a_value_at_the_start_is_told_with_its_place(self):
         text = PLATE + '[[load]]\nset = "ligament"\ntotal_force = ["1/load", 0]\n'
         place = f"case.toml:{text.count(chr(10))}:16: load[0].total_force[0] = "
-        self.assert_refused(self.peristat("run", self.write(text)), place, "at load = 0 is inf")
+        self.assert_refused(self.command("run", text), place, "at load = 0 is inf")
 
     def test_long_values_are_quoted_shortly(self):
         long = "x" * 100_000
         for setting in (f"loading.steps={long}", f"{long}=1", f'title=["{long}"]', f"lattice.{long}=1"):
-            self.assert_refused(self.peristat("check", self.write(PLATE), "--set", setting), "characters)")
-        self.assert_refused(self.peristat("check", self.write(PLATE.replace('"box"', f'"{"y" * 700_000}"'))), "characters)")
-        self.assert_refused(self.peristat("check", self.write(PLATE), "--threads", long), "characters)")
+            self.assert_refused(self.command("check", PLATE, setting), "characters)")
+        self.assert_refused(self.command("check", PLATE.replace('"box"', f'"{"y" * 700_000}"')), "characters)")
+        self.assert_refused(self.command("check", PLATE, words=("--threads", long)), "characters)")
 
     def test_control_characters_end_no_message(self):
-        run = self.peristat("check", self.write(PLATE.replace('law = "critical_stretch"', r'law = "a\u0000b\u001b"')))
+        run = self.command("check", PLATE.replace('law = "critical_stretch"', r'law = "a\u0000b\u001b"'))
         self.assert_refused(run, "allowed: ")
-        self.assertNotIn("\0", run.stderr)
-        self.assertNotIn("\x1b", run.stderr)
+        self.assertNotIn("\0", run.errors)
+        self.assertNotIn("\x1b", run.errors)
 
     def warnings(self, run):
-        return [line.removeprefix("warning: ") for line in run.stdout.splitlines() if line.startswith("warning: ")]
+        return [line.removeprefix("warning: ") for line in run.output.splitlines() if line.startswith("warning: ")]
 
     def test_check_tells_what_a_case_makes_of_the_body(self):
-        run = self.peristat("check", self.write(PLATE))
-        self.assertEqual(run.returncode, 0, run.stderr)
+        run = self.assert_completed(self.command("check", PLATE))
         for line in ("body        0.04 x 0.012 m, thickness 0.001 m; 40 x 12 spacings", "ligament    ligament beside crack[0], 0.0298 m",
                      "crack       crack[0] cuts ", "applied     support[1].displacement[1] (top): 0 m at load 0, 1e-06 m at the end",
                      "steps in which damage grows take many times as long"):  # fmt: skip
-            self.assertIn(line, run.stdout)
+            self.assertIn(line, run.output)
         self.assertEqual(self.warnings(run), [])
 
     def test_warnings_stand_at_the_head_of_a_run_and_in_its_summary(self):
-        case = self.write(PLATE.replace('"LIFT*load"', "1e-6").replace("thickness = 1e-3\n", ""))
-        told = self.warnings(self.peristat("check", case))
+        case = PLATE.replace('"LIFT*load"', "1e-6").replace("thickness = 1e-3\n", "")
+        told = self.warnings(self.command("check", case))
         self.assertEqual(len(told), 2, told)
         self.assertIn("lattice.thickness is not given and taken as 1 m", told[0])
         self.assertIn("support[1].displacement[1] = 1e-06 does not depend on load: it is applied in full at load 0", told[1])
-        run = self.peristat("run", case, "--output", "out")
-        self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertEqual(self.warnings(run), told)
-        self.assertLess(run.stdout.index("warning: "), run.stdout.index("step "))
-        self.assertEqual(json.loads((self.folder / "out/summary.json").read_text())["warnings"], told)
-        quiet = self.peristat("run", self.write(PLATE), "--output", "right", "--quiet")
-        self.assertEqual((quiet.returncode, quiet.stdout), (0, ""), quiet.stderr)
-        self.assertEqual(json.loads((self.folder / "right/summary.json").read_text())["warnings"], [])
+        self.assertEqual(self.results(case).summary["warnings"], told)
+        self.assertEqual(self.warnings(self.ended), told)
+        self.assertLess(self.ended.output.index("warning: "), self.ended.output.index("step "))
+        self.assertEqual(self.results(PLATE, words=("--quiet",)).summary["warnings"], [])
+        self.assertEqual(self.ended.output, "")
 
     def test_what_does_nothing_is_refused(self):
         outside = PLATE.replace("from = [-1e-3, 6e-3]", "from = [1.0, 6e-3]").replace("to = [0.0102, 6e-3]", "to = [2.0, 6e-3]")
         for command in ("check", "run"):
-            self.assert_refused(self.peristat(command, self.write(outside)), "crack[0]", "cuts no bond")
+            self.assert_refused(self.command(command, outside), "crack[0]", "cuts no bond")
         hole = '[[lattice.shape]]\nsubtract = "disk"\ncentre = [4.0, 4.0]\nradius = 1.0\n'
         text = PLATE.replace("[[lattice.layer]]", hole + "[[lattice.layer]]", 1)
-        self.assert_refused(self.peristat("check", self.write(text)), "lattice.shape[1].subtract", "takes nothing away")
-        run = self.peristat("check", self.write(PLATE), "--set", "loading.table2=[0, 1]")
+        self.assert_refused(self.command("check", text), "lattice.shape[1].subtract", "takes nothing away")
+        run = self.command("check", PLATE, "loading.table2=[0, 1]")
         self.assert_refused(run, "loading.table2", "load2, which no displacement and no load names")
 
     def test_a_modulus_in_gigapascals(self):
         text = PLATE.replace("200e9", "30").replace("critical = 0.01", "fracture_energy = 100\nstrength = 3e6").replace("critical_stretch", "linear")
-        self.assert_refused(self.peristat("check", self.write(text)), "strength", "youngs_modulus is 30 Pa (30 GPa is 30e9)")
+        self.assert_refused(self.command("check", text), "strength", "youngs_modulus is 30 Pa (30 GPa is 30e9)")
 
     def test_names_that_results_can_not_have(self):
         name = "n" * 300
         for text in (PLATE.replace('name = "crack"', f'name = "{name}"'), PLATE.replace("ligament", name)):
-            self.assert_refused(self.peristat("check", self.write(text)), "300 characters; at most 100")
-        (self.folder / "points.csv").write_text("x,y,volume,set\n0,0,1e-9,.\n1e-3,0,1e-9,\n")
+            self.assert_refused(self.command("check", text), "300 characters; at most 100")
+        self.write("points.csv", "x,y,volume,set\n0,0,1e-9,.\n1e-3,0,1e-9,\n")
         text = 'dimension = 2\n[points]\nfile = "points.csv"\nhorizon = 3e-3\nthickness = 1e-3\n[material]\nyoungs_modulus = 1e9\n'
-        self.assert_refused(self.peristat("check", self.write(text)), "points.csv:2", "can't be called '.'")
+        self.assert_refused(self.command("check", text), "points.csv:2", "can't be called '.'")
 
     def test_more_ranks_than_the_machine_bears(self):
-        self.assert_refused(self.peristat("run", self.write(PLATE), "--ranks", "100000"), "--ranks", "at most")
+        self.assert_refused(self.command("run", PLATE, words=("--ranks", "100000")), "--ranks", "at most")
 
     def test_results_tell_which_point_of_the_file_each_is(self):
         places = [(0.001 * (7 * k % 20), 0.001 * (k % 2)) for k in range(40)]
         places = sorted(set(places), key=lambda place: (place[1], -place[0]))
         rows = [f"{x},{y},1e-9,{'held' if x < 0.0025 else 'pulled' if x > 0.0165 else ''}" for x, y in places]
-        (self.folder / "points.csv").write_text("\n".join(["# remark", "x,y,volume,set", *rows]))
-        case = self.write('dimension = 2\n[points]\nfile = "points.csv"\nhorizon = 3.1e-3\nthickness = 1e-3\n'
-                          '[material]\nyoungs_modulus = 1e9\n[[support]]\nset = "held"\ndisplacement = [0, 0]\n'
-                          '[[support]]\nset = "pulled"\ndisplacement = ["1e-6*load", 0]\n')  # fmt: skip
-        run = self.peristat("run", case, "--output", "out")
-        self.assertEqual(run.returncode, 0, run.stderr)
-        with h5py.File(self.folder / "out/results.h5") as file:
+        self.write("points.csv", "\n".join(["# remark", "x,y,volume,set", *rows]))
+        out = self.run_case('dimension = 2\n[points]\nfile = "points.csv"\nhorizon = 3.1e-3\nthickness = 1e-3\n'
+                            '[material]\nyoungs_modulus = 1e9\n[[support]]\nset = "held"\ndisplacement = [0, 0]\n'
+                            '[[support]]\nset = "pulled"\ndisplacement = ["1e-6*load", 0]\n')  # fmt: skip
+        with h5py.File(out / "results.h5") as file:
             row = file["points/source_row"][...]
             self.assertEqual(sorted(row), list(range(len(places))))
             for place, k in zip(file["points/reference"][...], row, strict=True):
@@ -182,51 +159,47 @@ class Messages(unittest.TestCase):
 
     def test_a_number_with_a_unit(self):
         for text in ("3.2 GPa", '"3.2 GPa"'):
-            run = self.peristat("check", self.write(PLATE.replace("200e9", text)))
+            run = self.command("check", PLATE.replace("200e9", text))
             self.assert_refused(run, "numbers carry no unit", "3.2e+09")
-        run = self.peristat("check", self.write(PLATE), "--set", "lattice.spacing=1 mm")
+        run = self.command("check", PLATE, "lattice.spacing=1 mm")
         self.assert_refused(run, "numbers carry no unit", "write 0.001")
 
     def test_data_of_damage_need_a_law(self):
         """They used to be dropped without a word. Law none, said aloud, switches them off."""
         lawless = PLATE.replace('law = "critical_stretch", ', "").replace('law = "critical_stretch"\n', "")
         self.assertNotEqual(lawless, PLATE)
-        self.assert_refused(self.peristat("check", self.write(lawless)), "material.damage", "needs a law beside it")
+        self.assert_refused(self.command("check", lawless), "material.damage", "needs a law beside it")
         for table in ("region", "interface"):
             case = PLATE + f'[[{table}]]\nmaterial = {{ youngs_modulus = 1e9, damage = {{ fracture_energy = 10 }} }}\n'
-            run = self.peristat("check", self.write(case.replace("[[region]]", '[[region]]\nset = "top"')))
+            run = self.command("check", case.replace("[[region]]", '[[region]]\nset = "top"'))
             self.assert_refused(run, f"{table}[0].material.damage", "needs a law beside it")
-        run = self.peristat("check", self.write(lawless), "--set", 'material.damage.law="none"')
-        self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertNotIn("fracture ", run.stdout)
+        run = self.assert_completed(self.command("check", lawless, 'material.damage.law="none"'))
+        self.assertNotIn("fracture ", run.output)
 
     def test_a_layer_of_points_in_space(self):
         """No horizon gives bonds a direction out of the plane in which all points stand."""
         layer = 'dimension = 3\n[lattice]\nspacing = 1e-3\nshape = [{ add = "box", min = [0, 0, 0], max = [0.02, 0.01, 0.001] }]\n'
         layer += '[material]\nyoungs_modulus = 200e9\n[[set]]\nname = "left"\nwhere = "x < 0.003"\n'
         layer += '[[support]]\nset = "left"\ndisplacement = [0, 0, 0]\n[[load]]\nset = "left"\nbody_force = ["load", 0, 0]\n'
-        run = self.peristat("check", self.write(layer))
+        run = self.command("check", layer)
         self.assert_refused(run, "all points stand at the same z", "two layers", "2 dimensions")
-        self.assertNotIn("horizon", run.stderr)
+        self.assertNotIn("horizon", run.errors)
 
     def test_an_option_that_is_a_key(self):
-        run = self.peristat("run", self.write(PLATE), "--steps", "3")
+        run = self.command("run", PLATE, words=("--steps", "3"))
         self.assert_refused(run, "unknown option --steps", "--set loading.steps=3")
-        self.assert_refused(self.peristat("run", self.write(PLATE), "--thraeds", "1"), "did you mean --threads?")
+        self.assert_refused(self.command("run", PLATE, words=("--thraeds", "1")), "did you mean --threads?")
 
     def test_help_of_run_has_the_launchers_option(self):
-        run = self.peristat("run", "--help")
-        self.assertEqual(run.returncode, 0)
-        self.assertIn("--no-plots", run.stdout)
+        run = self.assert_completed(self.peristat("run", "--help"))
+        self.assertIn("--no-plots", run.output)
 
     def test_an_interrupt_is_told_once(self):
-        text = PLATE.replace("LIFT", "1e-6").replace("steps = 4", "steps = 1000000")
-        with subprocess.Popen([PROGRAM, "run", self.write(text)], cwd=self.folder, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:  # fmt: skip
-            while not process.stdout.readline().startswith("step "):
-                self.assertIsNone(process.poll())
-            process.send_signal(signal.SIGINT)
-            said = process.communicate(timeout=120)[1]
+        process = self.start([PROGRAM, "run", self.case(PLATE.replace("steps = 4", "steps = 1000000"))])
+        while not process.stdout.readline().startswith("step "):
+            self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=120)[1]
         self.assertEqual(process.returncode, 130)
         self.assertEqual(said.partition("\n")[0].count("interrupted"), 1, said)
 
@@ -251,15 +224,15 @@ class Messages(unittest.TestCase):
         for question in questions:
             run = self.peristat("calibrate", *question)
             with self.subTest(" ".join(question)):
-                self.assertIn(run.returncode, (0, 2), run.stderr)
-                if run.returncode == 0:
+                self.assertIn(run.code, (0, 2), run.errors)
+                if run.code == 0:
                     told += 1
-                    json.loads(run.stdout, parse_constant=self.fail)  # NaN and Infinity
-                    self.assertNotIn("nan", run.stdout)
-                    self.assertNotIn("inf", run.stdout)
+                    json.loads(run.output, parse_constant=self.fail)  # NaN and Infinity
+                    self.assertNotIn("nan", run.output)
+                    self.assertNotIn("inf", run.output)
                 else:
                     refused += 1
-                    self.assertEqual(run.stdout, "")
+                    self.assertEqual(run.output, "")
         self.assertGreater(told, 20)
         self.assertGreater(refused, 20)
 
@@ -268,11 +241,8 @@ class Messages(unittest.TestCase):
         for lift, expected in (("1e-7", 0.010), ("1e-3", 0.040)):
             lengths = []
             for counted in ("true", "false"):
-                case = self.write(PLATE.replace("LIFT", lift))
-                run = self.peristat("run", case, "--set", f"output.count_cracks={counted}", "--set", "solver.mode=adaptive",
-                                    "--threads", "1", "--output", f"out_{lift}_{counted}", "--quiet")  # fmt: skip
-                self.assertEqual(run.returncode, 0, run.stderr)
-                summary = json.loads((self.folder / f"out_{lift}_{counted}" / "summary.json").read_text())
+                text = PLATE.replace("LIFT", lift)
+                summary = self.results(text, f"output.count_cracks={counted}", "solver.mode=adaptive").summary
                 lengths.append(summary["probes"]["crack"])
                 self.assertEqual(summary["broken_bonds"] > 0, lift == "1e-3")
             self.assertEqual(*lengths)

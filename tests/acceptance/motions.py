@@ -1,42 +1,11 @@
 """Bodies in motion that several tests follow, and what is read of their results."""
 
-import os
-import pathlib
 import random
-import subprocess
-import tempfile
-import unittest
 
 import h5py
 import numpy
 
 from tests.reference.results import Results
-
-PROGRAM = os.environ["PERISTAT_PROGRAM"]
-
-
-def peristat(*arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=120)
-
-
-class Folder(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def run_case(self, text, name="run", *arguments, code=0):
-        case = self.folder / f"{name}.toml"
-        case.write_text(text)
-        ended = peristat("run", case, "--output", self.folder / name, "--threads", 1, "--quiet", *arguments)
-        self.assertEqual(ended.returncode, code, ended.stdout + ended.stderr)
-        self.said = ended.stdout + ended.stderr
-        return self.folder / name
-
-    def refusal(self, text, *arguments):
-        self.run_case(text, "refused", *arguments, code=2)
-        self.assertFalse((self.folder / "refused" / "history.csv").exists())
-        return self.said
 
 
 def columns(folder):

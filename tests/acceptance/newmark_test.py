@@ -2,7 +2,8 @@
 
 import numpy
 
-from tests.acceptance.motions import BAR, BREAKING, SQUARE, Folder, columns, fields, peristat, random_case
+from tests.acceptance.folder import Folder
+from tests.acceptance.motions import BAR, BREAKING, SQUARE, columns, fields, random_case
 from tests.reference.motion import ImplicitMotion
 from tests.reference.results import Results
 
@@ -24,7 +25,7 @@ class AgainstTheReference(Folder):
             radius, dt = (1, 0.6, 0)[seed % 3], (0.02, 0.05)[seed % 2]
             text = implicit(text, dt, radius).replace("history_every = 5", "history_every = 1").replace("every = 10", "every = 1")
             with self.subTest(seed=seed):
-                folder = self.run_case(text, f"case_{seed}")
+                folder = self.run_case(text, name=f"case_{seed}")
                 rows, at = columns(folder), fields(folder)
                 motion = ImplicitMotion(folder, text, radius)
                 began = motion.stored + motion.kinetic + motion.mechanics.dissipated(motion.history)
@@ -46,7 +47,7 @@ class AgainstTheReference(Folder):
 class ClosedForms(Folder):
     def test_average_acceleration_keeps_the_energy_of_a_linear_body_at_any_step(self):
         for dt in (0.02, 0.4, 2.0):  # the stable step is 0.13 s
-            rows = columns(self.run_case(implicit(BAR, dt), f"bar_{dt}"))
+            rows = columns(self.run_case(implicit(BAR, dt), name=f"bar_{dt}"))
             energy = rows["kinetic_energy"] + rows["stored_energy"]
             numpy.testing.assert_allclose(energy, energy[0], rtol=1e-12)
 
@@ -54,7 +55,7 @@ class ClosedForms(Folder):
         text = BAR.replace('"1e-3*exp(-(x - 1.4)^2/0.09)"', "0").replace('"1e-3*sin(x)"', "0.25")
         text += '[[set]]\nname = "all"\nwhere = "x > 0"\n[[load]]\nset = "all"\nbody_force = [3.0]\n'
         for radius in (1, 0.3, 0):
-            at = fields(self.run_case(implicit(text, 0.7, radius).replace("every = 20", "every = 1"), f"quadratic_{radius}"))
+            at = fields(self.run_case(implicit(text, 0.7, radius).replace("every = 20", "every = 1")))
             for state in at.values():
                 t = state["time"]
                 numpy.testing.assert_allclose(state["displacement"], 0.25 * t + 0.75 * t**2, rtol=1e-9, atol=1e-12)
@@ -66,7 +67,7 @@ class ClosedForms(Folder):
         text += '[[set]]\nname = "ends"\nwhere = "abs(x - 0.15) > 0.05"\n[[support]]\nset = "ends"\ndisplacement = [0]\n'
         for radius in (1, 0.7, 0):
             for step in (0.02, 0.05):
-                folder = self.run_case(implicit(text, step, radius, end=20 * step), f"oscillator_{radius}_{step}")
+                folder = self.run_case(implicit(text, step, radius, end=20 * step), name=f"oscillator_{radius}_{step}")
                 rows, at = columns(folder), fields(folder)
                 self.assertTrue((rows["time_step"] == step).all(), "a step was cut")
                 squared_frequency = 2 * rows["stored_energy"][0] / 1e-8 / 0.1  # of the density 2 in 0.05 m3
@@ -86,9 +87,10 @@ class ClosedForms(Folder):
     def test_agrees_with_explicit_steps_to_second_order(self):
         text = SQUARE.replace("end_time = 2.0", "end_time = 1.0").replace("/0.1)", "/0.3)").replace("every = 10", "every = 100000")
         last = lambda folder: (lambda at: at[max(at)])(fields(folder))
-        fine = last(self.run_case(text.replace("step_share = 0.5", "time_step = 0.001"), "fine"))
+        fine = last(self.run_case(text.replace("step_share = 0.5", "time_step = 0.001"), name="fine"))
         for name in ("displacement", "velocity"):
-            errors = [abs(last(self.run_case(implicit(text, dt), f"{name}_{dt}"))[name] - fine[name]).max() for dt in (0.05, 0.025, 0.0125)]
+            errors = [abs(last(self.run_case(implicit(text, dt)))[name] - fine[name]).max()
+                      for dt in (0.05, 0.025, 0.0125)]  # fmt: skip
             for coarse, half in zip(errors, errors[1:]):
                 self.assertAlmostEqual(coarse / half, 4.0, delta=0.25)
 
@@ -97,30 +99,31 @@ class Breaking(Folder):
     TEXT = implicit(BREAKING.replace("every = 10", "every = 4"), 0.04)
 
     def test_bonds_break_as_by_explicit_steps(self):
-        explicit = columns(self.run_case(BREAKING.replace("step_share = 0.5", "time_step = 0.01")))["broken_bonds"][-1]
+        texts = BREAKING.replace("step_share = 0.5", "time_step = 0.01"), implicit(BREAKING, 0.01)
+        explicit, found = (columns(self.run_case(text))["broken_bonds"][-1] for text in texts)
         self.assertGreater(explicit, 20)
-        self.assertLess(abs(columns(self.run_case(implicit(BREAKING, 0.01), "implicit"))["broken_bonds"][-1] - explicit), 0.1 * explicit)
+        self.assertLess(abs(found - explicit), 0.1 * explicit)
 
     def test_long_steps_gain_no_energy_from_bonds_that_break(self):
         for radius in (1, 0.8, 0):
             for step in (0.1, 0.5, 2.0):
                 with self.subTest(radius=radius, step=step):
-                    rows = columns(self.run_case(implicit(BREAKING, step, radius), f"long_{radius}_{step}"))
+                    rows = columns(self.run_case(implicit(BREAKING, step, radius), name=f"long_{radius}_{step}"))
                     self.assertGreater(rows["broken_bonds"][-1], 10)
                     self.assertGreater((rows["balance_error"] / rows["external_work"].max()).min(), -0.0501)
 
     def test_goes_on_to_the_last_bit(self):
         for radius in (1, 0.5):
             text = self.TEXT.replace("spectral_radius = 1", f"spectral_radius = {radius}")
-            whole, part = self.run_case(text, f"whole_{radius}"), self.run_case(text, f"part_{radius}", "--stop-after", 4, code=130)
-            ended = peristat("resume", part, "--threads", 1, "--quiet")
-            self.assertEqual(ended.returncode, 0, ended.stderr)
+            whole = self.run_case(text, name="whole")
+            part = self.run_case(text, name="part", words=("--stop-after", 4), code=130)
+            self.resume(part)
             self.assertEqual((whole / "history.csv").read_text(), (part / "history.csv").read_text())
             self.assertGreater(columns(whole)["broken_bonds"][-1], 10)
 
     def test_solvers_and_threads_agree(self):
-        found = [columns(self.run_case(self.TEXT.replace('mode = "dynamics"', f'mode = "dynamics"\n{keys}'), f"run_{k}"))
-                 for k, keys in enumerate(('linear = "cholesky"', 'linear = "pcg"', 'linear = "pcg"\ntangent = "stored"'))]  # fmt: skip
+        found = [columns(self.run_case(self.TEXT.replace('mode = "dynamics"', f'mode = "dynamics"\n{keys}')))
+                 for keys in ('linear = "cholesky"', 'linear = "pcg"', 'linear = "pcg"\ntangent = "stored"')]  # fmt: skip
         for other in found[1:]:
             numpy.testing.assert_array_equal(found[0]["broken_bonds"], other["broken_bonds"])
             numpy.testing.assert_allclose(found[0]["kinetic_energy"], other["kinetic_energy"], rtol=1e-7)
@@ -151,7 +154,4 @@ class Refusals(Folder):
 
 class CheckTangent(Folder):
     def test_inertia_is_in_it(self):
-        case = self.folder / "case.toml"
-        case.write_text(implicit(SQUARE, 1e-3))
-        ended = peristat("check-tangent", case)
-        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+        self.assert_completed(self.command("check-tangent", implicit(SQUARE, 1e-3)))

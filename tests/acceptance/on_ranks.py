@@ -2,20 +2,16 @@
 
 import csv
 import json
-import os
 import re
-import subprocess
-import tempfile
-import unittest
 from pathlib import Path
 
 import h5py
 import numpy
 
-ROOT = Path(__file__).parents[2]
-PROGRAM = os.environ["PERISTAT_PROGRAM"]
+from tests.acceptance.folder import Folder
+
 # Root may run them, as in a container; ranks that wait leave the core to other tests.
-ENVIRONMENT = os.environ | {
+ENVIRONMENT = {
     "OMPI_MCA_mpi_yield_when_idle": "1",
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
@@ -195,33 +191,27 @@ total_force = ["1e-3*load", "1e-3*load", "load"]
 SHORT_BAR = BAR.replace("max = [4]", "max = [0.3]").replace(', thickness = 2', ", thickness = 1")
 
 
-class OnRanks(unittest.TestCase):
-    def setUp(self):
-        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+def on(ranks):
+    return ("--ranks", ranks) if ranks > 1 else ()
 
-    def case(self, text):
-        file = self.folder / "case.toml"
-        file.write_text(text)
-        return file
 
-    def start(self, ranks, text, *options, threads=1):
-        file = self.case(text)
-        output = self.folder / f"on_{ranks}"
-        words = [PROGRAM, "run", *(("--ranks", str(ranks)) if ranks > 1 else ()), str(file)]
-        words += ["--threads", str(threads), "--output", str(output), "--overwrite", *options]
-        run = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=100)
-        return run, output
+class OnRanks(Folder):
+    def execute(self, command, **options):
+        return super().execute(command, **{"environment": ENVIRONMENT, "seconds": 100} | options)
 
-    def results(self, ranks, text, *options, **threads):
-        run, output = self.start(ranks, text, *options, **threads)
-        self.assertEqual(run.returncode, 0, run.stderr)
-        return output
+    def run_on(self, ranks, text, *changes, words=(), **options):
+        return self.run_case(text, *changes, name=f"on_{ranks}", words=(*on(ranks), *words), **options)
 
-    def refusal(self, text, *options, ranks=2):
-        run, output = self.start(ranks, text, *options)
-        self.assertEqual(run.returncode, 2, run.stderr)
-        self.assertFalse(output.exists())
-        return run.stderr
+    def ended_on(self, ranks, text, *changes, **options):
+        """How a run ended, well or not, and its folder."""
+        output = self.run_on(ranks, text, *changes, code=(0, 2, 3), **options)
+        return self.ended, output
+
+    def resume_on(self, ranks, folder, *changes, words=(), **options):
+        return self.resume(folder, *changes, words=(*on(ranks), *words), **options)
+
+    def refusal(self, text, *changes, ranks=2):
+        return super().refusal(text, *changes, words=on(ranks))
 
 
 def children_of(process):
@@ -289,19 +279,14 @@ class Comparison(OnRanks):
         count = lambda folder: sum(int(row["linear_iterations"]) for row in rows(folder, "iterations.csv"))
         self.assertLessEqual(count(several), 1.1 * count(one) + 10)
 
-    def compare(self, text, ranks=(2, 3), *options, solver=SOLVER):
-        one = self.results(1, text + solver, *options)
+    def compare(self, text, ranks=(2, 3), *changes, solver=SOLVER):
+        one = self.run_on(1, text + solver, *changes)
         for count in ranks:
-            several = self.results(count, text + solver, *options)
+            several = self.run_on(count, text + solver, *changes)
             with self.subTest(ranks=count):
                 self.expect_same(one, several)
                 self.expect_like_costs(one, several)
         return one
-
-
-def resume(ranks, output, *options):
-    words = [PROGRAM, "resume", str(output), *(("--ranks", str(ranks)) if ranks > 1 else ()), "--threads", "1", *options]
-    return subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=100)
 
 
 def entries_of_checkpoint(file):

@@ -4,42 +4,38 @@ any folder, without the sources, and writes nothing beside itself."""
 import os
 import pathlib
 import re
-import shutil
-import subprocess
 import tempfile
 import unittest
 
+from tests.acceptance.folder import Folder
 from tests.acceptance.strip import PULLED
+from tests.reference.program import PROGRAM, ROOT, execute
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = pathlib.Path(os.environ.get("PERISTAT_PROGRAM", ROOT / "build/release/peristat"))
+BUILD = pathlib.Path(PROGRAM).parent
 CASE = PULLED + "[loading]\nsteps = 2\n"
 
 
-def lines(*command):
-    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=True).stdout.splitlines()
+def lines(*command, **options):
+    ended = execute(command, **options)
+    assert ended.code == 0, ended.said
+    return ended.output.splitlines()
 
 
-class Package(unittest.TestCase):
+class Package(Folder):
     @classmethod
     def setUpClass(cls):
-        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="peristat package ")).resolve()
-        cls.addClassCleanup(shutil.rmtree, cls.folder, ignore_errors=True)
         # Staged, as packages are made: where it is installed and where it is told to be differ.
-        subprocess.run(["cmake", "--install", PROGRAM.parent, "--prefix", "/usr"], check=True,
-                       env=os.environ | {"DESTDIR": str(cls.folder / "stage")}, stdout=subprocess.DEVNULL)  # fmt: skip
-        cls.prefix = cls.folder / "stage/usr"
+        stage = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="peristat package "))).resolve()
+        lines("cmake", "--install", BUILD, "--prefix", "/usr", environment={"DESTDIR": str(stage)})
+        cls.prefix = stage / "usr"
         cls.launcher = cls.prefix / "bin/peristat"
 
     def setUp(self):
-        self.work = pathlib.Path(tempfile.mkdtemp(dir=self.folder, prefix="work "))
-        (self.work / "strip.toml").write_text(CASE)
+        super().setUp()
+        self.write("strip.toml", CASE)
 
     def launch(self, *arguments, **environment):
-        return subprocess.run(
-            [self.launcher, *arguments], cwd=self.work, env=os.environ | {"OMP_NUM_THREADS": "1"} | environment,
-            stdin=subprocess.DEVNULL, capture_output=True, text=True,
-        )  # fmt: skip
+        return self.execute([self.launcher, *arguments], environment={"OMP_NUM_THREADS": "1"} | environment)
 
     def installed(self):
         return {path: path.lstat().st_mtime_ns for path in self.prefix.rglob("*")}
@@ -47,15 +43,14 @@ class Package(unittest.TestCase):
     def test_a_run_draws_its_pictures_and_leaves_the_installation_alone(self):
         before = self.installed()
         run = self.launch("run", "strip.toml", "--output", "results/strip")
-        self.assertEqual((run.returncode, run.stderr), (0, ""))
-        again = self.launch("plot", "results/strip")
-        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual((run.code, run.errors), (0, ""))
+        self.assert_completed(self.launch("plot", "results/strip"))
         sweep = self.launch("sweep", "strip.toml", "--vary", "material.youngs_modulus=1e9,2e9", "--output", "moduli")
-        self.assertEqual(sweep.returncode, 0, sweep.stderr)
+        self.assert_completed(sweep)
 
-        self.assertTrue((self.work / "results/strip/results.h5").is_file())
-        self.assertGreater(len(list((self.work / "results/strip/plots").glob("*.png"))), 1)
-        self.assertTrue(list((self.work / "moduli").glob("*.png")))
+        self.assertTrue((self.folder / "results/strip/results.h5").is_file())
+        self.assertGreater(len(list((self.folder / "results/strip/plots").glob("*.png"))), 1)
+        self.assertTrue(list((self.folder / "moduli").glob("*.png")))
         self.assertEqual(self.installed(), before)
 
     def test_every_module_is_found(self):
@@ -64,23 +59,23 @@ class Package(unittest.TestCase):
                                 ("ranks", ["--ranks", "2"])):  # fmt: skip
             with self.subTest(module=module):
                 run = self.launch("run", "strip.toml", "--no-plots", "--output", module, *options, LD_DEBUG="files", **as_root)
-                self.assertEqual(run.returncode, 0, run.stderr[-2000:])
-                (loaded,) = set(re.findall(rf"calling init: (.*/peristat_{module}\.so)", run.stderr))
+                self.assertEqual(run.code, 0, run.errors[-2000:])
+                (loaded,) = set(re.findall(rf"calling init: (.*/peristat_{module}\.so)", run.errors))
                 self.assertEqual(pathlib.Path(os.path.normpath(loaded)).parent.name, "peristat")
                 self.assertTrue(pathlib.Path(loaded).resolve().is_relative_to(self.prefix), loaded)
 
     def test_no_wide_vector_crosses_between_program_and_library(self):
         """In a package both are compiled for different processors (docs/installing.md#processors)."""
         wide = re.compile(r"simd|__vector|Eigen::")  # Eigen's memory has another layout, too
-        library = lines("nm", "-C", "--defined-only", "--dynamic", PROGRAM.parent / "libperistat.so")
+        library = lines("nm", "-C", "--defined-only", "--dynamic", BUILD / "libperistat.so")
         self.assertTrue(any(map(wide.search, library)))  # the library has some
-        taken = [line for line in lines("nm", "-C", "--undefined-only", PROGRAM.parent / "libperistat_runner.a") if " U peristat::" in line]
+        taken = [line for line in lines("nm", "-C", "--undefined-only", BUILD / "libperistat_runner.a") if " U peristat::" in line]
         self.assertGreater(len(taken), 100)
         self.assertEqual([line for line in taken if wide.search(line)], [])
 
     def test_the_library_calls_its_own_copies(self):
         """A program exports templates that it has compiled, too, perhaps for another processor."""
-        library = PROGRAM.parent / "libperistat.so"
+        library = BUILD / "libperistat.so"
         own = {words[2] for words in map(str.split, lines("nm", "--dynamic", "--defined-only", library)) if words[1] in "TW"}
         asked = [words[4].partition("@")[0] for words in map(str.split, lines("readelf", "-rW", library)) if len(words) > 4]
         self.assertIn("dlopen", asked)
@@ -104,22 +99,22 @@ class Package(unittest.TestCase):
         self.assertEqual(cases, shipped(ROOT / "cases"))
 
     def test_the_help_names_what_can_be_typed(self):
-        told = self.launch("help").stdout
+        told = self.launch("help").output
         self.assertNotIn("./peristat", told)
         listed = set(re.findall(r"^  peristat ([a-z-]+)", told, re.MULTILINE))
         self.assertLessEqual({"run", "resume", "check", "sweep", "trust", "plot", "help"}, listed)
         self.assertTrue(listed.isdisjoint({"build", "test", "bench", "package"}))
         first = re.search(r"Start with: peristat run (.*)", told)[1]
-        self.assertEqual(self.launch("check", first).returncode, 0)
-        self.assertEqual(self.launch("trust", "--help").returncode, 0)
+        self.assert_completed(self.launch("check", first))
+        self.assert_completed(self.launch("trust", "--help"))
         version = re.search(r"project\(peristat VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text("utf-8"))[1]
-        self.assertEqual(self.launch("version").stdout, f"peristat {version}\n")
+        self.assertEqual(self.launch("version").output, f"peristat {version}\n")
 
     def test_what_needs_the_sources_is_refused(self):
         for command in ("build", "test", "bench", "package"):
             refused = self.launch(command)
-            self.assertEqual((refused.returncode, refused.stdout), (2, ""))
-            self.assertIn(f"{command} needs peristat's sources", refused.stderr)
+            self.assert_refused(refused, f"{command} needs peristat's sources")
+            self.assertEqual(refused.output, "")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,5 @@
 """Mode path: from event to event. The reference of tests/reference settles every event once more."""
 
-import csv
 import json
 
 import h5py
@@ -8,7 +7,7 @@ import numpy
 
 from tests.acceptance.programme_test import Programmes
 from tests.reference.events import Events
-from tests.reference.program import peristat
+from tests.reference.results import table
 from tests.reference.verify import Verification
 from tests.same_results import differences
 
@@ -62,18 +61,16 @@ def crack(*ends):
 class Paths(Programmes):
     def broken(self, name="out"):
         """Ends of the bonds in the order in which they broke, and the load factors."""
-        with open(self.folder / name / "broken_bonds.csv", newline="") as table:
-            rows = list(csv.DictReader(table))
-        return [(row["step"], row["first_point"], row["second_point"]) for row in rows], numpy.array(
-            [float(row["load_factor"]) for row in rows])  # fmt: skip
+        rows = table(self.folder / name / "broken_bonds.csv")
+        loads = numpy.array([row["load_factor"] for row in rows])
+        return [(row["step"], row["first_point"], row["second_point"]) for row in rows], loads
 
     def decisions(self, action, name="out"):
-        with open(self.folder / name / "decisions.csv", newline="") as table:
-            return [row["reason"] for row in csv.DictReader(table) if row["action"] == action]
+        return [row["reason"] for row in table(self.folder / name / "decisions.csv") if row["action"] == action]
 
     def judged(self, text, *settings, name="out"):
         """Rows of a run that ends with 0 and that the reference has nothing against."""
-        rows = self.run_case(text, *settings, name=name)
+        rows = self.rows(text, *settings, name=name)
         judge = Verification(self.folder / name, text)
         self.assertEqual(judge.run(), [])
         events = judge.events
@@ -143,7 +140,7 @@ class Judged(Paths):
         self.assertGreater(len(set(pieces)), 1)
 
     def test_avalanches_where_the_path_would_go_back_behind_an_entry(self):
-        first = self.run_case(strip(BRITTLE))[0]["load_factor"]
+        first = self.rows(strip(BRITTLE))[0]["load_factor"]
         rows, events = self.judged(strip(BRITTLE, more=f"[loading]\ntable = [0, {first - 1e-3}, 1]\n"), name="held")
         self.assertGreater(events.avalanches, 0)
         self.assertEqual(len([r for r in self.decisions("accept", "held") if "while the load is held" in r]), events.avalanches)
@@ -181,11 +178,10 @@ class OnePath(Paths):
         self.run_case(text)
         bonds, loads = self.broken()
         self.assertGreater(len(bonds), 20)
-        for name, words in variants.items():
+        for name, (threads, *changes) in variants.items():
             with self.subTest(name):
                 folder = name.replace(".", "_")
-                ended = peristat("run", self.case(text), "--output", self.folder / folder, *words)
-                self.assertEqual(ended.code, 0, ended.said)
+                self.run_case(text, *changes, name=folder, threads=threads)
                 others, other_loads = self.broken(folder)
                 self.assertEqual([b[1:] for b in others], [b[1:] for b in bonds])
                 self.assertLess(numpy.abs(other_loads - loads).max(), 1e-8)
@@ -194,10 +190,8 @@ class OnePath(Paths):
                     self.assertLess(abs(last[key] - other[key]), 1e-7 * last["external_work"], key)
 
     def variants(self):
-        words = {"two threads": ["--threads", 2], "three threads": ["--threads", 3]}
-        for setting in ("loading.steps=10", "loading.steps=100", "solver.linear=cholesky", "solver.linear=pcg"):
-            words[setting] = ["--threads", 1, "--set", setting]
-        return words
+        settings = ("loading.steps=10", "loading.steps=100", "solver.linear=cholesky", "solver.linear=pcg")
+        return {"two threads": (2,), "three threads": (3,)} | {setting: (1, setting) for setting in settings}
 
     def test_brittle(self):
         self.same_path(strip(), self.variants())
@@ -209,7 +203,7 @@ class OnePath(Paths):
         """What follows others takes part in the stiffness that dropped bonds take off a tangent."""
         roller = '[[roller]]\nset = "right"\nnormal = [1, 0.2]\ndisplacement = "2e-4*load"\n'
         text = strip().replace('[[support]]\nset = "right"\ndisplacement = ["2e-4*load", "free"]\n', roller)
-        self.same_path(text, {"pcg": ["--set", "solver.linear=pcg"]})
+        self.same_path(text, {"pcg": (2, "solver.linear=pcg")})
         self.run_case(text.replace("2e-4*load", "2e-6*load").replace("critical = 0.01", "critical = 1e-4"))
         costs = json.loads((self.folder / "out/summary.json").read_text())
         self.assertLess(4 * costs["factorisations"], costs["steps"])
@@ -221,14 +215,11 @@ class OnePath(Paths):
 
     def test_it_goes_on_from_any_step_as_if_nothing_had_been(self):
         text = strip()
-        rows = self.run_case(text)
+        rows = self.rows(text)
         for stop in (1, len(rows) // 3, 2 * len(rows) // 3):
             with self.subTest(stop):
-                folder = self.folder / f"split{stop}"
-                ended = peristat("run", self.case(text), "--output", folder, "--threads", 1, "--stop-after", stop)
-                self.assertEqual(ended.code, 130, ended.said)
-                ended = peristat("resume", folder, "--threads", 1)
-                self.assertEqual(ended.code, 0, ended.said)
+                folder = self.run_case(text, name=f"split{stop}", words=("--stop-after", stop), code=130)
+                self.resume(folder)
                 self.assertEqual(differences(self.folder / "out", folder), [])
 
 
@@ -246,7 +237,7 @@ class Preloaded(Paths):
     def test_what_is_above_its_strength_at_once_is_an_avalanche(self):
         """All bonds of the strip used to break where none was at its strength yet."""
         self.first_step = 0
-        rows = self.run_case(strip().replace("2e-4*load", "2e-4*(0.5+0.5*load)"))
+        rows = self.rows(strip().replace("2e-4*load", "2e-4*(0.5+0.5*load)"))
         self.assertEqual(rows[0]["load_factor"], 0)
         self.assertGreater(rows[0]["broken_bonds"], 0)
         self.assertLess(rows[-1]["broken_bonds"], 150)
@@ -261,9 +252,9 @@ class Fallen(Paths):
             with self.subTest(mode):
                 text = strip(LINEAR, more="[loading]\nsteps = 40\n").replace('mode = "path"', f'mode = "{mode}"')
                 text = text.replace("2e-4*load", "4e-4*load")
-                whole = self.run_case(text, name=f"whole {mode}")
+                whole = self.rows(text, name=f"whole {mode}")
                 name = f"fallen {mode}"
-                rows = self.run_case(text, "loading.stop_below=0.8", name=name)
+                rows = self.rows(text, "loading.stop_below=0.8", name=name)
                 force = [numpy.hypot(row["reaction_x:right"], row["reaction_y:right"]) for row in rows]
                 peaks = numpy.maximum.accumulate(force)
                 self.assertLess(len(rows), len(whole))
@@ -271,8 +262,7 @@ class Fallen(Paths):
                 self.assertGreaterEqual(min(numpy.array(force[:-1]) / peaks[:-1]), 0.8 - 1e-12)
                 self.assertLess(force[-1] / peaks[-1], 0.8)
                 self.assertIn("is below 0.8 of its peak", self.decisions("stop", name)[-1])
-                ended = peristat("resume", self.folder / name, "--threads", 1, "--set", "loading.stop_below=0")
-                self.assertEqual(ended.code, 0, ended.said)
+                self.resume(name, "loading.stop_below=0")
                 self.assertEqual(self.history(name), whole)
 
 
@@ -290,21 +280,15 @@ class WrongInput(Paths):
             "loading.max_broken_bonds=3": "is not heeded in mode path",
         }.items():
             with self.subTest(setting):
-                ended = peristat("run", self.case(strip()), "--output", self.folder / "out", "--set", setting)
-                self.assertEqual(ended.code, 2, ended.said)
-                self.assertIn(words, ended.errors)
-                self.assertIn(setting.partition("={")[0].partition("=")[0] if "damage" not in setting else "solver.mode", ended.errors)
+                said = self.refusal(strip(), setting)
+                self.assertIn(words, said)
+                self.assertIn("solver.mode" if "damage" in setting else setting.partition("=")[0], said)
 
     def test_its_keys_are_refused_in_other_modes(self):
         for setting in ("loading.teeth=3", "loading.event_tolerance=0.01"):
-            ended = peristat("run", self.case(strip()), "--output", self.folder / "out", "--set", setting,
-                             "--set", "solver.mode=adaptive")  # fmt: skip
-            self.assertEqual(ended.code, 2, ended.said)
-            self.assertIn('is for solver.mode = "path"', ended.errors)
+            self.assertIn('is for solver.mode = "path"', self.refusal(strip(), setting, "solver.mode=adaptive"))
 
     def test_a_control_is_refused(self):
         text = strip(more='[[control]]\nset = "right"\nweights = [1, 0]\n[loading]\ntable = [0, 1e-4]\n')
         text = text.replace('displacement = ["2e-4*load", "free"]', 'displacement = ["load", "free"]')
-        ended = peristat("run", self.case(text), "--output", self.folder / "out")
-        self.assertEqual(ended.code, 2, ended.said)
-        self.assertIn("solver.mode", ended.errors)
+        self.assertIn("solver.mode", self.refusal(text))

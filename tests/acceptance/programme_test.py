@@ -1,16 +1,14 @@
 """Loads that go up and down, rest, and come in several parameters."""
 
-import csv
-import pathlib
-import tempfile
 import unittest
 
 import h5py
 import numpy
 
+from tests.acceptance.folder import Folder
 from tests.acceptance.resume_test import TORN
 from tests.acceptance.strip import PULLED
-from tests.reference.program import peristat
+from tests.reference.results import table
 from tests.same_results import differences
 
 BAR = """\
@@ -48,27 +46,16 @@ set = "right"
 ROUND_OFF = 1e-12
 
 
-class Programmes(unittest.TestCase):
+class Programmes(Folder):
     first_step = 1  # that `history` gives: step 0 has a test of its own
 
-    def setUp(self):
-        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="peristat_programme_"))).resolve()
-
-    def case(self, text):
-        path = self.folder / "case.toml"
-        path.write_text('title = "Case"\n' + text)
-        return path
-
-    def run_case(self, text, *settings, name="out", words=(), expected=0):
-        words = [*words, *(word for setting in settings for word in ("--set", setting))]
-        ended = peristat("run", self.case(text), "--output", self.folder / name, "--threads", 1, *words)
-        self.assertEqual(ended.code, expected, ended.said)
+    def rows(self, case, *changes, name="out", **options):
+        """The history of a run."""
+        self.run_case(case, *changes, name=name, **options)
         return self.history(name)
 
     def history(self, name="out"):
-        with open(self.folder / name / "history.csv", newline="") as table:
-            return [{key: value if key == "mode" else float(value) for key, value in row.items()}
-                    for row in csv.DictReader(table) if int(row["step"]) >= self.first_step]  # fmt: skip
+        return [row for row in table(self.folder / name / "history.csv") if row["step"] >= self.first_step]
 
     def displacements(self, name="out"):
         with h5py.File(self.folder / name / "results.h5") as file:
@@ -87,7 +74,7 @@ class Cycles(Programmes):
             self.assertLess(abs(row[force] - stiffness * row["load_factor"]), 1e-9 * abs(at_first[force]))
 
     def test_a_damaged_bar_unloads_and_loads_along_its_secant(self):
-        rows = self.run_case(BAR, "loading.table=[0,1,0,-0.5,0.8,1]", "loading.steps=5", 'solver.mode="newton"')
+        rows = self.rows(BAR, "loading.table=[0,1,0,-0.5,0.8,1]", "loading.steps=5", 'solver.mode="newton"')
         self.assertEqual([row["load_factor"] for row in rows[4::5]], [1, 0, -0.5, 0.8, 1])
         self.assertGreater(rows[4]["dissipated_energy"], 0.01 * rows[4]["stored_energy"])
         # Pulled it is softer than it was, and pushed it is not.
@@ -142,7 +129,7 @@ class Cycles(Programmes):
 class Parameters(Programmes):
     def test_one_after_the_other(self):
         pulled_and_sheared = PULLED.replace('["1e-5*load", "free"]', '["1e-5*load", "2e-5*load2"]')
-        rows = self.run_case(pulled_and_sheared, "loading.table=[0,1,1,0]", "loading.table2=[0,0,1,1]", "loading.steps=2")
+        rows = self.rows(pulled_and_sheared, "loading.table=[0,1,1,0]", "loading.table2=[0,0,1,1]", "loading.steps=2")
         pulled, both, sheared = rows[1], rows[3], rows[5]
         self.assertLess(abs(pulled["reaction_y:right"]), 1e-9 * pulled["reaction_x:right"])
         # Small displacements: forces add up, but for what turning does.
@@ -175,36 +162,30 @@ class Parameters(Programmes):
             'support[1].displacement=["1e-5*load2","free"]': "unknown variable load2; allowed are x, y, load, pi",
         }.items():
             with self.subTest(setting):
-                ended = peristat("check", self.case(PULLED), "--set", setting)
-                self.assertEqual(ended.code, 2, ended.said)
-                self.assertIn(words, ended.errors)
+                self.assert_refused(self.command("check", PULLED, setting), words)
 
 
 class GoingOn(Programmes):
     def test_a_cycle_that_is_split(self):
         words = "loading.table=[0,1,0.2,1.1]", "loading.steps=3"
         self.run_case(TORN, *words, name="whole")
-        self.run_case(TORN, *words, name="split", words=["--stop-after", 20], expected=130)
-        while (ended := peristat("resume", self.folder / "split", "--threads", 1, "--stop-after", 9)).code == 130:
+        self.run_case(TORN, *words, name="split", words=("--stop-after", 20), code=130)
+        while self.resume("split", words=("--stop-after", 9), code=(0, 130)).code == 130:
             pass
-        self.assertEqual(ended.code, 0, ended.said)
         self.assertEqual(differences(self.folder / "whole", self.folder / "split"), [])
 
     def test_more_load_after_the_end(self):
         self.run_case(TORN, "loading.table=[0,1,0.2,1.1]", name="whole")
         self.run_case(TORN, name="split")
         for table in ("[0,1,0.2]", "[0,1,0.2,1.1]"):
-            ended = peristat("resume", self.folder / "split", "--threads", 1, "--set", f"loading.table={table}")
-            self.assertEqual(ended.code, 0, ended.said)
+            self.resume("split", f"loading.table={table}")
         self.assertEqual(differences(self.folder / "whole", self.folder / "split"), [])
 
     def test_another_way_to_where_the_run_is(self):
-        self.run_case(TORN, "loading.table=[0,1,0.2]", name="split", words=["--stop-after", 20], expected=130)
+        self.run_case(TORN, "loading.table=[0,1,0.2]", name="split", words=("--stop-after", 20), code=130)
         for table, words in {"[0,1.1,0.2]": "entry 1 is another one than it was",
                              "[0]": "needs two entries"}.items():  # fmt: skip
-            ended = peristat("resume", self.folder / "split", "--set", f"loading.table={table}")
-            self.assertEqual(ended.code, 2, ended.said)
-            self.assertIn(words, ended.errors)
+            self.assertIn(words, self.resume("split", f"loading.table={table}", code=2).errors)
 
 
 if __name__ == "__main__":

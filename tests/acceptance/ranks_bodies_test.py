@@ -8,7 +8,6 @@ from tests.acceptance.on_ranks import (
     CUBE,
     PIECES,
     PLATE,
-    ROOT,
     SOLVER,
     SQUARE,
     STATES,
@@ -16,9 +15,9 @@ from tests.acceptance.on_ranks import (
     Comparison,
     linear_iterations,
     objects,
-    resume,
     rows,
 )
+from tests.reference.program import ROOT
 
 
 # A sheet with a hole that repeats; along y it is free to contract.
@@ -145,11 +144,11 @@ class Bodies(Comparison):
 
     def compare_shipped(self, case, *settings, ranks=(2, 3)):
         text = (ROOT / "cases" / f"{case}.toml").read_text()
-        words = ('solver.linear="pcg"', 'solver.preconditioner="block_jacobi"', "solver.linear_tolerance=1e-9", *settings)
-        options = [word for setting in words for word in ("--set", setting)]
-        one = self.results(1, text, *options)
+        options = ('solver.linear="pcg"', 'solver.preconditioner="block_jacobi"', "solver.linear_tolerance=1e-9",
+                   *settings)  # fmt: skip
+        one = self.run_on(1, text, *options)
         for count in ranks:
-            several = self.results(count, text, *options)
+            several = self.run_on(count, text, *options)
             with self.subTest(case=case, ranks=count):
                 self.expect_same(one, several)
                 self.expect_like_costs(one, several)
@@ -157,7 +156,7 @@ class Bodies(Comparison):
 
     def compare_settings(self, text, *settings, ranks=(3,), solver=SOLVER):
         with self.subTest(settings=settings):
-            return self.compare(text, ranks, *(word for setting in settings for word in ("--set", setting)), solver=solver)
+            return self.compare(text, ranks, *settings, solver=solver)
 
     def test_several_materials(self):
         self.compare_shipped("regions/bimaterial", "lattice.spacing=0.01")
@@ -209,23 +208,23 @@ class Bodies(Comparison):
         self.compare_settings(PLATE, 'set=[{name="corner", where="y > 1.45 && y < 1.5"}]', 'load=[{set="corner", traction=["1e5*load", "0"]}]')
 
     def test_pressures_and_foundations(self):
-        self.compare(PLATE, (2, 3), "--set", 'set=[{name="hole", where="sqrt((x-0.5)^2 + (y-0.7)^2) < 0.28"}]',
-                     "--set", 'load=[{set="hole", pressure="4e7*load*(1+y)"}, {side="x+", pressure="1e6"}]', solver=STORED)  # fmt: skip
+        self.compare(PLATE, (2, 3), 'set=[{name="hole", where="sqrt((x-0.5)^2 + (y-0.7)^2) < 0.28"}]',
+                     'load=[{set="hole", pressure="4e7*load*(1+y)"}, {side="x+", pressure="1e6"}]', solver=STORED)  # fmt: skip
         ground = ('foundation=[{name="soil", set="corner", stiffness=[1e7, 2e7], displacement=["0.01*load", 0]}, '
                   '{name="side", side="x+", modulus=[1e8, 0]}]')  # fmt: skip
-        one = self.compare(PLATE, (2, 3), "--set", ground, solver=STORED)
+        one = self.compare(PLATE, (2, 3), ground, solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:soil"]), 0.0)
-        self.compare(PLATE, (4,), "--set", 'load=[{set="corner", pressure="4e7*load"}]', "--set", ground, solver=PIECES)
+        self.compare(PLATE, (4,), 'load=[{set="corner", pressure="4e7*load"}]', ground, solver=PIECES)
 
     def test_planes_of_symmetry(self):
-        half = ("--set", 'symmetry=[{axis="x", at=1}]', "--set", "output.stress=true")
-        self.compare(PLATE, (2, 3), *half, "--set", 'quadrature.surface_correction="energy"', solver=STORED)
-        self.compare(SQUARE, (3,), "--set", 'symmetry=[{axis="y", at=0}]', "--set", "output.stress=true", solver=STORED)
-        self.compare(CUBE, (3,), "--set", 'symmetry=[{axis="y", at=0}]', "--set", "loading.table=[0, 0.2]", solver=STORED)
+        half = ('symmetry=[{axis="x", at=1}]', "output.stress=true")
+        self.compare(PLATE, (2, 3), *half, 'quadrature.surface_correction="energy"', solver=STORED)
+        self.compare(SQUARE, (3,), 'symmetry=[{axis="y", at=0}]', "output.stress=true", solver=STORED)
+        self.compare(CUBE, (3,), 'symmetry=[{axis="y", at=0}]', "loading.table=[0, 0.2]", solver=STORED)
         # Thinner than the horizon, between two planes, and a rank may own nothing.
         thin = PLATE.replace("max = [1, 1.5]", "max = [0.1, 0.5]").replace(', { subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }', "")
         thin = thin.replace("x > 0.6 && y > 1", "y > 0.3")
-        one = self.compare(thin, (3,), "--set", 'symmetry=[{axis="x", at=0}, {axis="x", at=0.1}]', solver=STORED)
+        one = self.compare(thin, (3,), 'symmetry=[{axis="x", at=0}, {axis="x", at=0.1}]', solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:symmetry_x-"]), 0.0)
 
     def test_pressures_beyond_planes_and_periods(self):
@@ -234,14 +233,14 @@ class Bodies(Comparison):
         held = PLATE.replace(', { name = "top", side = "y+" }', "").replace('set = "top"', 'set = "corner"').replace('[[set]]\nname = "corner"\nwhere = "x > 0.6 && y > 1"\n', "")
         for beyond in ('symmetry=[{axis="x", at=0.5}]', 'period=[{axis="x", from=0, to=1, gradient=["1e-3*load", 0]}]'):
             shape = held.replace("min = [0, 0]", "min = [0.5, 0]") if "symmetry" in beyond else held
-            self.compare(shape, (3,), *(word for setting in (pressure, hole, beyond) for word in ("--set", setting)), solver=STORED)
+            self.compare(shape, (3,), pressure, hole, beyond, solver=STORED)
 
     def test_relaxation_of_what_follows(self):
-        relaxed = ("--set", 'solver.mode="relaxation"')
-        self.compare(PLATE, (3,), *relaxed, "--set", 'symmetry=[{axis="x", at=1}]', solver=STORED)
-        self.compare(CELL, (3,), *relaxed, solver=STORED)
+        relaxed = 'solver.mode="relaxation"'
+        self.compare(PLATE, (3,), relaxed, 'symmetry=[{axis="x", at=1}]', solver=STORED)
+        self.compare(CELL, (3,), relaxed, solver=STORED)
         free = PLATE.replace("y > 1", "y > 1 && y < 1.4") + '[[rigid]]\nset = "corner"\nrotation = ["0.02*load"]\n'
-        self.compare(free, (3,), *relaxed, solver=STORED)
+        self.compare(free, (3,), relaxed, solver=STORED)
 
     def test_periods(self):
         one = self.compare(CELL, (2, 3), solver=STORED.replace('tangent = "stored"\n', ""))
@@ -251,16 +250,13 @@ class Bodies(Comparison):
 
     def test_a_cell_goes_on_with_another_number_of_ranks(self):
         text = CELL.replace("steps = 2", "steps = 3") + STORED
-        one = self.results(1, text)
-        several, output = self.start(2, text, "--stop-after", "1")
-        self.assertEqual(several.returncode, 130, several.stderr)
-        on = resume(3, output)
-        self.assertEqual(on.returncode, 0, on.stderr)
+        one = self.run_on(1, text)
+        output = self.run_on(2, text, words=("--stop-after", 1), code=130)
+        self.resume_on(3, output)
         self.expect_same(one, output)
         # Its state has no images, which that of one rank has.
-        several, output = self.start(2, text, "--stop-after", "1")
-        refused = resume(1, output)
-        self.assertEqual(refused.returncode, 2, refused.stderr)
+        output = self.run_on(2, text, words=("--stop-after", 1), code=130)
+        self.resume_on(1, output, code=2)
 
     def test_rigid_sets(self):
         turned = PLATE.replace('[[support]]\nset = "top"\n', '[[rigid]]\nset = "top"\nrotation = ["0.2*load"]\n')
@@ -294,12 +290,12 @@ class Bodies(Comparison):
         for mode, ranks in (("adaptive", 2), ("relaxation", 3)):
             one = self.compare_settings(SLOPED, breaking, f'solver.mode="{mode}"', ranks=(ranks,), solver=STORED)
             self.assertGreater(len(rows(one, "broken_bonds.csv")), 10)
-        options = ("--set", breaking, "--set", 'solver.mode="adaptive"', "--set", "lattice.spacing=0.1")
+        options = (breaking, 'solver.mode="adaptive"', "lattice.spacing=0.1")
         one = self.compare(means, (3,), *options, solver=STORED)
         self.assertGreater(len(rows(one, "broken_bonds.csv")), 10)
         softening = breaking.replace('"critical_stretch", critical=0.02', '"tanh", onset=0.02, critical=0.4, rate=2')
         self.compare_settings(SLOPED, softening, 'solver.mode="newton"', solver=STORED)
-        refused = self.refusal(SLOPED + STORED, "--set", breaking, "--set", 'solver.mode="relaxation"', "--set", 'relaxation.method="flow"', ranks=4)
+        refused = self.refusal(SLOPED + STORED, breaking, 'solver.mode="relaxation"', 'relaxation.method="flow"', ranks=4)
         self.assertIn('take "dynamic"', " ".join(refused.split()))
 
     def test_rollers_that_touch(self):
@@ -313,7 +309,7 @@ class Bodies(Comparison):
     def test_linear_constraints(self):
         """Over points of all ranks, of supports and of other constraints."""
         means = PLATE.replace(TOP, MEANS)
-        one = self.compare(means, (2, 4), "--set", "output.stress=true", "--set", "lattice.spacing=0.1", solver=STORED)
+        one = self.compare(means, (2, 4), "output.stress=true", "lattice.spacing=0.1", solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:pull"]), 0.0)
         case = (ROOT / "cases/thermal/bimetal.toml").read_text()
         case = case.replace("0.04", "0.02").replace("spacing = 1e-4", "spacing = 5e-4")
@@ -324,7 +320,7 @@ class Bodies(Comparison):
         rollers = SQUARE.replace(pulled, '[[roller]]\nset = "pulled"\nnormal = [3, 1]\ndisplacement = "0.1*load"')
         self.compare(rollers + PULL.replace("RULE", "y > 0.7 && x < 1"), (2, 3), solver=STORED)
         turned = STATES.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]', '[[rigid]]\nset = "top"\nrotation = ["0.05*load"]')
-        self.compare(turned + PULL.replace("RULE", "x > 0.5 && y < 1.3"), (3,), "--set", "lattice.spacing=0.1", solver=STORED)
+        self.compare(turned + PULL.replace("RULE", "x > 0.5 && y < 1.3"), (3,), "lattice.spacing=0.1", solver=STORED)
 
     def test_pieces_that_constraints_hold_together(self):
         """The upper one has no bond to the lower one, and other ranks."""
@@ -337,13 +333,11 @@ class Bodies(Comparison):
 
     def test_constraints_go_on_with_another_number_of_ranks(self):
         text = SLOPED.replace("steps = 2", "steps = 3") + MEANS + STORED
-        one = self.results(1, text)
+        one = self.run_on(1, text)
         for first, then in ((1, 3), (3, 2)):
             with self.subTest(first=first, then=then):
-                stopped, output = self.start(first, text, "--stop-after", "1")
-                self.assertEqual(stopped.returncode, 130, stopped.stderr)
-                on = resume(then, output)
-                self.assertEqual(on.returncode, 0, on.stderr)
+                output = self.run_on(first, text, words=("--stop-after", 1), code=130)
+                self.resume_on(then, output)
                 self.expect_same(one, output)
 
     def test_rigid_pieces_with_constraints(self):
@@ -358,28 +352,27 @@ class Bodies(Comparison):
             (turning, (3,), 'symmetry=[{axis="x", at=0}]', 0.5),
         ):
             with self.subTest(planes=planes):
-                found = linear_iterations(self.compare(text, ranks, "--set", planes, solver=PIECES))
-                self.assertLess(found, share * linear_iterations(self.results(1, text + STORED, "--set", planes)))
+                found = linear_iterations(self.compare(text, ranks, planes, solver=PIECES))
+                self.assertLess(found, share * linear_iterations(self.run_on(1, text + STORED, planes)))
 
     def test_preconditioners_with_constraints(self):
-        half = ("--set", 'symmetry=[{axis="x", at=1}]')
-        one = self.results(1, PLATE + STORED, *half)
+        half = 'symmetry=[{axis="x", at=1}]'
+        one = self.run_on(1, PLATE + STORED, half)
         for kind in ("surrogate", "multigrid"):
             with self.subTest(kind=kind):
-                taken = ("--set", f'solver.preconditioner="{kind}"')
-                self.expect_same(one, self.results(3, PLATE + STORED, *half, *taken))
-                refused = self.refusal(CELL + STORED, *taken)
+                taken = f'solver.preconditioner="{kind}"'
+                self.expect_same(one, self.run_on(3, PLATE + STORED, half, taken))
+                refused = self.refusal(CELL + STORED, taken)
                 self.assertIn('take "rigid_pieces", "block_jacobi" or "jacobi" with periods and rigid sets', refused.replace("\n", " "))
-        run, output = self.start(2, CELL)
-        self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertIn("rigid pieces", run.stdout)
+        self.run_on(2, CELL)
+        self.assertIn("rigid pieces", self.ended.output)
 
     def test_temperatures(self):
         case = (ROOT / "cases/thermal/bimetal.toml").read_text()
         held = '[[support]]\nset = "steel"\ndisplacement = [0, "free"]\n[[support]]\nset = "middle"\ndisplacement = ["free", 0]\n[[support]]\nset = "tip"\ndisplacement = [0, "free"]\n'
         case = case.split("[[symmetry]]")[0] + held + "[[probe]]" + case.split("[[probe]]")[1]
         case = case.replace("0.04", "0.02").replace("spacing = 1e-4", "spacing = 5e-4")
-        one = self.compare(case, (2, 3), "--set", "loading.table=[0, 1, 0.5]")
+        one = self.compare(case, (2, 3), "loading.table=[0, 1, 0.5]")
         self.assertGreater(float(rows(one, "history.csv")[1]["max_stretch"]), 1e-4)
         self.compare_settings(PLATE, 'eigenstrain=[{set="corner", strain="0.01*load*x"}]')
 

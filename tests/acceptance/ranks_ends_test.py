@@ -17,24 +17,27 @@ from tests.acceptance.on_ranks import (
     BAR,
     ENVIRONMENT,
     PLATE,
-    PROGRAM,
     SOLVER,
     SQUARE,
     STATES,
     OnRanks,
     children_of,
-    resume,
     rows,
 )
+from tests.reference.program import PROGRAM, limited_by_shell, settings
+
+
+def fine(spacing, steps):
+    return PLATE.replace("spacing = 0.05", f"spacing = {spacing}").replace("steps = 2", f"steps = {steps}") + SOLVER
 
 
 class Ends(OnRanks):
     def test_a_search_that_does_not_converge(self):
-        options = ("--set", "solver.max_iterations=1", "--set", "loading.adaptive=false")
+        options = ("solver.max_iterations=1", "loading.adaptive=false")
         codes, statuses, dossiers, residuals = [], [], [], []
         for ranks in (1, 3):
-            run, output = self.start(ranks, PLATE + SOLVER, *options)
-            codes.append(run.returncode)
+            run, output = self.ended_on(ranks, PLATE + SOLVER, *options)
+            codes.append(run.code)
             self.assertIn('"not_converged"', (output / "summary.json").read_text())
             dossiers.append((output / "dossier.txt").read_text())
             self.assertFalse((output / "parts").exists())
@@ -51,7 +54,7 @@ class Ends(OnRanks):
 
     def test_places_off_the_body(self):
         for probe, what in (("at=[5, 5]", "within two spacings"), ("from=[5, 0], to=[5, 1]", "within half a spacing")):
-            said = [self.refusal(PLATE, "--set", f'probe=[{{name="p", {probe}}}]', ranks=ranks) for ranks in (1, 2)]
+            said = [self.refusal(PLATE, f'probe=[{{name="p", {probe}}}]', ranks=ranks) for ranks in (1, 2)]
             for text in said:
                 self.assertIn(what, text)
 
@@ -65,30 +68,27 @@ class Ends(OnRanks):
         missing = PLATE.replace('"0.05*load"', '"0.05*load*(x > 0.96 ? (load-0.25)/(load-0.25) : 1)"')
         outcomes = []
         for ranks in (1, 2):
-            output = self.results(ranks, missing.replace("steps = 2", "steps = 4") + SOLVER)
+            output = self.run_on(ranks, missing.replace("steps = 2", "steps = 4") + SOLVER)
             outcomes.append([(row["outcome"], row["reason"]) for row in rows(output, "decisions.csv")])
         self.assertEqual(outcomes[0][0], outcomes[1][0])
         self.assertIn("undefined_condition", outcomes[0][0])
 
     def test_a_folder_that_can_not_be_written(self):
-        (self.folder / "on_2").write_text("in the way")
-        run, _ = self.start(2, PLATE)
-        self.assertEqual(run.returncode, 2, run.stderr)
-        self.assertIn("is a file", run.stderr)
+        self.write("on_2", "in the way")
+        self.run_on(2, PLATE, code=2)
+        self.assertIn("is a file", self.ended.errors)
+
+    def start_on_two(self, text, **options):
+        words = [PROGRAM, "run", "--ranks", 2, self.case(text), "--threads", 1, "--output", "out"]
+        return self.start(words, ENVIRONMENT, stdout=subprocess.DEVNULL, **options)
 
     def test_a_rank_that_is_killed_ends_all(self):
-        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.025").replace("steps = 2", "steps = 5000") + SOLVER)
-        words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
-        run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        try:
-            ranks = self.wait_for_ranks(run.pid, rows=3)
-            os.kill(ranks[-1], signal.SIGKILL)
-            self.assertNotEqual(run.wait(timeout=20), 0)
-            for rank in ranks:
-                self.assertFalse(Path(f"/proc/{rank}/exe").exists())
-        finally:
-            run.kill()
-            run.wait()
+        run = self.start_on_two(fine(0.025, 5000), stderr=subprocess.DEVNULL)
+        ranks = self.wait_for_ranks(run.pid, rows=3)
+        os.kill(ranks[-1], signal.SIGKILL)
+        self.assertNotEqual(run.wait(timeout=20), 0)
+        for rank in ranks:
+            self.assertFalse(Path(f"/proc/{rank}/exe").exists())
         self.assertFalse((self.folder / "out/summary.json").exists())
         self.expect_going_on(self.folder / "out", 1, 3)
 
@@ -99,24 +99,17 @@ class Ends(OnRanks):
             self.assertGreaterEqual(len(steps), 2)
             self.assertEqual(list(file["steps"]), [f"{step:06}" for step in steps if step > 0])  # nothing moves at load 0
         for ranks in numbers_of_ranks:
-            run = resume(ranks, output, "--stop-after", "2")
-            self.assertEqual(run.returncode, 130, run.stderr)
-            self.assertIn("going on after step", run.stdout)
+            run = self.resume_on(ranks, output, words=("--stop-after", 2), code=130)
+            self.assertIn("going on after step", run.output)
         with h5py.File(output / "results.h5") as file:
             self.assertGreaterEqual(len(file["history/step"]), len(steps) + 2 * len(numbers_of_ranks) - 1)
 
     def test_files_that_can_not_grow_end_all(self):
         """Like a full disk, which faults_test.py has for one rank."""
-        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.025").replace("steps = 2", "steps = 5000") + SOLVER)
-        words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
-        run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        try:
-            for rank in self.wait_for_ranks(run.pid, rows=3):
-                resource.prlimit(rank, resource.RLIMIT_FSIZE, (1 << 14, 1 << 14))
-            said = run.communicate(timeout=60)[1]
-        finally:
-            run.kill()
-            run.wait()
+        run = self.start_on_two(fine(0.025, 5000))
+        for rank in self.wait_for_ranks(run.pid, rows=3):
+            resource.prlimit(rank, resource.RLIMIT_FSIZE, (1 << 14, 1 << 14))
+        said = run.communicate(timeout=60)[1]
         self.assertEqual(run.returncode, 5, said)
         self.assertRegex(said, "accepted steps? (is|are) in")
         summary = json.loads((self.folder / "out/summary.json").read_text())
@@ -126,38 +119,30 @@ class Ends(OnRanks):
 
     def test_a_rank_that_gets_no_more_memory_ends_all(self):
         """While the parts are made, and while they are searched with."""
-        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.006").replace("steps = 2", "steps = 1") + SOLVER)
-        output = self.folder / "out"
-        words = [PROGRAM, "run", str(file), "--threads", "1", "--output", str(output), "--overwrite"]
-        words += ["--set", "solver.max_iterations=1", "--set", "loading.adaptive=false"]
+        words = [PROGRAM, "run", self.case(fine(0.006, 1)), "--threads", 1, "--output", "out", "--overwrite",
+                 *settings("solver.max_iterations=1", "loading.adaptive=false")]  # fmt: skip
         codes = []
         for kilobytes in range(740000, 1500000, 60000):
-            limited = ["bash", "-c", f'ulimit -v {kilobytes}; exec "$@"', "bash", *words]
-            run = subprocess.run(["mpirun", "--oversubscribe", "--bind-to", "none", "-np", "1", *words, ":", "-np", "1", *limited],
-                                 env=ENVIRONMENT, capture_output=True, text=True, timeout=60)  # fmt: skip
-            codes.append(run.returncode)
-            if run.returncode == 4:
-                self.assertRegex(run.stderr, "peristat: (out of memory|.* are available)")
+            limited = limited_by_shell(f"ulimit -v {kilobytes}", words)
+            both = ["-np", 1, *words, ":", "-np", 1, *limited]
+            run = self.execute(["mpirun", "--oversubscribe", "--bind-to", "none", *both])
+            codes.append(run.code)
+            if run.code == 4:
+                self.assertRegex(run.errors, "peristat: (out of memory|.* are available)")
             else:
-                self.assertEqual(run.returncode, 3, run.stderr)
+                self.assert_code(run, 3)
                 break
         self.assertIn(4, codes)
         self.assertEqual(codes[-1], 3)
 
     def test_an_interruption_ends_a_run_in_order(self):
-        file = self.case(PLATE.replace("spacing = 0.05", "spacing = 0.01").replace("steps = 2", "steps = 500") + SOLVER)
-        words = [PROGRAM, "run", "--ranks", "2", str(file), "--threads", "1", "--output", str(self.folder / "out")]
-        run = subprocess.Popen(words, env=ENVIRONMENT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        try:
-            self.wait_for_ranks(run.pid)
-            run.send_signal(signal.SIGINT)
-            said = run.communicate(timeout=60)[1]
-            self.assertEqual(run.returncode, 130, said)
-            self.assertIn("interrupted", said)
-            self.assertIn('"interrupted"', (self.folder / "out/summary.json").read_text())
-        finally:
-            run.kill()
-            run.wait()
+        run = self.start_on_two(fine(0.01, 500))
+        self.wait_for_ranks(run.pid)
+        run.send_signal(signal.SIGINT)
+        said = run.communicate(timeout=60)[1]
+        self.assertEqual(run.returncode, 130, said)
+        self.assertIn("interrupted", said)
+        self.assertIn('"interrupted"', (self.folder / "out/summary.json").read_text())
 
     def wait_for_ranks(self, launcher, rows=0):
         """Process numbers, once results are there, with so many rows of the history (the first is step 0)."""
@@ -187,17 +172,17 @@ class Refusals(OnRanks):
             'control=[{set="corner", weights=[1, 0]}]',
         ):
             with self.subTest(key=key):
-                said = self.refusal(PLATE, "--set", key)
+                said = self.refusal(PLATE, key)
                 self.assertIn(key.split("=")[0].split(".")[0], said)
                 self.assertEqual(said.count("peristat:"), 1)
 
     def test_convolutions(self):
         """Bonds stand in for them where the material has some."""
-        said = self.refusal(PLATE, "--set", 'solver.operator="fft"')
+        said = self.refusal(PLATE, 'solver.operator="fft"')
         self.assertIn("solver.operator", said)
         self.assertIn('take "bonds" or "auto"', said)
         for operator in ("fft", "auto"):
-            said = self.refusal(PLATE, "--set", f'solver.operator="{operator}"', "--set", 'material.model="green_bond"')
+            said = self.refusal(PLATE, f'solver.operator="{operator}"', 'material.model="green_bond"')
             self.assertIn("models that have bonds", said)
 
     def test_what_one_rank_refuses_too(self):
@@ -222,7 +207,7 @@ class Refusals(OnRanks):
 
     def test_the_printed_form(self):
         """Convolutions alone sum it."""
-        said = self.refusal(STATES, "--set", 'quadrature.form="printed"', "--set", 'quadrature.volume_correction="none"')
+        said = self.refusal(STATES, 'quadrature.form="printed"', 'quadrature.volume_correction="none"')
         self.assertIn("models that have bonds", said)
 
     def test_pieces_that_nothing_holds(self):
@@ -243,17 +228,12 @@ class Refusals(OnRanks):
         self.assertEqual(said[0], said[2])
 
     def test_another_number_of_ranks_than_was_started(self):
-        words = ["mpirun", "--oversubscribe", "-np", "2", PROGRAM, "run", "--ranks", "3", str(self.case(PLATE))]
-        run = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=60)
-        self.assertEqual(run.returncode, 2)
-        self.assertIn("does not agree with the 2", run.stderr)
+        run = self.execute(["mpirun", "--oversubscribe", "-np", 2, PROGRAM, "run", "--ranks", 3, self.case(PLATE)])
+        self.assert_refused(run, "does not agree with the 2")
 
     def test_other_commands(self):
-        file = self.case(PLATE)
-        words = ["mpirun", "--oversubscribe", "-np", "2", PROGRAM, "check", str(file)]
-        run = subprocess.run(words, env=ENVIRONMENT, capture_output=True, text=True, timeout=60)
-        self.assertEqual(run.returncode, 2)
-        self.assertIn("no command but run and resume", run.stderr)
+        run = self.execute(["mpirun", "--oversubscribe", "-np", 2, PROGRAM, "check", self.case(PLATE)])
+        self.assert_refused(run, "no command but run and resume")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import unittest
 import h5py
 import numpy
 
-from tests.acceptance.on_ranks import CUBE, SHEET, SOLVER, STORED, Comparison, resume, rows
+from tests.acceptance.on_ranks import CUBE, SHEET, SOLVER, STORED, Comparison, rows
 
 # Torn through, from a pre-crack and a hole, without any symmetry.
 TORN = """
@@ -47,13 +47,12 @@ class Fracture(Comparison):
         return [(row["step"], row["first_point"], row["second_point"]) for row in rows(output, "broken_bonds.csv")]
 
     def compare_torn(self, ranks, *settings, text=TORN + SOLVER):
-        options = [word for setting in settings for word in ("--set", setting)]
-        runs = {count: self.start(count, text, *options) for count in (1, *ranks)}
+        runs = {count: self.ended_on(count, text, *settings) for count in (1, *ranks)}
         one, expected = runs[1]
         for count in ranks:
             several, found = runs[count]
             with self.subTest(ranks=count, settings=settings):
-                self.assertEqual(several.returncode, one.returncode, several.stderr)
+                self.assertEqual(several.code, one.code, several.said)
                 self.assertEqual(self.broken(expected), self.broken(found))
                 self.expect_same(expected, found)
                 decisions = [[(row["step"], row["action"], row["outcome"]) for row in rows(at, "decisions.csv")]
@@ -80,12 +79,10 @@ class Fracture(Comparison):
     def test_a_rigid_set_goes_on_with_another_number_of_ranks(self):
         """The centre that it turns about is the same, to the last bit."""
         text = TORN.replace('[[support]]\nset = "top"', '[[rigid]]\nset = "top"\nrotation = ["0.01*load"]') + STORED
-        options = ("--set", 'solver.mode="adaptive"', "--set", "loading.steps=8")
-        one = self.results(1, text, *options)
-        run, output = self.start(2, text, *options, "--stop-after", "6")
-        self.assertEqual(run.returncode, 130, run.stderr)
-        on = resume(3, output)
-        self.assertEqual(on.returncode, 0, on.stderr)
+        options = ('solver.mode="adaptive"', "loading.steps=8")
+        one = self.run_on(1, text, *options)
+        output = self.run_on(2, text, *options, words=("--stop-after", 6), code=130)
+        self.resume_on(3, output)
         self.expect_same(one, output)
 
     def test_several_materials(self):
@@ -151,15 +148,13 @@ class Fracture(Comparison):
             self.assertNotEqual(float(rows(one, "history.csv")[1]["moment_z:top"]), 0.0)
 
     def test_half_a_plate_that_goes_on(self):
-        text, options = TORN + STORED, ("--set", 'solver.mode="relaxation"', "--set", self.HALF)
-        whole = self.results(1, text, *options).rename(self.folder / "whole")
-        on_two = self.results(2, text, *options).rename(self.folder / "on_two")
+        text, options = TORN + STORED, ('solver.mode="relaxation"', self.HALF)
+        whole = self.run_on(1, text, *options).rename(self.folder / "whole")
+        on_two = self.run_on(2, text, *options).rename(self.folder / "on_two")
         for ranks in (3, 2):
-            run, output = self.start(2, text, *options, "--stop-after", "6")
-            self.assertEqual(run.returncode, 130, run.stderr)
+            output = self.run_on(2, text, *options, words=("--stop-after", 6), code=130)
             self.assertGreater(self.broken_to_images(output), 0)
-            again = resume(ranks, output)
-            self.assertEqual(again.returncode, 0, again.stderr)
+            self.resume_on(ranks, output)
             self.assertEqual(self.broken(whole), self.broken(output))
             self.expect_same(whole, output)
         with h5py.File(on_two / "results.h5") as expected, h5py.File(output / "results.h5") as found:
@@ -188,14 +183,12 @@ class Fracture(Comparison):
         self.assertGreater(len(rows(one, "broken_bonds.csv")), 20)
 
     def test_triangles_that_go_on_with_another_number_of_ranks(self):
-        text, options = self.SHEET_UNDER_LOAD, ("--set", 'solver.mode="relaxation"')
-        whole = self.results(1, text, *options).rename(self.folder / "whole")
+        text, mode = self.SHEET_UNDER_LOAD, 'solver.mode="relaxation"'
+        whole = self.run_on(1, text, mode).rename(self.folder / "whole")
         for first, then in ((2, 3), (3, 1), (1, 2)):
-            run, output = self.start(first, text, *options, "--stop-after", "4")
-            self.assertEqual(run.returncode, 130, run.stderr)
+            output = self.run_on(first, text, mode, words=("--stop-after", 4), code=130)
             self.assertGreater(len(self.broken(output)), 20)
-            again = resume(then, output)
-            self.assertEqual(again.returncode, 0, again.stderr)
+            self.resume_on(then, output)
             self.assertEqual(self.broken(whole), self.broken(output))
             self.expect_same(whole, output)
 
@@ -238,8 +231,8 @@ class CrackTips(Comparison):
     """J, stress intensity factors and T are sums over the ring."""
 
     def compare_tip(self, text, ranks, names, *settings):
-        words = ('solver.linear="pcg"', 'solver.preconditioner="block_jacobi"', "solver.linear_tolerance=1e-12", *settings)
-        one = self.compare(text, ranks, *(word for setting in words for word in ("--set", setting)), solver="")
+        one = self.compare(text, ranks, 'solver.linear="pcg"', 'solver.preconditioner="block_jacobi"',
+                           "solver.linear_tolerance=1e-12", *settings, solver="")  # fmt: skip
         last = rows(one, "history.csv")[-1]
         for name in names:
             self.assertGreater(abs(float(last[f"tip_{name}"])), 0.0)
@@ -267,7 +260,7 @@ class CrackTips(Comparison):
             for setting, what in (("crack_tip=[{name='tip', at=[1.7, 1.2], direction=[1, 0]}]", "ahead of the tip"),
                                   ('region=[{set="top", material={youngs_modulus=2e9}},{set="right", material={youngs_modulus=3e9}}]',
                                    "two materials")):  # fmt: skip
-                said = self.refusal(TIP + '[[set]]\nname = "right"\nwhere = "x > 1.5 && y < 2.3"\n', "--set", setting, ranks=ranks)
+                said = self.refusal(TIP + '[[set]]\nname = "right"\nwhere = "x > 1.5 && y < 2.3"\n', setting, ranks=ranks)
                 self.assertIn(what, said)
         self.assertIn("is for one rank", self.refusal(TIP.replace("[1, 0]", "[1, 0]\ncut = 0.3")))
 

@@ -6,8 +6,9 @@ import h5py
 import numpy
 
 from tests.acceptance import dynamics_test
-from tests.acceptance.on_ranks import BLOCK, CUBE, PLATE, ROOT, SHEET, SQUARE, STATES, Comparison, resume, rows
+from tests.acceptance.on_ranks import BLOCK, CUBE, PLATE, SHEET, SQUARE, STATES, Comparison, rows
 from tests.acceptance.ranks_bodies_test import CELL
+from tests.reference.program import ROOT
 
 # Torn from a pre-crack and a hole by a load that sets in at once; what comes off flies away.
 TORN = """
@@ -112,10 +113,6 @@ velocity = ["0.2*x", "0.1*y*y"]
 """
 
 
-def settings(*of):
-    return [word for setting in of for word in ("--set", setting)]
-
-
 def without_steps(text, density):
     text = text.replace("[loading]\nsteps = 1\n", "").replace("[loading]\nsteps = 2\n", "")
     return text.replace("[material]\n", f"[material]\ndensity = {density}\n")
@@ -161,14 +158,14 @@ class Motions(Comparison):
             self.assertNotEqual(float(last[next(key for key in last if key.startswith(name))]), 0.0, name)
 
     def test_given_steps_and_a_row_each(self):
-        self.move(self.MOVING + self.STEPS, (3,), "--set", "dynamics.time_step=5e-6", "--set", "dynamics.history_every=1",
-                  "--set", "dynamics.end_time=1e-4", "--set", "output.every=7")  # fmt: skip
+        self.move(self.MOVING + self.STEPS, (3,), "dynamics.time_step=5e-6", "dynamics.history_every=1",
+                  "dynamics.end_time=1e-4", "output.every=7")  # fmt: skip
 
     def test_a_free_body_and_ranks_without_a_point(self):
         self.move(BAR_IN_FLIGHT, (2, 7))
 
     def test_planes_and_periods(self):
-        half = self.move(self.MOVING + self.STEPS, (3,), *settings('symmetry=[{axis="x", at=1}]'))
+        half = self.move(self.MOVING + self.STEPS, (3,), 'symmetry=[{axis="x", at=1}]')
         self.assertNotEqual(float(rows(half, "history.csv")[-1]["reaction_x:symmetry_x"]), 0.0)
         cell = self.move(CELL_IN_MOTION, (2,))
         self.assertNotEqual(float(rows(cell, "history.csv")[-1]["external_work"]), 0.0)
@@ -192,11 +189,11 @@ class Motions(Comparison):
     def test_a_wave(self):
         wave = (ROOT / "cases/bond_models/wave_propagation.toml").read_text()
         wave = wave.replace("[[initial]]", '[[initial]]\nvelocity = ["0.1", "0.05*x"]')  # a momentum
-        self.move(wave, (2, 3), "--set", "lattice.spacing=0.1", "--set", "dynamics.end_time=0.6")
+        self.move(wave, (2, 3), "lattice.spacing=0.1", "dynamics.end_time=0.6")
 
     def test_steps_that_are_refused(self):
         for ranks in (1, 2):
-            said = self.refusal(self.MOVING + self.STEPS, "--set", "dynamics.time_step=1e-3", ranks=ranks)
+            said = self.refusal(self.MOVING + self.STEPS, "dynamics.time_step=1e-3", ranks=ranks)
             self.assertIn("longer than the stable step", said)
             said = self.refusal(self.MOVING + self.STEPS.replace("0.2*x", "x > 0.96 ? 1/0 : 0"), ranks=ranks)
             self.assertIn("it must be finite", said)
@@ -204,9 +201,9 @@ class Motions(Comparison):
     def ends_of(self, text, *options):
         found = []
         for ranks in (1, 2, 3):
-            run, output = self.start(ranks, text, *options)
+            run, output = self.ended_on(ranks, text, *options)
             decision = rows(output, "decisions.csv")[-1]
-            found.append((run.returncode, decision["outcome"], decision["reason"], decision["stage"]))
+            found.append((run.code, decision["outcome"], decision["reason"], decision["stage"]))
         self.assertEqual(found[0], found[1])
         self.assertEqual(found[0], found[2])
         return found[0]
@@ -222,12 +219,10 @@ class Motions(Comparison):
         self.assertEqual(self.ends_of(missing + self.STEPS)[1], "undefined_condition")
 
     def test_a_run_that_is_stopped_and_goes_on(self):
-        whole = self.results(1, self.MOVING + self.STEPS).rename(self.folder / "whole")
-        run, output = self.start(2, self.MOVING + self.STEPS, "--stop-after", "3")
-        self.assertEqual(run.returncode, 130, run.stderr)
+        whole = self.run_on(1, self.MOVING + self.STEPS).rename(self.folder / "whole")
+        output = self.run_on(2, self.MOVING + self.STEPS, words=("--stop-after", 3), code=130)
         self.assertEqual([row["step"] for row in rows(output, "history.csv")], ["0", "2", "4", "6"])
-        again = resume(3, output)
-        self.assertEqual(again.returncode, 0, again.stderr)
+        self.resume_on(3, output)
         self.expect_same(whole, output)
 
 
@@ -238,7 +233,7 @@ class Torn(Comparison):
         return [(row["step"], row["first_point"], row["second_point"]) for row in rows(output, "broken_bonds.csv")]
 
     def compare_torn(self, text, ranks, *of):
-        one = self.compare(text, ranks, *settings(*of), solver="")
+        one = self.compare(text, ranks, *of, solver="")
         for count in ranks:
             self.assertEqual(self.broken(one), self.broken(self.folder / f"on_{count}"))
         self.assertGreater(len({step for step, _, _ in self.broken(one)}), 2)
@@ -283,8 +278,10 @@ class Torn(Comparison):
         self.compare_torn(bar, (2, 7))
         codes = set()
         for ranks in (1, 3):  # all bonds break
-            run, output = self.start(ranks, bar.replace("0.12*x*x", "x*x").replace("time_step = 0.1", "step_share = 0.9"))
-            codes.add((run.returncode, rows(output, "history.csv")[-1]["broken_bonds"], rows(output, "decisions.csv")[-1]["reason"]))
+            torn = bar.replace("0.12*x*x", "x*x").replace("time_step = 0.1", "step_share = 0.9")
+            run, output = self.ended_on(ranks, torn)
+            row, decision = rows(output, "history.csv")[-1], rows(output, "decisions.csv")[-1]
+            codes.add((run.code, row["broken_bonds"], decision["reason"]))
         self.assertEqual(len(codes), 1)
         self.assertEqual(codes.pop()[:2], (0, "9"))  # its points fly on, by the last step that was stable
 
@@ -293,14 +290,12 @@ class Torn(Comparison):
         # alone would be told anew, so that half a plate goes on with as many.
         for k, (of, then) in enumerate((((LAW,), 3), ((LAW, *NEWMARK), 3), ((LAW, HALF), 2))):
             with self.subTest(settings=of):
-                options = settings(*of, "dynamics.history_every=1")
-                whole = self.results(1, TORN, *options).rename(self.folder / f"whole_{k}")
-                run, output = self.start(2, TORN, *options, "--stop-after", "7")
-                self.assertEqual(run.returncode, 130, run.stderr)
+                options = (*of, "dynamics.history_every=1")
+                whole = self.run_on(1, TORN, *options).rename(self.folder / f"whole_{k}")
+                output = self.run_on(2, TORN, *options, words=("--stop-after", 7), code=130)
                 count = len(self.broken(output))
                 self.assertGreater(count, 20)
-                again = resume(then, output)
-                self.assertEqual(again.returncode, 0, again.stderr)
+                self.resume_on(then, output)
                 self.assertGreater(len(self.broken(output)), count)
                 self.assertEqual(self.broken(whole), self.broken(output))
                 self.expect_same(whole, output)
@@ -310,26 +305,25 @@ class Implicit(Comparison):
     """Newmark's steps, whose tangent has masses."""
 
     def test_a_plate_whose_supports_and_loads_move(self):
-        one = self.compare(Motions.MOVING + Motions.STEPS, (2, 3), *settings(*NEWMARK, "dynamics.spectral_radius=0.8"), solver="")
+        one = self.compare(Motions.MOVING + Motions.STEPS, (2, 3), *NEWMARK, "dynamics.spectral_radius=0.8", solver="")
         self.assertGreater(float(rows(one, "history.csv")[-1]["newton_iterations"]), 0)
 
     def test_a_plate_that_is_torn(self):
-        self.compare(TORN, (3,), *settings(HALF, *NEWMARK), solver="")
-        one = self.compare(TORN, (2, 3), *settings(*NEWMARK), solver="")
+        self.compare(TORN, (3,), HALF, *NEWMARK, solver="")
+        one = self.compare(TORN, (2, 3), *NEWMARK, solver="")
         self.assertGreater(len(rows(one, "broken_bonds.csv")), 200)
 
     def test_preconditioners(self):
         for kind in ("jacobi", "rigid_pieces", "auto"):
-            self.compare(TORN, (3,), *settings(*NEWMARK, f'solver.preconditioner="{kind}"', "dynamics.end_time=3e-4"), solver="")
+            self.compare(TORN, (3,), *NEWMARK, f'solver.preconditioner="{kind}"', "dynamics.end_time=3e-4", solver="")
 
     def test_ranks_without_a_point(self):
-        self.compare(BAR_IN_FLIGHT.replace("x +", "x*x +"), (7,), *settings(*NEWMARK, "dynamics.time_step=0.2"), solver="")
+        self.compare(BAR_IN_FLIGHT.replace("x +", "x*x +"), (7,), *NEWMARK, "dynamics.time_step=0.2", solver="")
 
     def test_steps_that_are_refused(self):
         for ranks in (1, 2):
-            run, _ = self.start(ranks, TORN, *settings(*NEWMARK, "dynamics.time_step=1e-9"))
-            self.assertEqual(run.returncode, 2)
-            self.assertIn("shorter than a thousandth of the stable explicit step", run.stderr)
+            said = self.refusal(TORN, *NEWMARK, "dynamics.time_step=1e-9", ranks=ranks)
+            self.assertIn("shorter than a thousandth of the stable explicit step", said)
 
 
 class FromEquilibrium(Comparison):
@@ -343,7 +337,7 @@ class FromEquilibrium(Comparison):
 
     def test_explicit_and_implicit_steps(self):
         for of in ((), NEWMARK[:2]):
-            one = self.compare(self.STEADY + self.STEPS, (2,), *settings(*of), solver="")
+            one = self.compare(self.STEADY + self.STEPS, (2,), *of, solver="")
             first = rows(one, "history.csv")[0]
             self.assertGreater(float(first["stored_energy"]), 0.0)
             with h5py.File(one / "results.h5") as file:
@@ -351,17 +345,15 @@ class FromEquilibrium(Comparison):
 
     def test_automatic_choices(self):
         """One rank has a factor, several have iterations to a tolerance."""
-        tight = settings("solver.relative_tolerance=1e-12", "solver.linear_tolerance=1e-12")
+        tight = "solver.relative_tolerance=1e-12", "solver.linear_tolerance=1e-12"
         text = dynamics_test.Start.HANGING.replace("LATER", "0.1*t")
-        one, several = (self.results(ranks, text, *tight) for ranks in (1, 2))
+        one, several = (self.run_on(ranks, text, *tight) for ranks in (1, 2))
         self.expect_same(one, several)
 
     def test_goes_on(self):
-        whole = self.results(1, self.STEADY + self.STEPS).rename(self.folder / "whole")
-        run, output = self.start(2, self.STEADY + self.STEPS, "--stop-after", "3")
-        self.assertEqual(run.returncode, 130, run.stderr)
-        again = resume(3, output)
-        self.assertEqual(again.returncode, 0, again.stderr)
+        whole = self.run_on(1, self.STEADY + self.STEPS).rename(self.folder / "whole")
+        output = self.run_on(2, self.STEADY + self.STEPS, words=("--stop-after", 3), code=130)
+        self.resume_on(3, output)
         self.expect_same(whole, output)
 
     def test_starts_that_are_none(self):
@@ -369,9 +361,8 @@ class FromEquilibrium(Comparison):
         brittle = self.STEADY.replace("density", 'damage = { law = "critical_stretch", critical = 1e-4 }\ndensity')
         for text, code, words in ((free, 2, "do not hold the body"), (brittle, 3, "no equilibrium to begin with")):
             for ranks in (1, 2):
-                run, _ = self.start(ranks, text + self.STEPS)
-                self.assertEqual(run.returncode, code, run.stderr)
-                self.assertIn(words, run.stdout + run.stderr)
+                self.run_on(ranks, text + self.STEPS, code=code)
+                self.assertIn(words, self.ended.said)
 
 
 class OtherModels(Comparison):
@@ -379,7 +370,7 @@ class OtherModels(Comparison):
 
     def compare_slow(self, text, ranks, density, *of):
         text = without_steps(text, density)
-        one = self.compare(text + SLOWLY, ranks, *settings(*of), solver="")
+        one = self.compare(text + SLOWLY, ranks, *of, solver="")
         self.assertGreater(len(rows(one, "history.csv")), 2)
         with h5py.File(one / "results.h5") as file:
             last = file["steps"][list(file["steps"])[-1]]

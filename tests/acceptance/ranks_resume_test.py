@@ -6,7 +6,7 @@ import unittest
 import h5py
 import numpy
 
-from tests.acceptance.on_ranks import BLOCK, PLATE, SHORT_BAR, SOLVER, Comparison, entries_of_checkpoint, resume, rows
+from tests.acceptance.on_ranks import BLOCK, PLATE, SHORT_BAR, SOLVER, Comparison, entries_of_checkpoint, rows
 
 
 class GoesOn(Comparison):
@@ -15,18 +15,16 @@ class GoesOn(Comparison):
     TEXT = PLATE.replace("steps = 2", "steps = 4") + SOLVER
 
     def stopped(self, ranks, text, *options):
-        run, output = self.start(ranks, text, "--stop-after", "2", *options)
-        self.assertEqual(run.returncode, 130, run.stderr)
+        output = self.run_on(ranks, text, *options, words=("--stop-after", 2), code=130)
         self.assertEqual(len(rows(output, "history.csv")), 3)
-        self.assertIn("peristat resume", run.stderr)
+        self.assertIn("peristat resume", self.ended.errors)
         return output
 
     def goes_on(self, ranks, output, whole, *options):
         folder = self.folder / f"{output.name}_resumed_on_{ranks}"
         shutil.copytree(output, folder)
-        run = resume(ranks, folder, *options)
-        self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertIn("going on after step 2", run.stdout)
+        run = self.resume_on(ranks, folder, *options)
+        self.assertIn("going on after step 2", run.output)
         self.expect_same(whole, folder)
         self.expect_like_costs(whole, folder)
         with h5py.File(whole / "results.h5") as expected, h5py.File(folder / "results.h5") as found:
@@ -34,7 +32,7 @@ class GoesOn(Comparison):
         self.assertFalse((folder / "parts").exists())
 
     def whole(self, text):
-        output = self.results(1, text)
+        output = self.run_on(1, text)
         return output.rename(self.folder / "whole")
 
     def test_on_more_and_on_fewer_ranks(self):
@@ -64,21 +62,19 @@ class GoesOn(Comparison):
         self.goes_on(3, self.stopped(2, block), self.whole(block))
 
     def test_with_the_same_bits_on_as_many_ranks(self):
-        whole = self.results(2, self.TEXT).rename(self.folder / "whole")
+        whole = self.run_on(2, self.TEXT).rename(self.folder / "whole")
         output = self.stopped(2, self.TEXT)
-        self.assertEqual(resume(2, output).returncode, 0)
+        self.resume_on(2, output)
         with h5py.File(whole / "results.h5") as expected, h5py.File(output / "results.h5") as found:
             for name in ("steps/000004/displacement", "history/external_work", "history/reaction_y:top"):
                 self.assertTrue(numpy.array_equal(expected[name], found[name]), name)
 
     def test_further_than_before(self):
-        output = self.results(2, self.TEXT)
-        again = resume(3, output)
-        self.assertEqual(again.returncode, 0, again.stderr)
-        self.assertIn("has come to its end", again.stdout)
-        self.assertEqual(again.stdout.count("has come to its end"), 1)
-        further = resume(3, output, "--set", "loading.table=[0, 1, 0.5]")
-        self.assertEqual(further.returncode, 0, further.stderr)
+        output = self.run_on(2, self.TEXT)
+        again = self.resume_on(3, output)
+        self.assertIn("has come to its end", again.output)
+        self.assertEqual(again.output.count("has come to its end"), 1)
+        self.resume_on(3, output, "loading.table=[0, 1, 0.5]")
         self.assertEqual(float(rows(output, "history.csv")[-1]["load_factor"]), 0.5)
 
     def test_of_another_body(self):
@@ -86,18 +82,15 @@ class GoesOn(Comparison):
         results = output / "results.h5"
         with h5py.File(results, "r+") as file:
             file["points/reference"][7, 1] += 1e-12
-        said = resume(3, output)
-        self.assertEqual(said.returncode, 2, said.stderr)
-        self.assertIn("its points are not those", said.stderr)
-        self.assertEqual(said.stderr.count("peristat:"), 1)
+        said = self.resume_on(3, output, code=2).errors
+        self.assertIn("its points are not those", said)
+        self.assertEqual(said.count("peristat:"), 1)
 
     def test_from_a_damaged_checkpoint(self):
         output = self.stopped(2, self.TEXT)
         with h5py.File(output / "results.h5", "r+") as file:
             file["checkpoint"][file["checkpoint"].size // 2] ^= 1  # of a number
-        said = resume(2, output)
-        self.assertEqual(said.returncode, 2, said.stderr)
-        self.assertIn("its checksum is wrong", said.stderr)
+        self.assertIn("its checksum is wrong", self.resume_on(2, output, code=2).errors)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import unittest
 
 import h5py
 
-from tests.acceptance.on_ranks import PLATE, SHEET, SOLVER, SQUARE, STATES, STORED, Comparison, resume, rows
+from tests.acceptance.on_ranks import PLATE, SHEET, SOLVER, SQUARE, STATES, STORED, Comparison, rows
 from tests.acceptance.ranks_bodies_test import CELL, SLOPED, TOP
 
 LINEAR = PLATE.replace('model = "bond"', 'kinematics = "linear"')
@@ -51,14 +51,10 @@ NEWMARK = ('dynamics.scheme="newmark"', "dynamics.time_step=2e-5", 'solver.linea
            "solver.relative_tolerance=1e-12")  # fmt: skip
 
 
-def settings(*of):
-    return [word for setting in of for word in ("--set", setting)]
-
-
 class Terms(Comparison):
     def compare_settings(self, text, *of, ranks=(3,), solver=SOLVER):
         with self.subTest(settings=of):
-            return self.compare(text, ranks, *settings(*of), solver=solver)
+            return self.compare(text, ranks, *of, solver=solver)
 
     def broken(self, output):
         return [(row["step"], row["first_point"], row["second_point"]) for row in rows(output, "broken_bonds.csv")]
@@ -69,12 +65,10 @@ class Terms(Comparison):
 
     def goes_on(self, text, *of, first=2, then=3, after=2):
         """A run that is stopped on some ranks goes on with others."""
-        options = settings(*of)
-        whole = self.results(1, text, *options).rename(self.folder / f"whole_{len(list(self.folder.iterdir()))}")
-        run, output = self.start(first, text, *options, "--stop-after", str(after))
-        self.assertEqual(run.returncode, 130, run.stderr)
-        again = resume(then, output)
-        self.assertEqual(again.returncode, 0, again.stderr)
+        options = of
+        whole = self.run_on(1, text, *options).rename(self.folder / f"whole_{len(list(self.folder.iterdir()))}")
+        output = self.run_on(first, text, *options, words=("--stop-after", after), code=130)
+        self.resume_on(then, output)
         self.expect_same(whole, output)
         return output
 
@@ -204,12 +198,12 @@ class States(Terms):
     """Bonds of states break as those of bonds do, and the energy that goes with each is counted once."""
 
     def compare_torn(self, text, *of, ranks=(3,)):
-        options = settings(*of)
-        one_run, one = self.start(1, text, *options)
+        options = of
+        one_run, one = self.ended_on(1, text, *options)
         for count in ranks:
-            several, found = self.start(count, text, *options)
+            several, found = self.ended_on(count, text, *options)
             with self.subTest(ranks=count, settings=of):
-                self.assertEqual(several.returncode, one_run.returncode, several.stderr)
+                self.assertEqual(several.code, one_run.code, several.said)
                 self.assertEqual(self.broken(one), self.broken(found))
                 self.expect_same(one, found)
         self.assertGreater(len(self.broken(one)), 20)
@@ -257,8 +251,8 @@ class Triangles(Terms):
             self.goes_on(text + there_and_back + STORED, beyond, after=4)
         # When it is found that all has come to rest, round-off of what is torn off decides.
         tearing = half + pulled.replace("0.038", "0.2") + STORED
-        options = settings('symmetry=[{axis="y", at=0.6}]', 'solver.mode="relaxation"')
-        one, several = (self.broken(self.results(ranks, tearing, *options)) for ranks in (1, 3))
+        options = 'symmetry=[{axis="y", at=0.6}]', 'solver.mode="relaxation"'
+        one, several = (self.broken(self.run_on(ranks, tearing, *options)) for ranks in (1, 3))
         self.assertEqual(one, several)
         self.assertGreater(len(one), 10)
 

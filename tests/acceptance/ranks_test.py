@@ -2,7 +2,6 @@
 
 import json
 import re
-import subprocess
 import unittest
 
 import h5py
@@ -13,11 +12,8 @@ from tests.acceptance.on_ranks import (
     BEAM,
     BLOCK,
     CUBE,
-    ENVIRONMENT,
     PIECES,
     PLATE,
-    PROGRAM,
-    ROOT,
     SHORT_BAR,
     SOLVER,
     SQUARE,
@@ -28,6 +24,7 @@ from tests.acceptance.on_ranks import (
     linear_iterations,
     rows,
 )
+from tests.reference.program import PROGRAM, ROOT
 
 
 class SameResults(Comparison):
@@ -43,7 +40,7 @@ class SameResults(Comparison):
 
     def test_pre_cracks(self):
         in_plane = PLATE + '[[crack]]\nfrom = [0, 1.02]\nto = [0.33, 1.05]\n[[crack]]\nfrom = [0.7, 0.3]\nto = [1, 0.3]\n'
-        one = self.compare(in_plane, (2, 3, 4), "--set", "output.count_cracks=true")
+        one = self.compare(in_plane, (2, 3, 4), "output.count_cracks=true")
         with h5py.File(one / "results.h5") as file:
             self.assertGreater(file["steps/000002/damage"][()].max(), 0.2)
         in_space = BLOCK + "[[crack]]\nvertices = [[0, 0, 0.5], [0.4, 0, 0.5], [0.4, 0.6, 0.52], [0, 0.6, 0.52]]\n"
@@ -66,15 +63,15 @@ class SameResults(Comparison):
             (PLATE, ('lattice.layer[1].where="x < 0.5"', 'lattice.shape[1].name="hole"', "dimension=2")),
         ):  # fmt: skip
             with self.subTest(settings=settings):
-                self.compare(text, (3,), *(word for setting in settings for word in ("--set", setting)))
+                self.compare(text, (3,), *settings)
 
     def test_triangles(self):
         one = self.compare(SQUARE, (2, 3, 4), solver=STORED)
         self.expect_same_counts(one, 4)
-        thin = ("--set", "lattice.shape=[{add=\"box\", min=[0, 0], max=[0.4, 0.2]}]")
-        self.compare(SQUARE, (3,), *thin, "--set", 'quadrature.weights="bulk"', solver=STORED)
-        moduli = ("--set", "material={model=\"cpd\", youngs_modulus=2e9, poisson_ratio=0.25, influence=\"gaussian\"}")
-        self.compare(SQUARE, (2,), *moduli, solver=STORED)  # its c2 is negative
+        thin = 'lattice.shape=[{add="box", min=[0, 0], max=[0.4, 0.2]}]'
+        self.compare(SQUARE, (3,), thin, 'quadrature.weights="bulk"', solver=STORED)
+        moduli = 'material={model="cpd", youngs_modulus=2e9, poisson_ratio=0.25, influence="gaussian"}'
+        self.compare(SQUARE, (2,), moduli, solver=STORED)  # its c2 is negative
 
     def test_tetrahedra(self):
         one = self.compare(CUBE, (2, 3), solver=STORED)
@@ -84,7 +81,7 @@ class SameResults(Comparison):
         self.compare(STATES, (2, 3, 4), solver=STORED)
         block = BLOCK.replace('model = "bond"', 'model = "lps"\npoisson_ratio = 0.3').replace(
             'surface_correction = "volume"', 'form = "energy"')
-        self.compare(block, (3,), "--set", 'material.influence="gaussian"', solver=STORED)
+        self.compare(block, (3,), 'material.influence="gaussian"', solver=STORED)
 
     def expect_same_counts(self, one, ranks):
         expected, found = (json.loads((folder / "summary.json").read_text()) for folder in (one, self.folder / f"on_{ranks}"))
@@ -195,7 +192,7 @@ class SameResults(Comparison):
         self.compare(SHORT_BAR + stress, (8,))
 
     def test_steps_that_are_cut(self):
-        few = ("--set", "solver.max_iterations=3", "--set", "loading.steps=1")
+        few = ("solver.max_iterations=3", "loading.steps=1")
         one = self.compare(PLATE.replace("0.05*load", "0.3*load"), (2, 3), *few)
         self.assertIn("cut", [row["action"] for row in rows(one, "decisions.csv")])
 
@@ -207,40 +204,39 @@ class SameResults(Comparison):
 
     def test_operators(self):
         for operator in ("auto", "bonds"):
-            self.compare(PLATE, (2,), "--set", f'solver.operator="{operator}"')
+            self.compare(PLATE, (2,), f'solver.operator="{operator}"')
 
     def test_automatic_choices(self):
-        one = self.results(1, PLATE)
-        run, several = self.start(2, PLATE, "--set", "solver.relative_tolerance=1e-12")
-        self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertIn("rigid pieces", run.stdout)
-        self.assertIn("factorisations and sines are for one rank", run.stdout.replace("\n    ", " "))
+        one = self.run_on(1, PLATE)
+        several = self.run_on(2, PLATE, "solver.relative_tolerance=1e-12")
+        self.assertIn("rigid pieces", self.ended.output)
+        self.assertIn("factorisations and sines are for one rank", self.ended.output.replace("\n    ", " "))
         self.expect_same_displacements(one, several)
 
     def test_rigid_pieces(self):
         """Of a body whose pieces stand on several ranks, and of one that is thinner than the horizon."""
         for text in (BLOCK, BEAM):
-            self.compare(text, (2, 3, 4), "--set", 'solver.preconditioner="rigid_pieces"')
+            self.compare(text, (2, 3, 4), 'solver.preconditioner="rigid_pieces"')
 
     def test_rigid_pieces_of_triangles_tetrahedra_and_states(self):
         for text, ranks in ((SQUARE, (2, 8)), (CUBE, (3,)), (STATES, (3,))):
             found = linear_iterations(self.compare(text, ranks, solver=PIECES))
-            self.assertLess(found, 0.7 * linear_iterations(self.results(1, text + STORED)))
+            self.assertLess(found, 0.7 * linear_iterations(self.run_on(1, text + STORED)))
 
     def test_other_linear_solvers(self):
-        one = self.results(1, PLATE + SOLVER)
+        one = self.run_on(1, PLATE + SOLVER)
         for solver, preconditioner in (
             ("pcg", "surrogate"), ("pcg", "multigrid"), ("pcg", "riluk"), ("pcg", "chebyshev"),
             ("minres", "rigid_pieces"), ("gmres", "surrogate"),
         ):  # fmt: skip
             with self.subTest(solver=solver, preconditioner=preconditioner):
                 settings = f'solver.linear="{solver}"', f'solver.preconditioner="{preconditioner}"', 'solver.tangent="auto"'
-                several = self.results(3, PLATE + SOLVER, *(word for text in settings for word in ("--set", text)))
+                several = self.run_on(3, PLATE + SOLVER, *settings)
                 self.expect_same(one, several)
-        one = self.results(1, SQUARE + STORED)
+        one = self.run_on(1, SQUARE + STORED)
         for preconditioner in ("surrogate", "multigrid"):
             with self.subTest(preconditioner=preconditioner):
-                self.expect_same(one, self.results(2, SQUARE + STORED, "--set", f'solver.preconditioner="{preconditioner}"'))
+                self.expect_same(one, self.run_on(2, SQUARE + STORED, f'solver.preconditioner="{preconditioner}"'))
 
     def expect_same_displacements(self, one, several):
         with h5py.File(one / "results.h5") as expected, h5py.File(several / "results.h5") as found:
@@ -249,17 +245,17 @@ class SameResults(Comparison):
             self.assertLess(difference, 1e-9 * numpy.abs(u).max())
 
     def test_threads_of_ranks(self):
-        one = self.results(1, PLATE + SOLVER)
-        self.expect_same(one, self.results(2, PLATE + SOLVER, threads=2))
+        one = self.run_on(1, PLATE + SOLVER)
+        self.expect_same(one, self.run_on(2, PLATE + SOLVER, threads=2))
 
     def test_ranks_of_mpirun(self):
-        one = self.results(1, PLATE + SOLVER)
+        one = self.run_on(1, PLATE + SOLVER)
         output = self.folder / "of_mpirun"
-        words = ["mpirun", "--oversubscribe", "-np", "3", PROGRAM, "run", str(self.folder / "case.toml")]
-        run = subprocess.run([*words, "--output", str(output)], env=ENVIRONMENT, capture_output=True, text=True, timeout=100)
-        self.assertEqual(run.returncode, 0, run.stderr)
+        words = [PROGRAM, "run", self.folder / "case.toml", "--output", output]
+        run = self.execute(["mpirun", "--oversubscribe", "-np", 3, *words])
+        self.assert_completed(run)
         self.expect_same(one, output)
-        self.assertEqual(run.stdout.count("completed in"), 1)
+        self.assertEqual(run.output.count("completed in"), 1)
 
 
 # What acts at load 0: a weight, a temperature, a support that is displaced from the start.
@@ -274,8 +270,7 @@ class LoadZero(Comparison):
     """Step 0 is a row of each run, and its fields are there where something acts at load 0."""
 
     def compare_from_zero(self, name, *settings, text=PLATE, ranks=(3,)):
-        words = [word for setting in (*LASTING[name], *settings) for word in ("--set", setting)]
-        one = self.compare(text, ranks, *words)
+        one = self.compare(text, ranks, *LASTING[name], *settings)
         history = rows(one, "history.csv")
         self.assertEqual([row["step"] for row in history], ["0", "1", "2"])
         self.assertGreater(float(history[0]["stored_energy"]), 0.0)
@@ -306,10 +301,9 @@ class LoadZero(Comparison):
     def test_damage_at_load_zero(self):
         """The support softens bonds before the first step."""
         law = 'damage={law="tanh", onset=0.01, critical=0.5, rate=3}'
-        one = self.compare(PLATE, (3,), *(word for setting in (
-            f'material={{model="bond", youngs_modulus=1e9, {law}}}', 'solver.mode="newton"',
-            'support=[{set="bottom", displacement=[0, 0]}, {set="top", displacement=[0, "2e-2 + 1e-4*load"]}]'
-        ) for word in ("--set", setting)))  # fmt: skip
+        moved = 'support=[{set="bottom", displacement=[0, 0]}, {set="top", displacement=[0, "2e-2 + 1e-4*load"]}]'
+        material = f'material={{model="bond", youngs_modulus=1e9, {law}}}'
+        one = self.compare(PLATE, (3,), material, 'solver.mode="newton"', moved)
         self.assertGreater(float(rows(one, "history.csv")[0]["dissipated_energy"]), 0.0)
 
 
@@ -322,7 +316,7 @@ class CutBonds(Comparison):
         hole = '{subtract="disk", centre=[0.5, 0.7], radius=0.2, cuts_bonds=true}'
         bonds = {}
         for word in ("true", "false"):
-            one = self.compare(PLATE, (2, 3), "--set", f"lattice.shape=[{box}, {hole}, {slit.format(word)}]")
+            one = self.compare(PLATE, (2, 3), f"lattice.shape=[{box}, {hole}, {slit.format(word)}]")
             found = {json.loads((self.folder / name / "summary.json").read_text())["bonds"] for name in ("on_1", "on_2", "on_3")}
             self.assertEqual(len(found), 1)
             bonds[word] = found.pop()
@@ -330,7 +324,7 @@ class CutBonds(Comparison):
 
     def test_in_space(self):
         solid = '{add="box", min=[0, 0, 0], max=[0.7, 0.6, 0.9]}, {subtract="sphere", centre=[0.35, 0.3, 0.6], radius=0.16, cuts_bonds=true}'
-        self.compare(BLOCK, (2,), "--set", f"lattice.shape=[{solid}]")
+        self.compare(BLOCK, (2,), f"lattice.shape=[{solid}]")
 
 
 class Page(OnRanks):
@@ -342,10 +336,10 @@ class Page(OnRanks):
         table = [[cell.strip() for cell in lines[k].strip("|").split("|")] for k in range(first, first + 6)]
         case = (ROOT / "cases/plate_with_hole/elastic.toml").read_text()
         for column, ranks in enumerate(table[0][1:], 1):
-            run, _ = self.start(int(ranks), case, "--set", "loading.steps=1")
+            self.run_on(int(ranks), case, "loading.steps=1")
             points, ghosts, messages, size = (row[column] for row in table[2:])
-            self.assertIn(f"at most {points} points on a rank, {ghosts} ghosts", run.stdout)
-            self.assertIn(f"{messages} messages, {size} bytes each", run.stdout.replace("\n    ", " "))
+            self.assertIn(f"at most {points} points on a rank, {ghosts} ghosts", self.ended.output)
+            self.assertIn(f"{messages} messages, {size} bytes each", self.ended.output.replace("\n    ", " "))
 
     def test_the_list_of_keys_is_that_of_the_program(self):
         page = (ROOT / "docs/cluster.md").read_text().split("## What runs")[1].split("\nThe list is")[0]

@@ -1,18 +1,16 @@
 """Bodies of several materials beside the reference, and what is refused of them."""
 
 import itertools
-import json
-import pathlib
-import tempfile
 import unittest
 
 import h5py
 import numpy
 
+from tests.acceptance.folder import Folder
 from tests.verification.reference_test import ROUND_OFF, mechanics_of
 from tests.reference.case import evaluate
 from tests.reference.clouds import LAWS, random_cloud, random_deformation, toml_value
-from tests.reference.program import peristat
+from tests.reference.program import ROOT
 from tests.reference.results import Results
 from tests.reference.verify import Verification
 
@@ -25,7 +23,6 @@ UNLIKE = {
     "one fails": ("none", "tanh_continuous", "none"),
     "none fails": ("none", "none", "none"),
 }
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 BAR = ROOT / "cases/regions/bimaterial.toml"
 PLATE = ROOT / "cases/regions/composite.toml"
 
@@ -190,11 +187,9 @@ def law(name, scale):
     return {"damage": {k: v * scale if k in ("onset", "critical") else v for k, v in table.items()}} if table else {}
 
 
-class Regions(unittest.TestCase):
+class Regions(Folder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_regions_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.random = numpy.random.default_rng(33)
 
     def bonds(self, laws, stiffness=(3e3, 9e2, 2e4)):
@@ -215,9 +210,8 @@ class Regions(unittest.TestCase):
         reference = mechanics.body.reference
         expressions = random_deformation(self.random, reference.shape[1], size, amount)
         displacement = numpy.stack([evaluate(e, reference) for e in expressions], 1) - reference
-        run = peristat("check-tangent", path, "--deformation", "; ".join(expressions))
-        self.assertEqual(run.code, 0, run.said)
-        told = run.json()
+        ended = self.command("check-tangent", path, words=("--deformation", "; ".join(expressions)))
+        told = self.assert_completed(ended).json()
         for key, value in (("energy", mechanics.energy(displacement)),
                            ("residual_norm", numpy.linalg.norm(mechanics.gradient(displacement))),
                            ("tangent_frobenius_norm", numpy.linalg.norm(mechanics.tangent(displacement)))):  # fmt: skip
@@ -303,9 +297,7 @@ class Regions(unittest.TestCase):
                                     load=[{"set": "middle", "total_force": ["0.3*load", *still[1:]]}],
                                     loading={"steps": 4}, relaxation={"steps": 8},
                                     solver={"mode": "newton" if kind == "none fails" else "adaptive"})  # fmt: skip
-                output = self.folder / f"{model}_{dimension}_{kind.replace(' ', '_')}"
-                run = peristat("run", path, "--quiet", "--output", output)
-                self.assertIn(run.code, (0, 3), run.said)
+                output = self.run_case(path, name=f"{model} {dimension} {kind}", threads=2, code=(0, 3))
                 verification = Verification(output, path.read_text(), self.folder)
                 self.assertTrue(verification.histories_are_known)
                 self.assertEqual(verification.run(), [])
@@ -315,17 +307,6 @@ class Regions(unittest.TestCase):
         self.assertGreater(damaged, 6)
 
     # ---- closed forms ----------------------------------------------------------------------------
-
-    def run_case(self, case, *settings, code=0, threads=1, name="run"):
-        path = case
-        if isinstance(case, str):
-            path = self.folder / "case.toml"
-            path.write_text(case)
-        words = [word for setting in settings for word in ("--set", setting)]
-        output = self.folder / name
-        run = peristat("run", path, "--quiet", "--threads", threads, "--output", output, *words)
-        self.assertEqual(run.code, code, run.said)
-        return output
 
     def judged(self, output):
         """The results, after the reference has judged them."""
@@ -419,7 +400,7 @@ class Regions(unittest.TestCase):
             set = "right"
             total_force = ["16*load", 0]
         """
-        results = Results(self.run_case(case))
+        results = self.results(case)
         x, u = results.reference, results.steps[-1].displacement[:, 0]
         axis = numpy.abs(x[:, 1]) < 1
         moduli = []
@@ -444,8 +425,7 @@ class Regions(unittest.TestCase):
         for strain in ([[1, 0], [0, 0]], [[0, 0], [0, 1]], [[0, 0.5], [0.5, 0]], [[1, 0.3], [0.3, -0.4]]):
             with self.subTest(strain=strain):
                 strain = numpy.array(strain, float)
-                output = self.run_case(PATCH % tuple(strain.ravel().tolist()))
-                energy = json.loads((output / "summary.json").read_text())["probes"]["energy"]
+                energy = self.results(PATCH % tuple(strain.ravel().tolist())).summary["probes"]["energy"]
                 own = turn @ strain @ turn.T
                 expected = c11 * own[0, 0] ** 2 / 2 + c22 * own[1, 1] ** 2 / 2 + g * own[0, 0] * own[1, 1] + 2 * g * own[0, 1] ** 2
                 # 8 spacings to the horizon: the lattice's sums are within a per cent of integrals.
@@ -469,9 +449,9 @@ class Regions(unittest.TestCase):
 
     def test_fields_repeat_on_any_number_of_threads(self):
         scatter = ('material.scatter=[{of="stiffness",weibull_modulus=8,correlation_length=4,seed=3}]',
-                   'region[0].material.scatter=[{of="strength",weibull_modulus=15,seed=9}]')  # fmt: skip
-        one = Results(self.run_case(CRACKED, *scatter, "solver.mode=newton", "loading.steps=1", "support[1].displacement=[0,0.01]", threads=1, name="one"))
-        two = Results(self.run_case(CRACKED, *scatter, "solver.mode=newton", "loading.steps=1", "support[1].displacement=[0,0.01]", threads=2, name="two"))
+                   'region[0].material.scatter=[{of="strength",weibull_modulus=15,seed=9}]',
+                   "solver.mode=newton", "loading.steps=1", "support[1].displacement=[0,0.01]")  # fmt: skip
+        one, two = (self.results(CRACKED, *scatter, threads=threads) for threads in (1, 2))
         for name in ("stiffness", "strength"):
             self.assertEqual(one.factors[name].tobytes(), two.factors[name].tobytes())
         tough = one.sets["tough"]
@@ -479,16 +459,14 @@ class Regions(unittest.TestCase):
         self.assertTrue((one.factors["strength"][~tough] == 1).all())
         self.assertGreater(one.factors["stiffness"][~tough].std(), 0.08)
         self.assertLess(abs(one.factors["strength"][tough].mean() - 1), 0.02)
-        other = Results(self.run_case(CRACKED, *scatter, "material.scatter[0].seed=4", "solver.mode=newton", "loading.steps=1", "support[1].displacement=[0,0.01]", name="other"))
+        other = self.results(CRACKED, *scatter, "material.scatter[0].seed=4")
         self.assertGreater(numpy.abs(one.factors["stiffness"] - other.factors["stiffness"]).max(), 0.1)
 
     def test_a_run_that_goes_on_is_the_run_that_went_through(self):
         through = self.run_case(CRACKED, *STRENGTH, name="through")
         part = self.run_case(CRACKED, *STRENGTH, "loading.table=[0,0.5]", "loading.steps=4", name="part")
         self.judged(through)
-        words = ["--set", "loading.table=[0,0.5,1]"]
-        run = peristat("resume", part, "--threads", 1, "--quiet", *words)
-        self.assertEqual(run.code, 0, run.said)
+        self.resume(part, "loading.table=[0,0.5,1]")
         straight = self.run_case(CRACKED, *STRENGTH, "loading.table=[0,0.5,1]", "loading.steps=4", name="straight")
         one, other = Results(straight).steps, Results(part).steps
         self.assertEqual([step.number for step in one], [step.number for step in other])
@@ -512,7 +490,7 @@ class Regions(unittest.TestCase):
         material, stiff = ({"model": "cpd", "youngs_modulus": e, "poisson_ratio": 0.4} for e in (2.0, 6.0))
         path = random_cloud(self.random, self.folder, 2, count=22, horizon=2.2, material=material,
                             region=[{"set": "right", "material": stiff}])  # fmt: skip
-        told = peristat("calibrate", path, "--set", "region[0].material.youngs_modulus=8").json()
+        told = self.command("calibrate", path, "region[0].material.youngs_modulus=8").json()
         self.assertEqual(list(told), ["material", "right"])
         self.assertAlmostEqual(told["right"]["lattice"]["c1"] / told["material"]["lattice"]["c1"], 4)
 
@@ -544,10 +522,7 @@ class Regions(unittest.TestCase):
         }  # fmt: skip
         for settings, words in refused.items():
             with self.subTest(settings=settings):
-                run = peristat("check", BAR, *[word for setting in settings for word in ("--set", setting)])
-                self.assertEqual(run.code, 2, run.said)
-                for word in words:
-                    self.assertIn(word, run.said)
+                self.assert_refused(self.command("check", BAR, *settings), *words)
 
     def test_wrong_fibres_are_refused(self):
         refused = {
@@ -559,28 +534,20 @@ class Regions(unittest.TestCase):
         }  # fmt: skip
         for settings, words in refused.items():
             with self.subTest(settings=settings):
-                run = peristat("check", PLATE, *[word for setting in settings for word in ("--set", setting)])
-                self.assertEqual(run.code, 2, run.said)
-                for word in words:
-                    self.assertIn(word, run.said)
+                self.assert_refused(self.command("check", PLATE, *settings), *words)
 
     def test_cpd_materials_are_told_apart_where_one_is_refused(self):
         material = {"model": "cpd", "c1": 2.0, "c2": 0.7}
         negative = {"model": "cpd", "c1": 2.0, "c2": -0.01}
         path = random_cloud(self.random, self.folder, 2, count=22, horizon=2.2, material=material,
                             region=[{"set": "right", "material": negative}])  # fmt: skip
-        run = peristat("check", path)
-        self.assertEqual(run.code, 2, run.said)
-        self.assertIn("no harmonic mean", run.said)
-        run = peristat("check", path, "--set", "interface[0].rule=arithmetic")
-        self.assertEqual(run.code, 0, run.said)
-        run = peristat("check", path, "--set", "interface[0].rule=arithmetic", "--set", "region[0].material.c2=-50")
-        self.assertEqual(run.code, 2, run.said)
-        self.assertIn("region[0].material.c2 = -50: the body is unstable", run.said)
-        run = peristat("check", path, "--set", "interface[0].rule=arithmetic", "--set",
-                       f"material.damage={toml_value(LAWS['tanh'])}")  # fmt: skip
-        self.assertEqual(run.code, 2, run.said)
-        self.assertIn("region[0].material.damage.law", run.said)
+        self.assert_refused(self.command("check", path), "no harmonic mean")
+        rule = "interface[0].rule=arithmetic"
+        self.assert_completed(self.command("check", path, rule))
+        unstable = self.command("check", path, rule, "region[0].material.c2=-50")
+        self.assert_refused(unstable, "region[0].material.c2 = -50: the body is unstable")
+        damaged = self.command("check", path, rule, f"material.damage={toml_value(LAWS['tanh'])}")
+        self.assert_refused(damaged, "region[0].material.damage.law")
 
 
 if __name__ == "__main__":

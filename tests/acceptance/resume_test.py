@@ -1,25 +1,23 @@
 """A run that was split is the run that was not: to the last bit on one thread."""
 
 import contextlib
-import csv
 import os
-import pathlib
 import random
 import shutil
 import signal
 import subprocess
-import tempfile
 import time
 import unittest
 
 import h5py
 import numpy
 
+from tests.acceptance.folder import Folder
 from tests.acceptance.strip import LATTICE, PULLED
-from tests.reference.program import PROGRAM, peristat
+from tests.reference.program import PROGRAM, limited_by_shell, settings
+from tests.reference.results import table
 from tests.same_results import differences
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Pulled in two.
 TORN = LATTICE + """\
 [material]
@@ -125,30 +123,23 @@ MODES = {
 }  # fmt: skip
 
 
-class Resumed(unittest.TestCase):
+class Resumed(Folder):
     def setUp(self):
-        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="peristat_resume_"))).resolve()
+        super().setUp()
         self.out = self.folder / "split"
 
-    def case(self, text=TORN):
-        path = self.folder / "strip.toml"
-        path.write_text('title = "Strip"\n' + text)
-        return path
+    def whole(self, text=TORN, *changes, **options):
+        return self.run_case(text, *changes, name="whole", **options)
 
-    def run_case(self, *words, text=TORN, out=None, settings=(), threads=1, expected=0):
-        words += tuple(word for setting in settings for word in ("--set", setting))
-        ended = peristat("run", self.case(text), "--output", out or self.out, "--threads", threads, *words)
-        self.assertEqual(ended.code, expected, ended.said)
-        return ended
+    def stop(self, after, text=TORN, *changes, **options):
+        """A run that has so many steps, and more to go."""
+        self.run_case(text, *changes, name="split", words=("--stop-after", after), code=130, **options)
 
-    def resume(self, *words, threads=1, expected=0, out=None):
-        ended = peristat("resume", out or self.out, "--threads", threads, *words)
-        self.assertEqual(ended.code, expected, ended.said)
-        return ended
+    def go_on(self, *changes, **options):
+        return self.resume(self.out, *changes, **options)
 
     def steps(self, out=None):
-        with open((out or self.out) / "history.csv", newline="") as table:
-            return sum(row["step"] != "0" for row in csv.DictReader(table))
+        return sum(row["step"] > 0 for row in table((out or self.out) / "history.csv"))
 
     def is_as(self, whole):
         self.assertEqual(differences(whole, self.out), [])
@@ -156,55 +147,52 @@ class Resumed(unittest.TestCase):
 
 class Split(Resumed):
     def test_every_mode_goes_on_as_if_nothing_had_been(self):
-        for name, (text, code, settings) in MODES.items():
+        for name, (text, code, changes) in MODES.items():
             with self.subTest(name):
                 shutil.rmtree(self.out, ignore_errors=True)
-                whole = self.folder / "whole"
-                self.run_case("--overwrite", text=text, settings=settings, out=whole, expected=code)
+                whole = self.whole(text, *changes, code=code)
                 self.assertGreater(self.steps(whole), 4)
-                self.run_case("--stop-after", 2, text=text, settings=settings, expected=130)
-                self.resume("--stop-after", self.steps(whole) // 2 - 1, expected=130)
-                self.resume(expected=code)
+                self.stop(2, text, *changes)
+                self.go_on(words=("--stop-after", self.steps(whole) // 2 - 1), code=130)
+                self.go_on(code=code)
                 self.is_as(whole)
 
     def test_from_every_other_accepted_step(self):
-        whole = self.folder / "whole"
-        self.run_case(out=whole)
+        whole = self.whole()
         for steps in range(1, self.steps(whole), 2):
             with self.subTest(steps):
                 shutil.rmtree(self.out, ignore_errors=True)
-                self.run_case("--stop-after", steps, expected=130)
+                self.stop(steps)
                 self.assertEqual(self.steps(), steps)
-                self.resume()
+                self.go_on()
                 self.is_as(whole)
 
     def test_killed_at_random_moments(self):
         """Between any two system calls, once the folder can be gone on from."""
-        whole = self.folder / "whole"
         started = time.monotonic()
-        self.run_case(out=whole)
+        whole = self.whole()
         duration = time.monotonic() - started
         chance = random.Random(13)
-        command = [PROGRAM, "run", self.case(), "--output", self.out, "--threads", "1", "--quiet"]
+        command = [PROGRAM, "run", self.case(TORN), "--output", self.out, "--threads", 1, "--quiet"]
         kills = 0
         for _ in range(40):
-            process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            process = self.start(command)
             with contextlib.suppress(subprocess.TimeoutExpired):
                 process.wait(chance.uniform(0.05, 0.4 * duration))
             ended = process.poll()
             process.kill()
-            errors = process.communicate()[1].decode()
+            errors = process.communicate()[1]
             if ended is not None:
                 self.assertEqual(ended, 0, errors)
                 break
             kills += 1
             if (self.out / "parts/checkpoint.0").exists() or "checkpoint" in self.members():
-                command = [PROGRAM, "resume", self.out, "--threads", "1", "--quiet"]
+                command = [PROGRAM, "resume", self.out, "--threads", 1, "--quiet"]
             else:
                 duration *= 1.1  # the machine has become slower
         self.assertGreater(kills, 2)
         if ended is None:
-            self.resume()
+            self.go_on()
         self.is_as(whole)
 
     def members(self):
@@ -215,29 +203,26 @@ class Split(Resumed):
             return set()
 
     def test_signals_leave_a_checkpoint(self):
-        whole = self.folder / "whole"
-        self.run_case("--set", "loading.steps=150", text=PULLED, out=whole)
+        whole = self.whole(PULLED, "loading.steps=150")
         for code in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             with self.subTest(code):
                 shutil.rmtree(self.out, ignore_errors=True)
-                process = subprocess.Popen([PROGRAM, "run", self.case(PULLED), "--output", self.out, "--threads", "1",
-                                            "--set", "loading.steps=150"], stdout=subprocess.PIPE,
-                                           stderr=subprocess.STDOUT)  # fmt: skip
+                process = self.start([PROGRAM, "run", self.case(PULLED), "--output", self.out, "--threads", 1,
+                                      "--set", "loading.steps=150"], stderr=subprocess.STDOUT)  # fmt: skip
                 while not (self.out / "parts/checkpoint.0").exists():
                     self.assertIsNone(process.poll())
                     time.sleep(0.01)
                 process.send_signal(code)
-                said = process.communicate(timeout=60)[0].decode()
+                said = process.communicate(timeout=60)[0]
                 self.assertEqual(process.returncode, 130, said)
-                self.resume()
+                self.go_on()
                 self.is_as(whole)
 
     def test_other_numbers_of_threads_change_round_off_alone(self):
         """Until damage begins: from then on round-off decides which of two like bonds breaks first."""
-        whole = self.folder / "whole"
-        self.run_case(out=whole, text=PULLED, settings=["loading.steps=6"])
-        self.run_case("--stop-after", 3, text=PULLED, settings=["loading.steps=6"], expected=130, threads=2)
-        self.resume(threads=3)
+        whole = self.whole(PULLED, "loading.steps=6")
+        self.stop(3, PULLED, "loading.steps=6", threads=2)
+        self.go_on(threads=3)
         with h5py.File(whole / "results.h5") as one, h5py.File(self.out / "results.h5") as two:
             for step in one["steps"]:
                 expected = one["steps"][step]["displacement"][...]
@@ -247,19 +232,18 @@ class Split(Resumed):
 
 class Extended(Resumed):
     def test_smaller_steps_lead_beyond_where_they_were_too_large(self):
-        settings = ['solver.mode="newton"', "loading.smallest_step=0.1"]
-        self.run_case(settings=settings, expected=3)
+        self.run_case(TORN, 'solver.mode="newton"', "loading.smallest_step=0.1", name="split", code=3)
         before = self.steps()
-        self.resume(expected=3)  # the same attempt fails again
+        self.go_on(code=3)  # the same attempt fails again
         self.assertEqual(self.steps(), before)
-        self.resume("--set", "loading.smallest_step=1e-4", expected=3)
+        self.go_on("loading.smallest_step=1e-4", code=3)
         self.assertGreater(self.steps(), before)
 
     def test_another_mode_goes_on_where_one_has_ended(self):
-        self.run_case(settings=['solver.mode="newton"', "loading.smallest_step=1e-2"], expected=3)
+        self.run_case(TORN, 'solver.mode="newton"', "loading.smallest_step=1e-2", name="split", code=3)
         before = (self.out / "history.csv").read_text()
         self.assertTrue((self.out / "dossier.txt").exists())
-        self.resume("--set", 'solver.mode="adaptive"')
+        self.go_on('solver.mode="adaptive"')
         self.assertTrue((self.out / "history.csv").read_text().startswith(before))
         self.assertFalse((self.out / "dossier.txt").exists())
         with h5py.File(self.out / "results.h5") as file:
@@ -267,93 +251,87 @@ class Extended(Resumed):
             self.assertIn('mode = "adaptive"', file["case/as_resolved"][()].decode())
 
     def test_a_stand_in_is_replaced_in_mode_adaptive_alone(self):
-        self.run_case("--stop-after", 1, settings=["solver.elastic_horizon_ratio=2.015"], expected=130)
+        self.stop(1, TORN, "solver.elastic_horizon_ratio=2.015")
         for mode in ("newton", "relaxation"):
-            ended = self.resume("--set", f"solver.mode={mode}", expected=2)
+            ended = self.go_on(f"solver.mode={mode}", code=2)
             self.assertIn("the run is still carried by its elastic stand-in", ended.errors)
-        self.resume()
+        self.go_on()
 
     def test_settings_of_all_sessions_hold(self):
-        self.run_case("--stop-after", 2, settings=["loading.steps=5", "output.every=2"], expected=130)
-        self.resume("--stop-after", 2, "--set", "loading.steps=8", expected=130)
-        self.resume()
+        self.stop(2, TORN, "loading.steps=5", "output.every=2")
+        self.go_on("loading.steps=8", words=("--stop-after", 2), code=130)
+        self.go_on()
         with h5py.File(self.out / "results.h5") as file:
             resolved = file["case/as_resolved"][()].decode()
             self.assertIn("steps = 8", resolved)
             self.assertIn("every = 2", resolved)
 
     def test_a_finished_run_says_so(self):
-        self.run_case("--set", "loading.steps=2", text=PULLED)
+        self.run_case(PULLED, "loading.steps=2", name="split")
         before = {path.name: path.read_bytes() for path in self.out.iterdir() if path.is_file()}
-        self.assertIn("has come to its end: 2 steps, load factor 1", self.resume().output)
+        self.assertIn("has come to its end: 2 steps, load factor 1", self.go_on().output)
         self.assertEqual(before, {path.name: path.read_bytes() for path in self.out.iterdir() if path.is_file()})
 
 
 class Refused(Resumed):
     def setUp(self):
         super().setUp()
-        self.run_case("--stop-after", 3, expected=130)
+        self.stop(3)
 
-    def refuses(self, words, *arguments, out=None, expected=2):
+    def refuses(self, words, *changes, out=None):
         before = {path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()}
-        ended = self.resume(*arguments, expected=expected, out=out)
+        ended = self.resume(out or self.out, *changes, code=2)
         for word in [words] if isinstance(words, str) else words:
             self.assertIn(word, ended.errors)
         self.assertEqual(before, {path: path.read_bytes() for path in self.folder.rglob("*") if path.is_file()})
 
     def test_a_case_that_has_changed(self):
         self.case(TORN.replace("steps = 10", "steps = 12").replace("[loading]", "[loading]\nadaptive = false"))
-        self.refuses(["strip.toml: has changed since the run began", "loading.steps is 12, was 10",
+        self.refuses(["case.toml: has changed since the run began", "loading.steps is 12, was 10",
                       "loading.adaptive is false, was true"])  # fmt: skip
 
     def test_a_remark_in_the_case_changes_nothing(self):
         self.case("# a remark\n" + TORN)
-        self.resume()
+        self.go_on()
 
     def test_a_case_file_that_is_gone_is_taken_from_the_results(self):
-        whole = self.folder / "whole"
-        self.run_case(out=whole)
-        (self.folder / "strip.toml").unlink()
-        self.resume()
+        whole = self.whole()
+        (self.folder / "case.toml").unlink()
+        self.go_on()
         self.is_as(whole)
 
     def test_a_folder_that_was_moved(self):
-        whole = self.folder / "whole"
-        self.run_case(out=whole)
+        whole = self.whole()
         self.out = self.out.rename(self.folder / "elsewhere")
-        self.resume()
+        self.go_on()
         self.is_as(whole)
 
     def test_settings_that_make_another_case(self):
         self.refuses(["--set = material.youngs_modulus=1e9: would make it another case", "loading.steps"],
-                     "--set", "material.youngs_modulus=1e9")  # fmt: skip
-        self.refuses("output.directory=x: would make it another case", "--set", "output.directory=x")
+                     "material.youngs_modulus=1e9")  # fmt: skip
+        self.refuses("output.directory=x: would make it another case", "output.directory=x")
 
     def test_settings_that_are_wrong(self):
-        self.refuses("loading.steps = 0", "--set", "loading.steps=0")
+        self.refuses("loading.steps = 0", "loading.steps=0")
 
     def test_what_is_no_results_folder(self):
         (self.folder / "empty").mkdir()
         self.refuses("holds no run", out=self.folder / "empty")
         self.refuses("is no results folder", out=self.folder / "none")
-        self.refuses("is no results folder", out=self.folder / "strip.toml")
+        self.refuses("is no results folder", out=self.folder / "case.toml")
 
     def test_a_folder_that_another_run_writes(self):
         other = self.folder / "other"
-        process = subprocess.Popen([PROGRAM, "run", self.case(PULLED), "--output", other, "--set",
-                                    "loading.steps=20000"], stdout=subprocess.DEVNULL)  # fmt: skip
+        process = self.start([PROGRAM, "run", self.case(PULLED), "--output", other, "--quiet",
+                              "--set", "loading.steps=20000"])  # fmt: skip
         while not (other / "parts/checkpoint.0").exists():
             time.sleep(0.01)
-        ended = self.resume(out=other, expected=2)
-        self.assertIn(f"another run is writing it (process {process.pid})", ended.errors)
-        process.kill()
-        process.wait()
+        self.assertIn(f"another run is writing it (process {process.pid})", self.resume(other, code=2).errors)
 
     def test_a_run_without_an_accepted_step(self):
-        other = self.folder / "other"
-        self.run_case("--set", "solver.max_iterations=1", "--set", "loading.adaptive=false",
-                      text=PULLED.replace("*load", ""), out=other, expected=3)  # step 0 fails # fmt: skip
-        self.case()
+        other = self.run_case(PULLED.replace("*load", ""), "solver.max_iterations=1", "loading.adaptive=false",
+                              name="other", code=3)  # step 0 fails # fmt: skip
+        self.case(TORN)
         self.refuses("it has no accepted step", out=other)
 
     def change_checkpoint(self, change):
@@ -363,7 +341,7 @@ class Refused(Resumed):
             file["checkpoint"] = numpy.frombuffer(data, numpy.uint8)
 
     def test_an_older_layout(self):
-        version = peristat("--version").output.split()[1]
+        version = self.peristat("--version").output.split()[1]
         self.change_checkpoint(lambda data: data.replace(f"checkpoint 8 {version}".encode(), b"checkpoint 0 0.0.7"))
         self.refuses(["layout 0 of peristat 0.0.7", f"this is peristat {version}, which goes on from layout 8"])
 
@@ -388,8 +366,7 @@ class Refused(Resumed):
         self.refuses("its checkpoint is damaged")
 
     def test_a_checkpoint_of_another_body(self):
-        other = self.folder / "other"
-        self.run_case("--stop-after", 3, out=other, settings=["lattice.spacing=2e-3"], expected=130)
+        other = self.run_case(TORN, "lattice.spacing=2e-3", name="other", words=("--stop-after", 3), code=130)
         with h5py.File(self.out / "results.h5", "r+") as file, h5py.File(other / "results.h5") as source:
             del file["checkpoint"]
             source.copy("checkpoint", file)
@@ -397,8 +374,7 @@ class Refused(Resumed):
 
     def test_files_that_are_cut_or_changed_anywhere(self):
         """Whatever a disk has made of results.h5, the run goes on as it would have, or says that it can't."""
-        whole = self.folder / "whole"
-        self.run_case(out=whole)
+        whole = self.whole()
         kept = self.folder / "kept"
         shutil.copytree(self.out, kept)
         chance = random.Random(7)
@@ -415,8 +391,7 @@ class Refused(Resumed):
                     for _ in range(chance.choice([1, 1, 50])):
                         data[chance.randrange(len(data))] = chance.randrange(256)
                 (self.out / "results.h5").write_bytes(data)
-                ended = peristat("resume", self.out, "--threads", 1)
-                self.assertIn(ended.code, (0, 2), ended.said)
+                ended = self.go_on(code=(0, 2))
                 outcomes.add(ended.code)
                 if ended.code == 0:  # the fields of earlier steps have no checksums; what follows is right
                     for name in ("history.csv", "decisions.csv", "broken_bonds.csv"):
@@ -428,41 +403,37 @@ class Refused(Resumed):
 class Faults(Resumed):
     def resume_within(self, blocks):
         """Under the shell's limit of file sizes, in units of 1024 bytes."""
-        command = [PROGRAM, "resume", self.out, "--threads", "1", "--quiet"]
-        return subprocess.run(["bash", "-c", f'ulimit -f {blocks}; exec "$@"', "bash", *map(str, command)],
-                              capture_output=True, text=True)  # fmt: skip
+        return self.execute(limited_by_shell(f"ulimit -f {blocks}", self.resuming()))
+
+    def resuming(self):
+        return [PROGRAM, "resume", self.out, "--threads", 1, "--quiet"]
 
     def test_whatever_can_not_be_written_the_run_goes_on_once_it_can(self):
-        whole = self.folder / "whole"
-        settings = ["loading.steps=60"]
-        self.run_case(out=whole, text=PULLED, settings=settings)
+        whole = self.whole(PULLED, "loading.steps=60")
         for limits in ([8], [64], [200], [8, 64, 200], [200, 400]):
             with self.subTest(limits):
                 shutil.rmtree(self.out, ignore_errors=True)
-                self.run_case("--stop-after", 20, text=PULLED, settings=settings, expected=130)
+                self.stop(20, PULLED, "loading.steps=60")
                 for blocks in limits:
-                    self.assertEqual(self.resume_within(blocks).returncode, 5)
-                self.resume()
+                    self.assert_code(self.resume_within(blocks), 5)
+                self.go_on()
                 self.is_as(whole)
 
     def test_two_at_once(self):
-        whole = self.folder / "whole"
-        settings = ["loading.steps=60"]
-        self.run_case(out=whole, text=PULLED, settings=settings)
-        self.run_case("--stop-after", 20, text=PULLED, settings=settings, expected=130)
-        both = [subprocess.Popen([PROGRAM, "resume", self.out, "--threads", "1", "--quiet"], stdout=subprocess.DEVNULL,
-                                 stderr=subprocess.DEVNULL) for _ in range(2)]  # fmt: skip
+        whole = self.whole(PULLED, "loading.steps=60")
+        self.stop(20, PULLED, "loading.steps=60")
+        both = [self.start(self.resuming()) for _ in range(2)]
         self.assertIn(sorted(process.wait() for process in both), ([0, 0], [0, 2]))
         self.is_as(whole)
 
 
 class LossOfPower(Resumed):
-    def run_until_a_state_has_reached_the_disk(self, words):
+    def run_until_a_state_has_reached_the_disk(self, *changes):
         for _ in range(5):  # what others write may keep the disk busy until the run has ended
             os.sync()
             shutil.rmtree(self.out, ignore_errors=True)
-            process = subprocess.Popen([PROGRAM, "run", self.case(PULLED), "--output", self.out, "--threads", "1",
-                                        "--quiet", *words])  # fmt: skip
+            process = self.start([PROGRAM, "run", self.case(PULLED), "--output", self.out, "--threads", 1, "--quiet",
+                                  *settings(*changes)])  # fmt: skip
             while process.poll() is None:
                 if (self.out / "parts/safe_checkpoint").exists():
                     return process
@@ -470,17 +441,15 @@ class LossOfPower(Resumed):
         self.fail("five runs have ended before anything was sure to be on the disk")
 
     def test_an_older_state_that_had_reached_the_disk_is_taken(self):
-        whole = self.folder / "whole"
-        settings = ["loading.steps=160", "lattice.spacing=2e-4"]  # some seconds
-        self.run_case(out=whole, text=PULLED, settings=settings)
-        words = [word for setting in settings for word in ("--set", setting)]
-        process = self.run_until_a_state_has_reached_the_disk(words)
+        changes = "loading.steps=160", "lattice.spacing=2e-4"  # some seconds
+        whole = self.whole(PULLED, *changes)
+        process = self.run_until_a_state_has_reached_the_disk(*changes)
         process.kill()
         process.wait()
         for name in ("results.h5", "parts/checkpoint.0", "parts/checkpoint.1", "history.csv"):
             (self.out / name).unlink()  # a file of the last moments, not the one that was safe
             (self.out / name).touch()
-        self.assertIn("an older state, which had reached the disk, is taken instead", self.resume().errors)
+        self.assertIn("an older state, which had reached the disk, is taken instead", self.go_on().errors)
         self.is_as(whole)
 
 

@@ -1,9 +1,6 @@
 """Loads that are found with the states: a control by displacements, and the arc length."""
 
-import csv
 import math
-import subprocess
-import sys
 import unittest
 
 import h5py
@@ -11,7 +8,8 @@ import numpy
 
 from tests.acceptance.programme_test import Programmes
 from tests.acceptance.strip import PULLED
-from tests.reference.program import ROOT, peristat
+from tests.reference.program import PLOT, ROOT
+from tests.reference.results import table
 from tests.same_results import differences
 from tests.shipped_runs import shipped_run
 
@@ -20,17 +18,14 @@ CASES = ROOT / "cases"
 CLOSE = 1e-8
 
 
-def rows_of(folder, table="history.csv"):
-    with open(folder / table, newline="") as file:
-        return [row for row in csv.DictReader(file) if table != "history.csv" or row["step"] != "0"]
-
-
 def numbers(folder, *columns):
-    return [numpy.array([float(row[column]) for row in rows_of(folder)]) for column in columns]
+    """Of all steps but 0."""
+    rows = [row for row in table(folder / "history.csv") if row["step"] > 0]
+    return [numpy.array([row[column] for row in rows]) for column in columns]
 
 
 def critical_points(folder):
-    return [(float(row["load_factor"]), row["reason"]) for row in rows_of(folder, "decisions.csv")
+    return [(row["load_factor"], row["reason"]) for row in table(folder / "decisions.csv")
             if row["action"] == "locate critical point"]  # fmt: skip
 
 
@@ -85,7 +80,7 @@ set = "far"
 field = "opening"
 other = "near"
 """
-        last = self.run_case(text, name=f"strip_{rows}_{force[0]}")[-1]
+        last = self.rows(text, name=f"strip_{rows}_{force[0]}")[-1]
         return last["end_y"], last["middle_x"]
 
     def stiffnesses(self, rows):
@@ -141,18 +136,15 @@ class Arch(ShippedCase):
 
     def test_it_goes_on_from_every_step_as_if_nothing_had_been(self):
         # Coarse, so that there are few: a located limit point among them.
-        settings = ["--set", "loading.steps=4", "--set", "arc_length.largest_step=0.5", "--threads", 1]
-        case = CASES / "buckling/arch.toml"
-        whole, split = self.folder / "whole", self.folder / "split"
-        self.assertEqual(peristat("run", case, "--output", whole, *settings).code, 0)
-        ended = peristat("run", case, "--output", split, "--stop-after", 1, *settings)
-        for _ in range(len(rows_of(whole)) + 2):
-            if ended.code == 0:
+        case = CASES / "buckling/arch.toml", "loading.steps=4", "arc_length.largest_step=0.5"
+        steps = len(self.rows(*case, name="whole"))
+        self.run_case(*case, name="split", words=("--stop-after", 1), code=130)
+        for _ in range(steps + 2):
+            if self.resume("split", words=("--stop-after", 1), code=(0, 130)).code == 0:
                 break
-            self.assertEqual(ended.code, 130, ended.said)
-            ended = peristat("resume", split, "--stop-after", 1, "--threads", 1)
-        self.assertEqual(ended.code, 0, ended.said)
-        self.assertEqual(differences(whole, split), [])
+        else:
+            self.fail("it does not end")
+        self.assertEqual(differences(self.folder / "whole", self.folder / "split"), [])
 
 
 class Column(ShippedCase):
@@ -222,16 +214,15 @@ class Column(ShippedCase):
         critical = critical_points(self.shipped("buckling/column"))[0][0]
         for steps, tolerance in ((1, 1e-2), (1, 1e-4), (1, 1e-9), (20, 1e-9)):
             with self.subTest(steps=steps, tolerance=tolerance):
-                rows = self.run_case(f"{text}{top}[loading]\ntable = [0, 1e-3]\nsteps = {steps}\nsmallest_step = 1e-3\n",
+                rows = self.rows(f"{text}{top}[loading]\ntable = [0, 1e-3]\nsteps = {steps}\nsmallest_step = 1e-3\n",
                                      f"solver.relative_tolerance={tolerance}",
-                                     name=f"in_{steps}_to_{tolerance}", expected=3)  # fmt: skip
+                                     name=f"in_{steps}_to_{tolerance}", code=3)  # fmt: skip
                 self.assertTrue(all(row["negative_pivots"] == 0 for row in rows))
                 self.assertLess(abs(rows[-1]["load_factor"] / critical - 1), max(0.02, 2 * tolerance))
 
     def test_load_control_tells_that_it_is_unstable(self):
-        ended = peristat("run", CASES / "buckling/column.toml", "--output", self.folder / "out", "--set", "solver.mode=newton")
-        self.assertEqual(ended.code, 3, ended.said)
-        self.assertIn("negative pivots", ended.said)
+        self.run_case(CASES / "buckling/column.toml", "solver.mode=newton", threads=2, code=3)
+        self.assertIn("negative pivots", self.ended.said)
 
 
 OPENED = PULLED.replace("1e-5*load", "1e-3*load") + """\
@@ -258,7 +249,7 @@ no_fail = ["left", "right"]
 
 class Control(Programmes):
     def test_its_states_are_those_of_the_loads_that_it_finds(self):
-        rows = self.run_case(OPENED, name="controlled")
+        rows = self.rows(OPENED, name="controlled")
         controlled = self.displacements("controlled")
         self.assertEqual(len(rows), 4)
         with h5py.File(self.folder / "controlled" / "results.h5") as file:
@@ -277,7 +268,7 @@ class Control(Programmes):
 
     def test_it_goes_up_and_down_and_beside_other_loads(self):
         text = OPENED.replace('"1e-3*load", "free"', '"1e-3*load", "1e-6*load2"')
-        rows = self.run_case(text, "loading.table=[0,1e-5,-1e-5,0]", "loading.table2=[0,1,1,0]")
+        rows = self.rows(text, "loading.table=[0,1e-5,-1e-5,0]", "loading.table2=[0,1,1,0]")
         top, bottom, end = (row for row in rows if row["stage"] in (1, 2, 3))
         for row, control in ((top, 1e-5), (bottom, -1e-5)):
             self.assertAlmostEqual(row["control"], control, delta=1e-17)
@@ -287,20 +278,19 @@ class Control(Programmes):
         self.assertLess(abs(end["stored_energy"]), 1e-9 * top["stored_energy"])
 
     def test_a_damaged_strip_goes_back_to_nothing(self):
-        rows = self.run_case(SOFTENING, "loading.table=[0,4e-5,0]")
+        rows = self.rows(SOFTENING, "loading.table=[0,4e-5,0]")
         self.assertEqual(rows[-1]["stage"], 2)
         self.assertGreater(rows[-1]["dissipated_energy"], 0)
         self.assertLess(abs(rows[-1]["load_factor"]), 1e-9 * max(row["load_factor"] for row in rows))
 
     def test_one_step_or_many_end_alike(self):
-        one, many = (self.run_case(OPENED, f"loading.steps={steps}", name=f"in_{steps}")[-1] for steps in (1, 30))
+        one, many = (self.rows(OPENED, f"loading.steps={steps}", name=f"in_{steps}")[-1] for steps in (1, 30))
         self.assertLess(abs(one["load_factor"] / many["load_factor"] - 1), CLOSE)
 
     def test_it_goes_on_where_it_was_stopped(self):
         self.run_case(SOFTENING, name="whole")
-        self.run_case(SOFTENING, name="split", words=("--stop-after", 2), expected=130)
-        ended = peristat("resume", self.folder / "split", "--threads", 1)
-        self.assertEqual(ended.code, 0, ended.said)
+        self.run_case(SOFTENING, name="split", words=("--stop-after", 2), code=130)
+        self.resume("split")
         self.assertGreater(self.history("whole")[-1]["dissipated_energy"], 0)
         self.assertEqual(differences(self.folder / "whole", self.folder / "split"), [])
 
@@ -353,7 +343,7 @@ relative_tolerance = 1e-11
 
     def test_it_has_a_name_and_a_way_out(self):
         for steps in (4, 8):
-            rows = self.run_case(self.TEXT, f"loading.steps={steps}", name=f"of_{steps}", expected=3)
+            rows = self.rows(self.TEXT, f"loading.steps={steps}", name=f"of_{steps}", code=3)
             told = (self.folder / f"of_{steps}/dossier.txt").read_text()
             self.assertIn("Stopped: no_answer", told)
             self.assertIn('solver.mode = "path"', told)
@@ -361,9 +351,9 @@ relative_tolerance = 1e-11
             self.assertNotIn("fault of the program", told)
             # Loads of searches that found nothing are not told as if the body had borne them.
             reached = {0.0} | {row["load_factor"] for row in rows}
-            for row in rows_of(self.folder / f"of_{steps}", "decisions.csv"):
+            for row in table(self.folder / f"of_{steps}/decisions.csv"):
                 if row["outcome"] != "converged":
-                    self.assertIn(float(row["load_factor"]), reached)
+                    self.assertIn(row["load_factor"], reached)
 
 
 class Pictures(ShippedCase):
@@ -371,53 +361,42 @@ class Pictures(ShippedCase):
         self.run_case(OPENED, name="controlled")
         self.run_case(PULLED, name="loaded")
         for folder, has_path in ((self.folder / "controlled", True), (self.folder / "loaded", False)):
-            drawn = subprocess.run([sys.executable, "-BEs", ROOT / "cases/runner/plots/plot.py", folder],
-                                   capture_output=True, text=True)  # fmt: skip
-            self.assertEqual(drawn.returncode, 0, drawn.stderr)
+            self.assert_completed(self.execute([*PLOT, folder]))
             self.assertEqual((folder / "plots" / "path.png").exists(), has_path)
 
 
 class BadInput(Programmes):
-    def refused(self, text, *settings):
-        words = [word for setting in settings for word in ("--set", setting)]
-        ended = peristat("run", self.case(text), "--output", self.folder / "out", *words)
-        self.assertEqual(ended.code, 2, ended.said)
-        self.assertFalse((self.folder / "out").exists())
-        return ended.said
-
     def test_a_control_that_nothing_free_answers_to(self):
-        held = self.refused(OPENED, 'control[0].set="right"', "control[0].weights=[1,0]")
+        held = self.refusal(OPENED, 'control[0].set="right"', "control[0].weights=[1,0]")
         self.assertIn("no free degree of freedom answers", held)
         self.assertIn("case.toml:", held)
         # Nothing that is loaded moves across: the strip is symmetric to its axis.
         still = OPENED.replace("abs(x - 0.01) < 1e-3", "abs(x - 0.01) < 1e-3 && abs(y - 5e-3) < 1e-3")
-        self.assertIn("does not answer", self.refused(still, "control[0].weights=[0,1]"))
-        self.assertIn("nor a load depends on load", self.refused(OPENED.replace("1e-3*load", "0")))
+        self.assertIn("does not answer", self.refusal(still, "control[0].weights=[0,1]"))
+        self.assertIn("nor a load depends on load", self.refusal(OPENED.replace("1e-3*load", "0")))
         for curved in ("load^2", "abs(load)"):  # which do not change at load 0, or both ways alike
-            self.assertIn("must begin in proportion to load", self.refused(OPENED.replace("1e-3*load", f"1e-3*{curved}")))
+            self.assertIn("must begin in proportion to load", self.refusal(OPENED.replace("1e-3*load", f"1e-3*{curved}")))
 
     def test_what_does_not_go_with_a_control(self):
-        self.assertIn("loading.table", self.refused(OPENED.replace("table = [0, 1e-5]\n", "")))
-        self.assertIn('must be "newton"', self.refused(OPENED, "solver.mode=adaptive"))
-        self.assertIn('must be "newton"', self.refused(OPENED, "solver.mode=arc_length"))
-        self.assertIn("solver.linear", self.refused(OPENED, "solver.linear=pcg"))
-        self.assertIn("solver.projection", self.refused(OPENED, "solver.projection=always"))
-        self.assertIn("not all zero", self.refused(OPENED, "control[0].weights=[0,0]").replace("are all zero", "not all zero"))
-        self.assertIn("must begin with 0", self.refused(OPENED, "loading.table=[1e-6,1e-5]"))
+        self.assertIn("loading.table", self.refusal(OPENED.replace("table = [0, 1e-5]\n", "")))
+        self.assertIn('must be "newton"', self.refusal(OPENED, "solver.mode=adaptive"))
+        self.assertIn('must be "newton"', self.refusal(OPENED, "solver.mode=arc_length"))
+        self.assertIn("solver.linear", self.refusal(OPENED, "solver.linear=pcg"))
+        self.assertIn("solver.projection", self.refusal(OPENED, "solver.projection=always"))
+        self.assertIn("not all zero", self.refusal(OPENED, "control[0].weights=[0,0]").replace("are all zero", "not all zero"))
+        self.assertIn("must begin with 0", self.refusal(OPENED, "loading.table=[1e-6,1e-5]"))
 
     def test_what_does_not_go_with_the_arc_length(self):
         arc = PULLED + '[solver]\nmode = "arc_length"\n'
-        self.assertIn("two entries", self.refused(arc, "loading.table=[0,1,0]"))
-        self.assertIn("depends on load", self.refused(arc.replace("1e-5*load", "0")))
-        self.assertIn("arc_length.largest_step", self.refused(arc, "loading.largest_step=1.0"))
-        self.assertIn("solver.preconditioner", self.refused(arc, "solver.preconditioner=jacobi"))
+        self.assertIn("two entries", self.refusal(arc, "loading.table=[0,1,0]"))
+        self.assertIn("depends on load", self.refusal(arc.replace("1e-5*load", "0")))
+        self.assertIn("arc_length.largest_step", self.refusal(arc, "loading.largest_step=1.0"))
+        self.assertIn("solver.preconditioner", self.refusal(arc, "solver.preconditioner=jacobi"))
 
     def test_a_load_that_ends_within_the_path(self):
         text = OPENED.replace("1e-3*load", "1e-3*sqrt(0.004 - load)*load")
-        ended = peristat("run", self.case(text), "--output", self.folder / "out")
-        self.assertEqual(ended.code, 3, ended.said)
-        self.assertIn("undefined_condition", ended.said)
-        self.assertGreater(len(self.history()), 1)
+        self.assertGreater(len(self.rows(text, code=3)), 1)
+        self.assertIn("undefined_condition", self.ended.said)
 
 
 if __name__ == "__main__":

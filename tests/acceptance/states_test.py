@@ -1,11 +1,11 @@
 """Model lps as an energy, from the command line: beside the reference of tests/reference/states.py, in all modes."""
 
-import json
 import re
 
 import numpy
 
-from tests.acceptance.motions import Folder, columns, peristat
+from tests.acceptance.folder import Folder
+from tests.acceptance.motions import columns
 from tests.reference.case import evaluate
 from tests.reference.results import Results
 from tests.reference.states import solid_of
@@ -96,17 +96,13 @@ def solid(results, text, **more):
 
 class States(Folder):
     def check_tangent(self, text, deformation):
-        case = self.folder / "case.toml"
-        case.write_text(text)
-        ended = peristat("check-tangent", case, "--deformation", deformation)
-        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
-        return json.loads(ended.stdout)
+        return self.assert_completed(self.command("check-tangent", text, words=("--deformation", deformation))).json()
 
     def points(self, text):
         """Of a run without any load."""
         held = "".join(f'[[support]]\nset = "{name}"\ndisplacement = {[0] * (3 if "dimension = 3" in text else 2)}\n'
                        for name in ("low", "high"))  # fmt: skip
-        return Results(self.run_case(text + held, "points"))
+        return self.results(text + held, name="points")
 
     def test_energy_forces_and_tangent_are_those_of_the_reference(self):
         space = cut(PLATE, dimension=3, horizon_ratio=2.015, min="[0, 0, 0]", max="[0.5, 0.6, 0.4]").replace("thickness = 0.5\n", "")
@@ -172,7 +168,7 @@ class States(Folder):
                                           ("relaxation", PULLED, ("low", "high"), 20)):  # fmt: skip
             with self.subTest(mode):
                 text = case + f'[solver]\nmode = "{mode}"\n'
-                folder = self.run_case(text, mode)
+                folder = self.run_case(text, name=mode)
                 self.assertGreaterEqual(len(self.judge(folder, text, spared)), least)
                 rows = columns(folder)
                 self.assertGreater(rows["dissipated_energy"][-1], 0)
@@ -185,7 +181,7 @@ class States(Folder):
 
     def test_elastic_work_is_stored(self):
         text = PLATE + PULL
-        rows = columns(self.run_case(text, "elastic"))
+        rows = columns(self.run_case(text, name="elastic"))
         numpy.testing.assert_allclose(rows["stored_energy"], rows["external_work"], rtol=1e-8)
         self.assertGreater(rows["stored_energy"][-1], 0)
 
@@ -194,13 +190,13 @@ class States(Folder):
         for scheme, more in (("verlet", ""), ("newmark", "time_step = 1e-3\n")):
             with self.subTest(scheme):
                 elastic = SHAKEN.replace(DAMAGE.replace("0.01", "0.006"), "")
-                rows = columns(self.run_case(elastic + f'scheme = "{scheme}"\n{more}', f"elastic_{scheme}"))
+                rows = columns(self.run_case(elastic + f'scheme = "{scheme}"\n{more}', name=f"elastic_{scheme}"))
                 self.assertGreater(rows["stored_energy"].max(), 0.1 * rows["kinetic_energy"][0])
                 # Of linear forces the explicit scheme keeps the modified energy, the implicit one the energy.
                 kept = rows["stored_energy"] + rows["kinetic_energy"] if scheme == "newmark" else rows["modified_energy"]
                 numpy.testing.assert_allclose(kept, kept[0], rtol=1e-8)
                 numpy.testing.assert_allclose(rows["momentum_y"], 0, atol=1e-12)
-                rows = columns(self.run_case(SHAKEN + f'scheme = "{scheme}"\n{more}', scheme))
+                rows = columns(self.run_case(SHAKEN + f'scheme = "{scheme}"\n{more}', name=scheme))
                 self.assertGreater(rows["broken_bonds"][-1], 20)
                 self.assertGreater(rows["dissipated_energy"][-1], 0)
                 whole = rows["stored_energy"] + rows["kinetic_energy"] + rows["dissipated_energy"]
@@ -210,36 +206,31 @@ class States(Folder):
 
     def test_threads_and_solvers_agree(self):
         text = PLATE + CRACK + PULL
-        alone = Results(self.run_case(text, "alone")).steps[-1].displacement
+        alone = self.results(text, name="alone").steps[-1].displacement
         for linear, preconditioner in (("cholesky", "auto"), ("pcg", "rigid_pieces"), ("pcg", "block_jacobi"),
                                        ("minres", "jacobi"), ("pcg", "multigrid")):  # fmt: skip
-            settings = "--set", f'solver.linear="{linear}"', "--set", f'solver.preconditioner="{preconditioner}"'
-            other = Results(self.run_case(text, f"{linear}_{preconditioner}", *settings)).steps[-1].displacement
+            results = self.results(text, f'solver.linear="{linear}"', f'solver.preconditioner="{preconditioner}"')
+            other = results.steps[-1].displacement
             self.assertLess(abs(other - alone).max(), 1e-8 * abs(alone).max(), (linear, preconditioner))
         for threads in (2, 3):
-            folder = self.folder / f"threads_{threads}"
-            case = self.folder / "alone.toml"
-            ended = peristat("run", case, "--output", folder, "--threads", threads, "--quiet")
-            self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
-            other = Results(folder).steps[-1].displacement
+            other = self.results(text, threads=threads).steps[-1].displacement
             self.assertLess(abs(other - alone).max(), 1e-8 * abs(alone).max(), threads)
 
     def test_a_run_that_is_resumed_is_the_whole_run(self):
         text = PULLED + '[solver]\nmode = "adaptive"\n'
-        whole = self.run_case(text, "whole")
+        whole = self.run_case(text, name="whole")
         steps = len(columns(whole)["step"])
         for after in (2, steps - 2):
-            part = self.run_case(text, f"part_{after}", "--stop-after", after, code=130)
+            part = self.run_case(text, name=f"part_{after}", words=("--stop-after", after), code=130)
             self.assertLess(len(columns(part)["step"]), steps)
-            ended = peristat("resume", part, "--threads", 1, "--quiet")
-            self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+            self.resume(part)
             self.assertEqual(differences(whole, part), [])
 
     def test_a_control_finds_its_load(self):
         supports, _ = PULL.split('[[support]]\nset = "high"')
         text = PLATE + CRACK + supports + "[loading]\nsteps = 2\ntable = [0, 1e-3]\n"
         text += '[[load]]\nset = "high"\ntotal_force = ["0", "load"]\n[[control]]\nset = "high"\nweights = [0, 1]\n'
-        rows = columns(self.run_case(text, "controlled"))
+        rows = columns(self.run_case(text, name="controlled"))
         self.assertAlmostEqual(rows["control"][-1], 1e-3, delta=1e-12)
         self.assertGreater(rows["load_factor"][-1], 0)
 
@@ -253,13 +244,13 @@ class States(Folder):
         ways = [PULL, PULL.replace('[[support]]\nset = "high"\ndisplacement = ["free", "0.012*load"]',
                                    '[[roller]]\nset = "high"\nnormal = [0, 1]\ndisplacement = "0.012*load"')]  # fmt: skip
         self.assertNotEqual(*ways)
-        one, other = (Results(self.run_case(PLATE + CRACK + way, f"way_{k}")).steps[-1].displacement for k, way in enumerate(ways))
+        one, other = (self.results(PLATE + CRACK + way).steps[-1].displacement for way in ways)
         self.assertLess(abs(one - other).max(), 1e-9 * abs(one).max())
         held = PULL.replace('["free", "0.012*load"]', '[0, "0.012*load"]')
         rigid = PULL.replace('[[support]]\nset = "high"\ndisplacement = ["free", "0.012*load"]',
                              '[[rigid]]\nset = "high"\ndisplacement = [0, "0.012*load"]\nrotation = [0]')  # fmt: skip
         self.assertNotIn('set = "high"\ndisplacement = ["free"', rigid)
-        one, other = (Results(self.run_case(PLATE + CRACK + way, f"set_{k}")).steps[-1].displacement for k, way in enumerate((held, rigid)))
+        one, other = (self.results(PLATE + CRACK + way).steps[-1].displacement for way in (held, rigid))
         self.assertLess(abs(one - other).max(), 1e-9 * abs(one).max())
 
     def test_refusals(self):

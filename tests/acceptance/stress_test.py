@@ -1,6 +1,5 @@
 """Strain and stress at points: fields, probes, lines, and what they balance."""
 
-import csv
 import json
 
 import h5py
@@ -11,7 +10,7 @@ from tests.reference import stress
 from tests.reference.body import Body
 from tests.reference.case import Case
 from tests.reference.mechanics import Mechanics
-from tests.reference.program import peristat
+from tests.reference.results import table
 from tests.reference.verify import verify
 
 # Sums of some hundred terms of stretches that have lost no digits.
@@ -61,10 +60,6 @@ class Stressed(Constrained):
             found = {key: group[key][...] for key in group if isinstance(group[key], h5py.Dataset)}
             found["reference"], found["volume"] = file["points/reference"][...], file["points/volume"][...]
         return found
-
-    def table(self, path):
-        with open(path, newline="") as file:
-            return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
 
 class Homogeneous(Stressed):
@@ -159,7 +154,7 @@ class Balance(Stressed):
         for name, text in cases.items():
             with self.subTest(name):
                 settings = ("solver.mode='adaptive'", "relaxation.steps=20") if name == "torn" else ()
-                rows = self.run_case(text + OUTPUT, *settings, name=name)
+                rows = self.rows(text + OUTPUT, *settings, name=name)
                 found = self.fields_of(name)
                 virial = numpy.einsum("n,nij->ij", found["volume"], found["first_piola_stress"])
                 acting = -numpy.einsum("ni,nj->ij", found["force"], found["reference"])
@@ -171,7 +166,7 @@ class Balance(Stressed):
         """Faces of the slab stand where the state hardly changes along the bar; what is left is the change over a horizon."""
         text = plate("", pull="1e-5").replace("-0.012, -0.012", "-0.006, -0.03").replace("0.012, 0.012", "0.006, 0.03")
         self.assertIn("-0.03", text)
-        row = self.run_case(text + OUTPUT)[-1]
+        row = self.rows(text + OUTPUT)[-1]
         found = self.fields_of()
         y = found["reference"][:, 1]
         for middle in (-0.008, 0.0, 0.006):
@@ -184,7 +179,7 @@ class Balance(Stressed):
         for gradient in ([[1e-4, 0], [0, 0]], [[0.02, 0.01], [-0.03, 0.05]]):
             text = CELL.format(material=BONDS, x=[gradient[0][0], gradient[1][0]], y=[gradient[0][1], gradient[1][1]])
             for hole in ("", "[[lattice.shape]]\nsubtract = \"disk\"\ncentre = [0.003, 0.003]\nradius = 1.2e-3\n"):
-                row = self.run_case(text.replace("[material]", hole + "[material]") + OUTPUT, name="cell")[-1]
+                row = self.rows(text.replace("[material]", hole + "[material]") + OUTPUT, name="cell")[-1]
                 found = self.fields_of("cell")
                 mean = numpy.einsum("n,nij->ij", found["volume"], found["first_piola_stress"]) / (0.008 * 0.006 * 1e-3)
                 told = numpy.array([[row["reaction_x:period_x"] / 0.006, row["reaction_x:period_y"] / 0.008],
@@ -319,7 +314,7 @@ component = "yx"
 class Probes(Stressed):
     def test_probes_are_what_the_fields_hold(self):
         text = plate("", hole=HOLE) + PROBES
-        rows = self.run_case(text + OUTPUT, "loading.steps=2")
+        rows = self.rows(text + OUTPUT, "loading.steps=2")
         found = self.fields_of()
         middle = numpy.abs(found["reference"][:, 1]) < 2e-3
         nearest = numpy.linalg.norm(found["reference"] - [3.1e-3, 6.2e-3], axis=1).argmin()
@@ -330,7 +325,7 @@ class Probes(Stressed):
         self.assertEqual(row["shear"], found["strain"][nearest, 2])
         self.assertEqual([row["where_x"], row["where_y"]], found["displacement"][nearest].tolist())
         self.assertNotIn("section", row)
-        line = self.table(self.folder / "out" / "line_section.csv")
+        line = table(self.folder / "out/line_section.csv")
         self.assertEqual(list(line[0]), ["step", "load_factor", "point", "distance", "x", "y", "stress_xx", "stress_yy", "stress_xy"])
         last = [one for one in line if one["step"] == 2]
         self.assertEqual(len(last), 2 * 8)  # two rows half a spacing off, without the hole
@@ -340,14 +335,14 @@ class Probes(Stressed):
             point = int(one["point"])
             self.assertEqual([one["x"], one["y"]], found["reference"][point].tolist())
             self.assertEqual([one["stress_xx"], one["stress_yy"], one["stress_xy"]], found["stress"][point].tolist())
-        gap = self.table(self.folder / "out" / "line_gap.csv")
+        gap = table(self.folder / "out/line_gap.csv")
         self.assertEqual(gap[-1]["first_piola_stress_yx"], found["first_piola_stress"][int(gap[-1]["point"]), 1, 0])
         summary = json.loads((self.folder / "out" / "summary.json").read_text())
         self.assertEqual(summary["probes"]["most"], row["most"])
 
     def test_probes_ask_for_stress_without_fields_of_it(self):
-        with_fields = self.run_case(plate("", hole=HOLE) + PROBES + OUTPUT, name="with")
-        without = self.run_case(plate("", hole=HOLE) + PROBES, name="without")
+        with_fields = self.rows(plate("", hole=HOLE) + PROBES + OUTPUT, name="with")
+        without = self.rows(plate("", hole=HOLE) + PROBES, name="without")
         self.assertEqual(with_fields, without)
         self.assertEqual((self.folder / "with/line_gap.csv").read_bytes(), (self.folder / "without/line_gap.csv").read_bytes())
         self.assertFalse(FIELDS & set(self.fields_of("without")))
@@ -356,12 +351,11 @@ class Probes(Stressed):
         text = plate("", material=BRITTLE, pull="2e-4", more="[[crack]]\nfrom = [-0.004, 0.0]\nto = [0.004, 0.0]\n") + PROBES
         text += OUTPUT + "every = 3\n"
         settings = ("solver.mode='adaptive'", "relaxation.steps=10", "loading.steps=5")
-        whole = self.run_case(text, *settings, name="whole")
+        whole = self.rows(text, *settings, name="whole")
         self.assertGreater(len(whole), 4)
         for stop in (2, 4):
-            self.run_case(text, *settings, name="halted", words=("--stop-after", stop), expected=130)
-            ended = peristat("resume", self.folder / "halted", "--threads", 1)
-            self.assertEqual(ended.code, 0, ended.said)
+            self.run_case(text, *settings, name="halted", words=("--stop-after", stop), code=130)
+            self.resume("halted")
             for name in ("history", "line_section", "line_gap"):
                 self.assertEqual((self.folder / "halted" / f"{name}.csv").read_bytes(), (self.folder / "whole" / f"{name}.csv").read_bytes())
             for name, field in self.fields_of("whole").items():
@@ -384,9 +378,7 @@ class Probes(Stressed):
                             ('at = [0.0, 0.1]\n', "within two spacings"),
                             ('from = [1.0, 0.0]\nto = [2.0, 0.0]\nfield = "damage"\n', "no point lies")):  # fmt: skip
             with self.subTest(wrong):
-                ended = peristat("check", self.case(plate("") + '[[probe]]\nname = "p"\n' + wrong))
-                self.assertEqual(ended.code, 2, ended.said)
-                self.assertIn(told, ended.said)
+                self.assert_refused(self.command("check", plate("") + '[[probe]]\nname = "p"\n' + wrong), told)
 
 
 class Written(Stressed):

@@ -5,12 +5,9 @@ import csv
 import json
 import math
 import os
-import pathlib
 import shutil
 import signal
-import subprocess
 import sys
-import tempfile
 import time
 import tomllib
 import unittest
@@ -18,9 +15,10 @@ import unittest
 import h5py
 import matplotlib.image
 
+from tests.acceptance.folder import Folder
 from tests.acceptance.strip import PULLED
+from tests.reference.program import ROOT, limited_by_shell, settings
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 SWEEP = ROOT / "cases" / "runner" / "sweep" / "sweep.py"  # reads PERISTAT_PROGRAM, as this test does
 
 STRIP = 'title = "Strip"\n' + PULLED + """\
@@ -43,29 +41,23 @@ STIFFNESS_AND_STEPS = ["--vary", "material.youngs_modulus=100e9,200e9", "--vary"
 FIRST_FAILS = ["--vary", "solver.max_iterations=1,20", "--set", "loading.smallest_step=0.1"]
 
 
-class Sweep(unittest.TestCase):
+class Sweep(Folder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat sweep ")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name).resolve()
+        super().setUp()
         self.write("strip.toml", STRIP)
         self.out = self.folder / "out"
 
-    def write(self, name, text):
-        (self.folder / name).write_text(text)
-
-    def command(self, *arguments):
+    def words(self, *arguments):
         return [sys.executable, "-BEs", SWEEP, *arguments]
 
     def sweep(self, *arguments, case="strip.toml", output=("--output", "out")):
-        return subprocess.run(self.command(case, *arguments, *output), cwd=self.folder, text=True, timeout=300,
-                              stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
+        return self.execute(self.words(case, *arguments, *output))
 
     def assert_ends(self, run, code, *lines):
         """The exit code, and the ends of the lines that tell of the combinations."""
-        self.assertEqual(run.returncode, code, run.stdout + run.stderr)
-        told = [line for line in run.stdout.splitlines() if line[0].isdigit()]
-        self.assertEqual(len(told), len(lines), run.stdout)
+        self.assert_code(run, code)
+        told = [line for line in run.output.splitlines() if line[0].isdigit()]
+        self.assertEqual(len(told), len(lines), run.output)
         for line, fragment in zip(told, lines):
             self.assertIn(f": {fragment}", line)
 
@@ -85,7 +77,7 @@ class Sweep(unittest.TestCase):
             (self.out / name).write_text("a,b\n1,2\n")
             run = self.sweep("--vary", "loading.steps=1")
             self.assert_ends(run, 2)
-            self.assertIn(name, run.stderr)
+            self.assertIn(name, run.errors)
             self.assertEqual([path.name for path in self.out.iterdir()], [name])
             self.assertEqual((self.out / name).read_text(), "a,b\n1,2\n")
 
@@ -98,9 +90,9 @@ class Sweep(unittest.TestCase):
 
     def test_the_table_of_a_benchmark_replaces_no_file_of_others(self):
         self.write("table.md", "mine")
-        run = subprocess.run([sys.executable, "-BEs", ROOT / "benchmarks" / "table1.py", "--output", "table.md"],
-                             cwd=self.folder, text=True, capture_output=True)  # fmt: skip
-        self.assertEqual((run.returncode, (self.folder / "table.md").read_text()), (2, "mine"), run.stderr)
+        run = self.execute([sys.executable, "-BEs", ROOT / "benchmarks/table1.py", "--output", "table.md"])
+        self.assert_refused(run)
+        self.assertEqual((self.folder / "table.md").read_text(), "mine")
 
     def test_words_are_varied_and_drawn(self):
         self.assert_ends(self.sweep("--vary", "solver.mode=newton,adaptive"), 0, "done", "done")
@@ -112,23 +104,21 @@ class Sweep(unittest.TestCase):
         before = self.summaries()
         refused = self.sweep("--vary", "loading.steps=1", case="other.toml")
         self.assert_ends(refused, 2, "exit code 2: refused")
-        self.assertIn("another case", refused.stderr)
+        self.assertIn("another case", refused.errors)
         self.assertEqual(self.summaries(), before)
         self.assert_ends(self.sweep("--vary", "loading.steps=1", "--overwrite", case="other.toml"), 0, "done")
 
     def test_a_fault_of_the_machine_ends_the_sweep(self):
-        command = self.command("strip.toml", "--vary", "loading.steps=1,2", "--output", "out")
-        run = subprocess.run(["bash", "-c", 'ulimit -f 8; exec "$@"', "bash", *map(str, command)], cwd=self.folder,
-                             text=True, stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
+        command = self.words("strip.toml", "--vary", "loading.steps=1,2", "--output", "out")
+        run = self.execute(limited_by_shell("ulimit -f 8", command))
         self.assert_ends(run, 5, "exit code 5: the machine failed")
         self.assertEqual([row["exit_code"] for row in self.rows()], ["5"])
 
     def test_who_stops_reading_does_not_stop_the_sweep(self):
         script = '"$@" | head -1; exit "${PIPESTATUS[0]}"'
-        command = self.command("strip.toml", "--vary", "loading.steps=1,2,3", "--output", "out")
-        run = subprocess.run(["bash", "-c", script, "bash", *map(str, command)], cwd=self.folder, text=True,
-                             stdin=subprocess.DEVNULL, capture_output=True)  # fmt: skip
-        self.assertEqual((run.returncode, run.stderr.count("in silence")), (0, 1), run.stderr)
+        command = self.words("strip.toml", "--vary", "loading.steps=1,2,3", "--output", "out")
+        run = self.execute(["bash", "-c", script, "bash", *command])
+        self.assertEqual((run.code, run.errors.count("in silence")), (0, 1), run.errors)
         self.assertEqual([row["status"] for row in self.rows()], ["completed"] * 3)
 
     # ---- table and picture ------------------------------------------------------------------------
@@ -216,8 +206,8 @@ class Sweep(unittest.TestCase):
 
     def test_results_of_another_run_do_not_count_as_done(self):
         self.sweep("--vary", "loading.steps=1,2")
-        subprocess.run([os.environ["PERISTAT_PROGRAM"], "run", "strip.toml", "--quiet", "--set", "loading.steps=5",
-                        "--output", "out/loading.steps=2"], cwd=self.folder, check=True)  # fmt: skip
+        run = self.peristat("run", "strip.toml", "--set", "loading.steps=5", "--output", "out/loading.steps=2")
+        self.assert_completed(run)
         (self.out / "loading.steps=1" / "results.h5").unlink()
         self.assert_ends(self.sweep("--vary", "loading.steps=1,2"), 0, "done", "done")
 
@@ -269,15 +259,14 @@ class Sweep(unittest.TestCase):
                           ("region[3].material.youngs_modulus=1e9", "region has 2 elements"),
                           ("region[0].youngs_modulus=1e9", "region[0].youngs_modulus")):  # fmt: skip
             refused = self.sweep("--vary", key, case=ROOT / "cases/regions/bimaterial.toml", output=("--output", "refused"))
-            self.assertEqual(refused.returncode, 2)
-            self.assertIn(told, refused.stderr)
+            self.assert_refused(refused, told)
 
     def test_a_refinement_is_extrapolated(self):
         # A bar whose surface effect falls with the spacing: to F L / (E A), by theory of first order.
         case = ROOT / "cases/bar/tension.toml"
         run = self.sweep("--set", "lattice.spacing=4e-3", "--refine", "4", case=case)
         self.assert_ends(run, 0, *4 * ["done"])
-        self.assertIn("probe:tip: order 1.0", run.stdout)
+        self.assertIn("probe:tip: order 1.0", run.output)
         with open(self.out / "refinement.csv", newline="") as table:
             rows = {row["quantity"]: row for row in csv.DictReader(table)}
         tip = rows["probe:tip"]
@@ -297,8 +286,8 @@ class Sweep(unittest.TestCase):
 
     def test_a_refinement_in_which_a_run_fails_extrapolates_nothing(self):
         run = self.sweep("--refine", "3", "--vary", "solver.max_iterations=1,20", "--set", "loading.smallest_step=0.5")
-        self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
-        self.assertIn("nothing is extrapolated of 1: a lattice has no completed run", run.stdout)
+        self.assert_code(run, 3)
+        self.assertIn("nothing is extrapolated of 1: a lattice has no completed run", run.output)
         with open(self.out / "refinement.csv", newline="") as table:
             self.assertEqual({row["solver.max_iterations"] for row in csv.DictReader(table)}, {"20"})
 
@@ -336,18 +325,15 @@ class Sweep(unittest.TestCase):
         }.items():
             with self.subTest(arguments=arguments):
                 run = self.sweep(*arguments)
-                self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
-                self.assertIn(fragment, run.stderr)
-                self.assertNotIn("Traceback", run.stderr)
+                self.assert_refused(run, fragment)
+                self.assertNotIn("Traceback", run.errors)
                 self.assertFalse(self.out.exists())
-        run = self.sweep("--vary", "loading.steps=1", case="missing.toml")
-        self.assertEqual(run.returncode, 2)
-        self.assertIn("missing.toml", run.stderr)
+        self.assert_refused(self.sweep("--vary", "loading.steps=1", case="missing.toml"), "missing.toml")
 
     def test_wrong_input_stops_at_once(self):
         run = self.sweep("--vary", "loading.steps=1,0,2")
         self.assert_ends(run, 2, "done", "exit code 2")
-        self.assertIn("loading.steps=0", run.stderr)
+        self.assertIn("loading.steps=0", run.errors)
         self.assertEqual(len(self.rows()), 1)
 
     def test_the_others_go_on_when_one_does_not_converge(self):
@@ -364,8 +350,8 @@ class Sweep(unittest.TestCase):
 
     def test_figures_of_a_preload_are_told_though_the_load_fails(self):
         preloaded = ["support[1].displacement=['1e-5 + 9e-3*load', 0]", "solver.max_iterations=2", "loading.smallest_step=0.5"]
-        settings = [word for text in preloaded for word in ("--set", text)]
-        self.assert_ends(self.sweep("--vary", "loading.steps=1", *settings), 3, "exit code 3: did not converge")
+        run = self.sweep("--vary", "loading.steps=1", *settings(*preloaded))
+        self.assert_ends(run, 3, "exit code 3: did not converge")
         row = self.rows()[0]
         self.assertEqual(row["steps"], "0")
         self.assertGreater(float(row["final_reaction:left"]), 0.0)
@@ -383,10 +369,8 @@ class Sweep(unittest.TestCase):
 
     def interrupted(self, interrupt):
         """Ending and output of a sweep whose second combination, a long one, is interrupted."""
-        process = subprocess.Popen(
-            self.command("strip.toml", "--vary", "loading.steps=1,100000,2", "--output", "out"), cwd=self.folder,
-            text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, start_new_session=True)  # fmt: skip
-        self.addCleanup(process.kill)
+        process = self.start(self.words("strip.toml", "--vary", "loading.steps=1,100000,2", "--output", "out"),
+                             start_new_session=True)  # fmt: skip
         second = self.out / "loading.steps=100000" / "history.csv"
         end = time.monotonic() + 60
         while not (second.exists() and second.read_text().count("\n") > 2):
@@ -415,8 +399,7 @@ class Sweep(unittest.TestCase):
         self.assert_ends(self.sweep(*steps, output=("--output", "whole")), 0, "done")
         for interrupt in (lambda process: process.send_signal(signal.SIGINT), lambda process: process.kill()):
             shutil.rmtree(self.out, ignore_errors=True)
-            process = subprocess.Popen(self.command("strip.toml", *steps, "--output", "out"), cwd=self.folder,
-                                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)  # fmt: skip
+            process = self.start(self.words("strip.toml", *steps, "--output", "out"))
             while not ((folder / "history.csv").exists() and (folder / "history.csv").read_text().count("\n") > 3):
                 self.assertIsNone(process.poll())
                 time.sleep(0.02)
@@ -436,9 +419,8 @@ class Sweep(unittest.TestCase):
 
     def test_what_was_interrupted_with_other_settings_is_run_anew(self):
         words = "--vary", "loading.steps=400"
-        subprocess.run([os.environ["PERISTAT_PROGRAM"], "run", "strip.toml", "--set", "loading.steps=400", "--set",
-                        "material.youngs_modulus=1e9", "--stop-after", "3", "--output", "out/loading.steps=400"],
-                       cwd=self.folder, capture_output=True)  # fmt: skip
+        self.peristat("run", "strip.toml", "--set", "loading.steps=400", "--set", "material.youngs_modulus=1e9",
+                      "--stop-after", "3", "--output", "out/loading.steps=400")  # fmt: skip
         self.assert_ends(self.sweep(*words), 0, "done")
         with h5py.File(self.out / "loading.steps=400" / "results.h5") as file:
             self.assertIn("youngs_modulus = 2e+11", file["case/as_resolved"][()].decode())
@@ -462,9 +444,7 @@ class Sweep(unittest.TestCase):
 
     def test_two_sweeps_share_a_folder(self):
         words = "--vary", "loading.steps=60,61,62,63"
-        both = [subprocess.Popen(self.command("strip.toml", *words, "--output", "out", "--jobs", "2"), cwd=self.folder,
-                                 text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-                for _ in range(2)]  # fmt: skip
+        both = [self.start(self.words("strip.toml", *words, "--output", "out", "--jobs", "2")) for _ in range(2)]
         told = [process.communicate(timeout=300) for process in both]
         self.assertEqual([process.returncode for process in both], [0, 0], told)
         output = "".join(output for output, _ in told)
@@ -476,7 +456,7 @@ class Sweep(unittest.TestCase):
     def test_more_jobs_than_processors_are_not_begun(self):
         run = self.sweep("--vary", "loading.steps=1,2", "--jobs", "1000")
         self.assert_ends(run, 0, "done", "done")
-        self.assertIn(f"{len(os.sched_getaffinity(0))} at a time, not 1000", run.stdout)
+        self.assertIn(f"{len(os.sched_getaffinity(0))} at a time, not 1000", run.output)
         self.assert_ends(self.sweep("--vary", "loading.steps=1", "--jobs", "0"), 2)
 
     def test_a_killed_sweep_leaves_no_run_behind(self):
@@ -489,10 +469,9 @@ class Sweep(unittest.TestCase):
         self.assertEqual(history.stat().st_size, size)
 
     def test_help_tells_the_options(self):
-        run = subprocess.run(self.command("--help"), text=True, capture_output=True)
-        self.assertEqual(run.returncode, 0, run.stderr)
+        run = self.assert_completed(self.execute(self.words("--help")))
         for word in ("usage: peristat sweep", "--vary", "--set", "--output", "--threads", "--jobs"):
-            self.assertIn(word, run.stdout)
+            self.assertIn(word, run.output)
 
 
 if __name__ == "__main__":

@@ -1,26 +1,13 @@
 """Runs whose results are compared with what pages print; each command runs once in a process."""
 
-import csv
 import functools
 import json
 
 import h5py
 
-from tests.reference.program import ROOT, peristat
+from tests.reference.program import ROOT, peristat, settings
+from tests.reference.results import table
 from tests.shipped_runs import shipped_run
-
-
-def rows(path):
-    """Rows of a table, numbers as such."""
-    with open(path, newline="") as table:
-        return [{key: _value(text) for key, text in row.items()} for row in csv.DictReader(table)]
-
-
-def _value(text):
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 class Run:
@@ -30,10 +17,10 @@ class Run:
         self.folder = folder
         self.output = output
         self.summary = json.loads((folder / "summary.json").read_text())
-        self.history = [row for row in rows(folder / "history.csv") if row["step"] > 0 or "time" in row]
-        self.iterations = rows(folder / "iterations.csv")
-        self.decisions = rows(folder / "decisions.csv")
-        self.convergence = rows(folder / "convergence.csv")
+        self.history = [row for row in table(folder / "history.csv") if row["step"] > 0 or "time" in row]
+        self.iterations = table(folder / "iterations.csv")
+        self.decisions = table(folder / "decisions.csv")
+        self.convergence = table(folder / "convergence.csv")
 
     def reaction(self, support, axis="x"):
         """Of the last step [N]."""
@@ -83,8 +70,7 @@ def run(case, *changes, code=0, threads=1):
 @functools.cache
 def check(case, *changes):
     """What `check` prints."""
-    words = [word for change in changes for word in ("--set", change)]
-    ended = peristat("check", ROOT / "cases" / f"{case}.toml", *words)
+    ended = peristat("check", ROOT / "cases" / f"{case}.toml", *settings(*changes))
     assert ended.code == 0, ended.said
     return ended.output
 

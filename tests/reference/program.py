@@ -8,7 +8,7 @@ import signal
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = os.environ.get("PERISTAT_PROGRAM", str(ROOT / "build/release/peristat"))
+PROGRAM = os.path.abspath(os.environ.get("PERISTAT_PROGRAM", ROOT / "build/release/peristat"))
 PLOT = ["/usr/bin/python3", "-BEs", str(ROOT / "cases/runner/plots/plot.py")]
 ADDRESS_SPACE = 6 << 30  # byte; OpenBLAS and Trilinos reserve far more than they use
 
@@ -27,10 +27,21 @@ class Ended:
         return json.loads(self.output)
 
 
-def execute(command, folder=None, seconds=120, limited=True, cpu_seconds=None):
+def settings(*changes):
+    """Words of the command line that change keys of a case, `key=value`."""
+    return [word for change in changes for word in ("--set", change)]
+
+
+def limited_by_shell(limits, command):
+    """The command under limits of the shell, or redirected by it: `ulimit -f 8`, `exec >/dev/full`."""
+    return ["bash", "-c", f'{limits}; exec "$@"', "bash", *command]
+
+
+def execute(command, folder=None, seconds=120, limited=True, cpu_seconds=None, environment=None):
     """Runs a command in a process group of its own, which is killed when time is up.
 
     seconds is wall time, for what hangs; cpu_seconds processor time, which other load leaves alone.
+    The environment is added to that of this process.
     """
     def set_limits():
         if limited:
@@ -40,7 +51,8 @@ def execute(command, folder=None, seconds=120, limited=True, cpu_seconds=None):
 
     command = [str(word) for word in command]
     process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, start_new_session=True, preexec_fn=set_limits)  # fmt: skip
+                               stderr=subprocess.PIPE, start_new_session=True, preexec_fn=set_limits,
+                               env=os.environ | (environment or {}))  # fmt: skip
     try:
         output, errors = process.communicate(timeout=seconds)
         code = process.returncode

@@ -8,6 +8,12 @@ import h5py
 import numpy
 
 
+def table(path):
+    """Rows of a table, numbers as floats."""
+    with open(path, newline="") as file:
+        return [{key: number_or_text(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+
 class Step:
     """An accepted step that was written with fields."""
 
@@ -46,9 +52,7 @@ class Results:
         self.summary = json.loads(path.read_text()) if path.exists() else None
 
     def table(self, name):
-        """Rows of a table, numbers as floats."""
-        with open(self.folder / f"{name}.csv", newline="") as file:
-            return [{key: number_or_text(value) for key, value in row.items()} for row in csv.DictReader(file)]
+        return table(self.folder / f"{name}.csv")
 
 
 def number_or_text(text):

@@ -1,23 +1,21 @@
 """What the headers of the long cases print, compared with one run of each."""
 
-import json
 import math
-import pathlib
-import tempfile
 import unittest
 
+from tests.acceptance.folder import Folder
 from tests.printed.comparison import PrintedTest
 from tests.printed.page import Printed, numbers
 from tests.printed.pieces import pieces
 from tests.printed.runs import run
-from tests.reference.program import ROOT, peristat
+from tests.reference.program import ROOT
 
 # Round-off decides which of two like bonds breaks first, so that elsewhere counts differ "by some per
 # cent" and peaks by "less than one": so the headers and the tutorial.
 COUNTS, PEAK = 0.05, 0.01
 
 
-class Fracture(PrintedTest):
+class Fracture(PrintedTest, Folder):
     def test_rectangle(self):
         self.page = "cases/plate_with_hole/rectangle.toml"
         plate = run("plate_with_hole/rectangle")
@@ -73,12 +71,7 @@ class Fracture(PrintedTest):
         case = "three_point_bending/mouth_opening"
         text = (ROOT / "cases" / f"{case}.toml").read_text()
         loaded = text[: text.index("[[control]]")] + "[loading]\nsteps = 32\nsmallest_step = 1e-3\n"
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "loaded.toml"
-            path.write_text(loaded)
-            ended = peristat("run", path, "--output", f"{folder}/out", "--threads", 1, seconds=900, limited=False)
-            self.assertEqual(ended.code, 3, ended.errors)
-            summary = json.loads((pathlib.Path(folder) / "out" / "summary.json").read_text())
+        summary = self.results(loaded, code=3, seconds=900, limited=False).summary
         controlled = run(case)
         self.assertIn("limit_point", summary["reason"])
         self.assertLess(summary["broken_bonds"], 0.3 * controlled.summary["broken_bonds"])

@@ -3,14 +3,13 @@
 import contextlib
 import json
 import os
-import pathlib
 import random
 import subprocess
-import tempfile
 import time
 import unittest
 
-from tests.reference.program import PROGRAM, ROOT, peristat
+from tests.acceptance.folder import Folder
+from tests.reference.program import PROGRAM, ROOT, settings
 from tests.same_results import differences
 from tests.shipped_runs import shipped_run
 
@@ -45,22 +44,20 @@ MODES = {  # of the square
 }  # fmt: skip
 
 
-class Resumed(unittest.TestCase):
+class Resumed(Folder):
     def setUp(self):
-        self.out = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="peristat_resumed_"))) / "out"
+        super().setUp()
+        self.out = self.folder / "out"
 
-    def begin(self, case, changes, *words):
-        settings = [word for change in changes for word in ("--set", change)]
-        return [PROGRAM, "run", str(ROOT / "cases" / f"{case}.toml"), "--output", str(self.out), "--threads", "1",
-                *settings, *words]  # fmt: skip
+    def begin(self, case, *words):
+        return [PROGRAM, "run", ROOT / "cases" / f"{case}.toml", "--output", self.out, "--threads", 1, *words]
 
     def check(self, case, changes=()):
         """Three sessions: an end after one step, after another one, and the end."""
         whole = shipped_run(case, *changes)
-        subprocess.run(self.begin(case, changes, "--stop-after", "1"), capture_output=True)
-        peristat("resume", self.out, "--threads", 1, "--stop-after", 1)
-        ended = peristat("resume", self.out, "--threads", 1, seconds=900, limited=False)
-        self.assertEqual(ended.code, whole.code, ended.said)
+        self.execute(self.begin(case, *settings(*changes), "--stop-after", 1))
+        self.peristat("resume", self.out, "--threads", 1, "--stop-after", 1)
+        self.resume(self.out, code=whole.code, seconds=900, limited=False)
         self.assertEqual(differences(whole.folder, self.out), [])
 
     def check_killed(self, case):
@@ -69,18 +66,17 @@ class Resumed(unittest.TestCase):
         self.assertEqual(whole.code, 0, whole.errors)
         duration = max(time.monotonic() - started, self.seconds(whole.folder))
         chance = random.Random(case)
-        command = self.begin(case, ())
+        command = self.begin(case)
         for _ in range(KILLS):
-            process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            process = self.start(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             with contextlib.suppress(subprocess.TimeoutExpired):
                 process.wait(chance.uniform(0.0, 2.0 / KILLS) * duration)
             process.kill()
             process.wait()
             if (self.out / "parts/checkpoint.0").exists():
-                command = [PROGRAM, "resume", str(self.out), "--threads", "1"]
+                command = [PROGRAM, "resume", self.out, "--threads", 1]
         # Where the machine was too slow for a first step, all of it.
-        ended = peristat(*command[1:], seconds=900, limited=False)
-        self.assertEqual(ended.code, 0, ended.said)
+        self.assert_completed(self.execute(command, seconds=900, limited=False))
         self.assertEqual(differences(whole.folder, self.out), [])
 
     def seconds(self, folder):

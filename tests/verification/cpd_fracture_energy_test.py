@@ -1,17 +1,13 @@
 """Fracture energy of cpd: what a tear through the command line takes, beside what was asked for."""
 
-import json
 import math
-import pathlib
-import tempfile
 import unittest
 
 import numpy
 
+from tests.acceptance.folder import Folder
 from tests.reference.case import Case
-from tests.reference.clouds import toml
 from tests.reference.laws import Law
-from tests.reference.program import peristat
 from tests.reference.pull import Pull, uniaxial
 from tests.reference.sheets import resolve
 from tests.reference.tear import Tear, directions
@@ -25,16 +21,8 @@ PEAK = 1e-7  # of a peak that is searched for by steps
 ANGLES = ((0.0, 1.0, 2.1), (math.degrees(math.atan(0.5)), math.sqrt(5.0), 4.7), (45.0, math.sqrt(2.0), 3.0))
 
 
-class CpdFractureEnergy(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_cpd_tear_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def write(self, tables):
-        path = self.folder / "case.toml"
-        path.write_text(toml(tables))
-        return path
+class CpdFractureEnergy(Folder):
+    threads = 2
 
     def strip(self, length, angle, damage, steps=1, opening=0.0):
         """Two halves that are pulled apart as rigid blocks, in small steps, until no bond joins them."""
@@ -50,20 +38,16 @@ class CpdFractureEnergy(unittest.TestCase):
             "loading": {"steps": steps}, "solver": {"mode": "relaxation"}, "output": {"every": steps},
         }  # fmt: skip
 
-    def told(self, damage):
-        run = peristat("calibrate", self.write(self.strip(0.03, 0.0, damage)))
-        self.assertEqual(run.code, 0, run.said)
-        return json.loads(run.output)["damage"]
+    def told(self, tables, *words):
+        return self.assert_completed(self.command("calibrate", tables, words=words)).json()["damage"]
 
     def dissipated(self, tables):
-        run = peristat("run", self.write(tables), "--quiet", "--overwrite", "--output", self.folder / "out")
-        self.assertEqual(run.code, 0, run.said)
-        return json.loads((self.folder / "out/summary.json").read_text())["energy"]["dissipated"]
+        return self.results(tables).summary["energy"]["dissipated"]
 
     def test_a_torn_strip_takes_what_was_told(self):
         for law, angles in (("critical_stretch", ANGLES), ("linear", ANGLES[:1])):
             damage = {"law": law, "fracture_energy": G}
-            told = self.told(damage)
+            told = self.told(self.strip(0.03, 0.0, damage))
             self.assertAlmostEqual(told["fracture_energy"]["mean"] / G, 1.0, delta=1e-9)
             found = {"law": law} | {key: told[key] for key in ("onset", "critical") if key in told}
             tear = Tear(2, RATIO, SPACING, 0.5, {1: C1, 2: C2})
@@ -89,7 +73,7 @@ class CpdFractureEnergy(unittest.TestCase):
         for damage in ({"law": "critical_stretch"}, {"law": "tanh"}, {"law": "linear", "onset": 2e-3}, {"law": "exponential"}):
             with self.subTest(law=damage["law"]):
                 damage = damage | {"fracture_energy": G}
-                told = self.told(damage)
+                told = self.told(self.strip(0.03, 0.0, damage))
                 case = Case(self.strip(0.03, 0.0, damage))
                 resolve(case)
                 found = case["material"]["damage"]
@@ -99,10 +83,9 @@ class CpdFractureEnergy(unittest.TestCase):
     def test_in_space_the_reference_takes_as_much(self):
         constants = {"c1": 4e20, "c2": 1e28, "c3": 7e37}
         options = [word for key, value in constants.items() for word in (f"--{key}", repr(value))]
-        run = peristat("calibrate", "--dimension", "3", "--spacing", "1e-3", "--horizon-ratio", "2", *options,
-                       "--law", "critical_stretch", "--fracture-energy", "500")  # fmt: skip
-        self.assertEqual(run.code, 0, run.said)
-        told = json.loads(run.output)["damage"]
+        ended = self.peristat("calibrate", "--dimension", "3", "--spacing", "1e-3", "--horizon-ratio", "2", *options,
+                              "--law", "critical_stretch", "--fracture-energy", "500")  # fmt: skip
+        told = self.assert_completed(ended).json()["damage"]
         tear = Tear(3, 2.0, 1e-3, 1.0, dict(zip((1, 2, 3), constants.values(), strict=True)))
         damage = {"law": "critical_stretch", "critical": told["critical"]}
         self.assertAlmostEqual(tear.mean(damage) / 500, 1.0, delta=1e-9)
@@ -113,10 +96,10 @@ class CpdFractureEnergy(unittest.TestCase):
             with self.subTest(dimension=dimension, influence=influence):
                 of = dict(list(constants.items())[:dimension])
                 options = [word for key, value in of.items() for word in (f"--{key}", repr(value))]
-                run = peristat("calibrate", "--dimension", str(dimension), "--spacing", "1e-3", "--horizon-ratio", "2", *options,
-                               "--law", "linear", "--fracture-energy", "500", "--influence", influence)  # fmt: skip
-                self.assertEqual(run.code, 0, run.said)
-                told = json.loads(run.output)
+                ended = self.peristat("calibrate", "--dimension", dimension, "--spacing", "1e-3", "--horizon-ratio", "2",
+                                      *options, "--law", "linear", "--fracture-energy", "500",
+                                      "--influence", influence)  # fmt: skip
+                told = self.assert_completed(ended).json()
                 tear = Tear(dimension, 2.0, 1e-3, 1.0, dict(zip((1, 2, 3), of.values())), influence)
                 damage = {"law": "linear"} | {key: told["damage"][key] for key in ("onset", "critical")}
                 self.assertAlmostEqual(tear.mean(damage) / 500, 1.0, delta=1e-9)
@@ -127,8 +110,7 @@ class CpdFractureEnergy(unittest.TestCase):
         material = tables["material"]
         del material["c1"], material["c2"]
         material |= {"youngs_modulus": 70e9, "poisson_ratio": 0.4}
-        run = peristat("check", self.write(tables))
-        self.assertEqual(run.code, 0, run.said)
+        run = self.assert_completed(self.command("check", tables))
         line = next(line for line in run.output.splitlines() if line.startswith("fracture "))
         self.assertIn("fracture energy 4000 J/m2 in the mean over the directions of a crack (", line)
         self.assertIn("strength 2e+08 Pa in the mean over the directions of a pull (", line)
@@ -137,20 +119,17 @@ class CpdFractureEnergy(unittest.TestCase):
         tables = self.strip(0.03, 0.0, damage)
         del tables["material"]["c1"], tables["material"]["c2"]
         tables["material"] |= {"youngs_modulus": 70e9, "poisson_ratio": 0.4}
-        return self.write(tables)
+        return tables
 
     def test_stretches_of_a_strength_have_that_strength(self):
         for damage, keys in (({"law": "linear", "critical": 0.02}, ("onset", "critical")), ({"law": "exponential", "critical": 0.02}, ("onset", "critical")),
                              ({"law": "critical_stretch"}, ("critical",))):  # fmt: skip
             with self.subTest(law=damage["law"]):
-                run = peristat("calibrate", self.of_moduli(damage | {"strength": 3e8}))
-                self.assertEqual(run.code, 0, run.said)
-                told = run.json()["damage"]
+                told = self.told(self.of_moduli(damage | {"strength": 3e8}))
                 self.assertAlmostEqual(told["strength"] / 3e8, 1.0, delta=1e-7)
                 # The other way round: a pull of the lattice whose bonds have these stretches.
-                run = peristat("calibrate", "--strengths", self.of_moduli({"law": damage["law"]} | {key: told[key] for key in keys}))
-                self.assertEqual(run.code, 0, run.said)
-                peak = run.json()["damage"]["strengths"]["uniaxial"]["peak"]
+                pulled = self.of_moduli({"law": damage["law"]} | {key: told[key] for key in keys})
+                peak = self.told(pulled, "--strengths")["strengths"]["uniaxial"]["peak"]
                 self.assertAlmostEqual(peak["mean"] / 3e8, 1.0, delta=1e-6)
                 self.assertLess(peak["least"], 3e8)
                 self.assertGreater(peak["most"], 3e8)
@@ -163,9 +142,8 @@ class CpdFractureEnergy(unittest.TestCase):
         for law in ("linear", "exponential", "tanh_continuous", "critical_stretch"):
             with self.subTest(law=law):
                 damage = {"law": law, "critical": 0.016} | ({} if law == "critical_stretch" else {"onset": 0.002})
-                run = peristat("calibrate", "--strengths", self.write(self.strip(0.03, 0.0, damage)))
-                self.assertEqual(run.code, 0, run.said)
-                told = {stress: of.get("peak") for stress, of in run.json()["damage"]["strengths"].items()}
+                strengths = self.told(self.strip(0.03, 0.0, damage), "--strengths")["strengths"]
+                told = {stress: of.get("peak") for stress, of in strengths.items()}
                 of = Law.of_table(damage)
                 for stress, form in (("uniaxial", uniaxial), ("shear", shear))[: 2 if law == "linear" else 1]:
                     found = [pull.peak(of, form(normal)) for normal in normals]
@@ -178,27 +156,22 @@ class CpdFractureEnergy(unittest.TestCase):
                 self.assertGreater(biaxial / of_bonds.peak(of, numpy.eye(2)), 1.1)  # triangles matter
 
     def test_a_strength_needs_no_moduli(self):
-        run = peristat("check", self.write(self.strip(0.03, 0.0, {"law": "linear", "critical": 0.02, "strength": 2e8})))
-        self.assertEqual(run.code, 0, run.said)
-        self.assertIn("strength 2e+08 Pa in the mean over the directions of a pull (", run.said)
+        tables = self.strip(0.03, 0.0, {"law": "linear", "critical": 0.02, "strength": 2e8})
+        ended = self.assert_completed(self.command("check", tables))
+        self.assertIn("strength 2e+08 Pa in the mean over the directions of a pull (", ended.said)
 
     def test_strengths_without_an_answer_are_refused(self):
-        for case, words in ((lambda: self.of_moduli({"law": "critical_stretch", "fracture_energy": G, "strength": 2e8}),
-                             ["material.damage.strength", "one stretch for both"]),
-                            (lambda: self.of_moduli({"law": "linear", "fracture_energy": G, "strength": 2e9}),
-                             ["material.damage.strength", "a spacing below"])):  # fmt: skip
+        for law, strength, words in (("critical_stretch", 2e8, "one stretch for both"),
+                                     ("linear", 2e9, "a spacing below")):  # fmt: skip
             with self.subTest(words=words):
-                run = peristat("check", case())
-                self.assertEqual(run.code, 2, run.said)
-                for word in words:
-                    self.assertIn(word, run.said)
+                tables = self.of_moduli({"law": law, "fracture_energy": G, "strength": strength})
+                self.assert_refused(self.command("check", tables), "material.damage.strength", words)
 
     def test_too_long_a_horizon_is_refused(self):
-        run = peristat("calibrate", "--dimension", "3", "--spacing", "1e-3", "--horizon-ratio", "4",
-                       "--youngs-modulus", "70e9", "--poisson-ratio", "0.4", "--law", "critical_stretch",
-                       "--fracture-energy", "10")  # fmt: skip
-        self.assertEqual(run.code, 2)
-        self.assertIn("is for horizon ratios up to 3.2 with cpd in 3D", run.said)
+        ended = self.peristat("calibrate", "--dimension", "3", "--spacing", "1e-3", "--horizon-ratio", "4",
+                              "--youngs-modulus", "70e9", "--poisson-ratio", "0.4", "--law", "critical_stretch",
+                              "--fracture-energy", "10")  # fmt: skip
+        self.assert_refused(ended, "is for horizon ratios up to 3.2 with cpd in 3D")
 
 
 if __name__ == "__main__":

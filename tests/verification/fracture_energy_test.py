@@ -1,17 +1,13 @@
 """Fracture energy and strength: what a tear takes and a pull bears, beside what was asked for and foretold."""
 
-import json
-import pathlib
-import tempfile
 import unittest
 
 import h5py
 import numpy
 
+from tests.acceptance.folder import Folder
 from tests.reference.case import Case
-from tests.reference.clouds import toml
 from tests.reference.laws import Law
-from tests.reference.program import peristat
 from tests.reference.pull import Pull, uniaxial
 from tests.reference.sheets import Bulk, resolve
 from tests.reference.tear import directions
@@ -26,16 +22,8 @@ ROUND_OFF = 1e-12
 STRENGTH, STRETCH = 1e-7, 1e-6
 
 
-class FractureEnergy(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_tear_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def write(self, tables):
-        path = self.folder / "case.toml"
-        path.write_text(toml(tables))
-        return path
+class FractureEnergy(Folder):
+    threads = 2
 
     def strip(self, length, angle, ratio, material, quadrature, dimension=2):
         """Two halves that are pulled apart as rigid blocks, until no bond joins them."""
@@ -86,7 +74,7 @@ class FractureEnergy(unittest.TestCase):
                     took = self.tear(angle, period, 3.015, material, CORRECTIONS["linear"])
                     bulk = Bulk(Case(strip))
                     self.assertAlmostEqual(took / (10.0 * bulk.crossing_of([0, 1]) / bulk.crossing), 1.0, delta=1e-10)
-                    told = json.loads(peristat("calibrate", self.write(strip)).output)
+                    told = self.command("calibrate", strip).json()
                     modulus = 70e9 * (bulk.lattice_of_modulus if calibration == "lattice" else bulk.of_modulus)
                     self.assertAlmostEqual(told["micromodulus"] / modulus, 1.0, delta=ROUND_OFF)
                     self.assertAlmostEqual(told["damage"]["fracture_energy"]["mean"] / 10.0, 1.0, delta=ROUND_OFF)
@@ -110,8 +98,8 @@ class FractureEnergy(unittest.TestCase):
     def test_calibrate_foretells_the_tears_along_and_across_the_lattice(self):
         material = {"youngs_modulus": 70e9, "damage": {"law": "linear", "fracture_energy": 10.0, "strength": 8e6}}
         for (angle, period), key in zip(ANGLES[::2], ("axes", "diagonals"), strict=True):
-            case = self.write(self.strip(0.03, 0.0, 3.015, material, CORRECTIONS["linear"]))
-            told = json.loads(peristat("calibrate", case).output)["damage"]["fracture_energy"]
+            strip = self.strip(0.03, 0.0, 3.015, material, CORRECTIONS["linear"])
+            told = self.command("calibrate", strip).json()["damage"]["fracture_energy"]
             took = self.tear(angle, period, 3.015, material, CORRECTIONS["linear"])
             for value in told[key]:
                 self.assertAlmostEqual(value / took, 1.0, delta=1e-10)
@@ -125,9 +113,8 @@ class FractureEnergy(unittest.TestCase):
         return [word for name, value in options.items() for word in (f"--{name}", repr(value) if isinstance(value, float) else str(value))]
 
     def calibrated(self, dimension, law, **more):
-        run = peristat("calibrate", "--model", "bond", *self.question(dimension, law, **more))
-        self.assertEqual(run.code, 0, run.said)
-        return json.loads(run.output)
+        question = self.question(dimension, law, **more)
+        return self.assert_completed(self.peristat("calibrate", "--model", "bond", *question)).json()
 
     def test_calibrate_goes_there_and_back(self):
         for dimension in (1, 2, 3):
@@ -187,13 +174,14 @@ class FractureEnergy(unittest.TestCase):
         largest = self.calibrated(2, "linear", **data)["damage"]["largest_spacing"]
         below = self.calibrated(2, "linear", **data, spacing=largest * (1 - 1e-3))["damage"]["strength"]
         self.assertAlmostEqual(below / 14e6, 1.0, delta=STRENGTH)
-        run = peristat("calibrate", "--model", "bond", *self.question(2, "linear", **data, spacing=largest * (1 + 1e-6)))
-        self.assertEqual(run.code, 2)
-        self.assertIn(f"a spacing below {largest:.4g} m resolves it", run.said)
+        beyond = self.question(2, "linear", **data, spacing=largest * (1 + 1e-6))
+        ended = self.peristat("calibrate", "--model", "bond", *beyond)
+        self.assert_refused(ended, f"a spacing below {largest:.4g} m resolves it")
 
     def test_strengths_of_a_lattice_are_those_of_its_pull(self):
         """One direction of a lattice in space, and every stress of a planar one, beside a calculation by other means."""
-        planar = json.loads(peristat("calibrate", "--strengths", "--model", "bond", *self.question(2, "linear", onset=1e-4, critical=8e-4)).output)
+        question = self.question(2, "linear", onset=1e-4, critical=8e-4)
+        planar = self.peristat("calibrate", "--strengths", "--model", "bond", *question).json()
         case = lambda d: Case({"dimension": d, "lattice": {"spacing": 2e-4, "horizon_ratio": 3.015}, "material": {"youngs_modulus": 30e9}})
         law = Law("linear", 1e-4, 8e-4, 3.0)
         bulk = Bulk(case(2))
@@ -220,11 +208,8 @@ class FractureEnergy(unittest.TestCase):
                 tables = {"dimension": 1, "lattice": {"spacing": 0.1, "horizon_ratio": 3.0, "shape": [{"add": "box", "min": [0], "max": [3]}]},
                           "set": [{"name": "all", "where": "1"}], "material": {"youngs_modulus": 1e9, "calibration": "lattice", "damage": damage},
                           "support": [{"set": "all", "displacement": ["4.0e-3*x*load"]}], "loading": {"steps": 400}}  # fmt: skip
-                run = peristat("run", self.write(tables), "--quiet", "--overwrite", "--output", self.folder / "out")
-                self.assertEqual(run.code, 0, run.said)
-                rows = (self.folder / "out/history.csv").read_text().splitlines()
-                column = rows[0].split(",").index("stored_energy")
-                stored = numpy.array([float(row.split(",")[column]) for row in rows[2:]])  # after step 0
+                rows = self.results(tables).table("history")[1:]  # after step 0
+                stored = numpy.array([row["stored_energy"] for row in rows])
                 strain = 4e-3 * numpy.arange(1, len(stored) + 1) / 400
                 # Of the inner points half the force times the strain is stored; the ends take away from all alike.
                 stress = stored / strain

@@ -1,17 +1,14 @@
 """Gravity, tractions, eigenstrains and pressures: against sums, closed forms and tests/reference."""
 
-import pathlib
-import tempfile
 import unittest
 
 import h5py
 import numpy
 
+from tests.acceptance.folder import Folder
 from tests.reference import ring
 from tests.reference.body import constant_factor, lattice_ball
 from tests.reference.case import Case
-from tests.reference.program import peristat
-from tests.reference.results import Results
 from tests.reference.verify import Verification
 
 PLATE = """
@@ -47,27 +44,12 @@ FREE = (
 HEATED = FREE + '[temperature]\nchange = "200*load"\n'
 
 
-class Loads(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_loads_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+class Loads(Folder):
+    threads = 2
 
-    def write(self, text):
-        path = self.folder / "case.toml"
-        path.write_text(text)
-        return path
-
-    def run_case(self, text, *settings, code=0, judged=True):
-        """Runs and judges by tests/reference; returns the results."""
-        path, output = self.write(text), self.folder / "out"
-        words = [word for setting in settings for word in ("--set", setting)]
-        run = peristat("run", path, "--quiet", "--no-plots", "--overwrite", "--output", output, *words)
-        self.assertEqual(run.code, code, run.said)
-        if code:
-            return run
-        if not judged:
-            return Results(output)
+    def judged(self, text, *changes):
+        """Results of a run that tests/reference has judged."""
+        output = self.run_case(text, *changes)
         verification = Verification(output, Case(self.resolved(output), self.folder))
         self.assertEqual(verification.run(), [])
         return verification.results
@@ -81,21 +63,20 @@ class Loads(unittest.TestCase):
 
 class DeadLoads(Loads):
     def test_the_reactions_bear_the_weight(self):
-        results = self.run_case(PLATE + '[[load]]\ngravity = ["3*load", "-9.81*load"]\n')
+        results = self.judged(PLATE + '[[load]]\ngravity = ["3*load", "-9.81*load"]\n')
         weight = 2000 * 0.02 * 0.01 * 2e-3
         reaction = results.summary["reactions"]["left"]
         # Newton's last step is quadratic, so that what is left is the round-off of sums over 3000 bonds.
         self.assertAlmostEqual(reaction[0] / (-3 * weight), 1, delta=1e-10)
         self.assertAlmostEqual(reaction[1] / (9.81 * weight), 1, delta=1e-10)
-        self.assertEqual(self.run_case(PLATE + "[[load]]\ngravity = [0, 1]\n", 'material={youngs_modulus=1e9}',
-                                       code=2).code, 2)  # fmt: skip
+        self.refusal(PLATE + "[[load]]\ngravity = [0, 1]\n", "material={youngs_modulus=1e9}")
 
     def test_a_traction_adds_up_to_stress_times_area(self):
         for place in ('side = "x+"', 'set = "right"'):
             for depth in ("row", "horizon"):
                 with self.subTest(place=place, depth=depth):
                     load = f'[[load]]\n{place}\ndepth = "{depth}"\ntraction = ["1e6*load", "2e5*load"]\n'
-                    reaction = self.run_case(PLATE + load).summary["reactions"]["left"]
+                    reaction = self.judged(PLATE + load).summary["reactions"]["left"]
                     self.assertAlmostEqual(reaction[0] / (-1e6 * 0.01 * 2e-3), 1, delta=1e-9)
                     self.assertAlmostEqual(reaction[1] / (-2e5 * 0.01 * 2e-3), 1, delta=1e-9)
 
@@ -110,9 +91,7 @@ class DeadLoads(Loads):
             ("body_force = [0, 1]", "missing"),
         ):
             with self.subTest(load=load):
-                run = peristat("check", self.write(PLATE + "[[load]]\n" + load + "\n"))
-                self.assertEqual(run.code, 2, run.said)
-                self.assertIn(told, run.said)
+                self.assert_refused(self.command("check", PLATE + "[[load]]\n" + load + "\n"), told)
 
 
 class Heated(Loads):
@@ -136,13 +115,13 @@ class Heated(Loads):
                           'temperature.change="100*load+100*load2"')):  # fmt: skip
             with self.subTest(settings=settings):
                 # What is free of stress has no forces to measure the last digits of stretches and work by.
-                results = self.run_case(HEATED, *settings, judged=False)
+                results = self.results(HEATED, *settings)
                 x = results.reference[:, 0]
                 by = 3.7e-3 / (x.max() - x.min()) if "control" in settings[0] else 0.2
                 self.assert_grown(results, by)
 
     def test_relaxation_finds_it_too_and_its_energies_add_up(self):
-        results = self.run_case(HEATED, "solver.mode=relaxation", "loading.steps=2", judged=False)
+        results = self.results(HEATED, "solver.mode=relaxation", "loading.steps=2")
         step, row = results.steps[-1], results.table("history")[-1]
         growth = 0.2 * (results.reference - results.reference[results.sets["corner"]][0])
         self.assertLess(numpy.abs(step.displacement - growth).max(), 1e-5 * numpy.abs(growth).max())
@@ -154,7 +133,7 @@ class Heated(Loads):
             "[material]", '[[set]]\nname = "all"\nwhere = "x < 1e-3 || x > 0.019 || y < 1e-3 || y > 0.009"\n[material]'
         ).replace('[[support]]\nset = "foot"\ndisplacement = ["free", 0]\n', "")  # fmt: skip
         held += '[quadrature]\nsurface_correction = "energy"\n'
-        results = self.run_case(held, "temperature.change=\"2*load\"", "loading.steps=2")
+        results = self.judged(held, "temperature.change=\"2*load\"", "loading.steps=2")
         inside = numpy.abs(results.reference - [0.01, 0.005]).max(axis=1) < 1e-3
         # 2 * 1/2 E e2 / (1 - nu) = 3/2 E e2; the energy correction sets W of one strain at a time, which in the
         # bulk of this lattice leaves 2 % to two of them at once.
@@ -193,7 +172,7 @@ change = "100*load"
         for reach in (1, 2, 3, 5):
             for correction, of_outermost in (("linear", 0.5), ("none", 1.0)):
                 with self.subTest(reach=reach, correction=correction):
-                    results = self.run_case(bar.format(reach=reach, correction=correction))
+                    results = self.judged(bar.format(reach=reach, correction=correction))
                     share = numpy.ones(reach)
                     share[-1] = of_outermost
                     factor = constant_factor(1, None, reach * 1e-3, 1e-6)
@@ -219,7 +198,7 @@ change = "100*load"
                         # Free to grow, and not to shear, by which it could turn.
                         gradient = [("free" if k == axis and is_free else 0) for k in range(dimension)]
                         text += f'[[period]]\naxis = "{"xyz"[axis]}"\nfrom = 0\nto = {shape[axis]}\ngradient = {gradient}\n'
-                    results = self.run_case(text, judged=False)
+                    results = self.results(text)
                     bonds = lattice_ball(dimension, ratio) * 1e-3
                     lengths = numpy.linalg.norm(bonds, axis=1)
                     thickness, volume = (2e-3, 2e-9) if dimension == 2 else (1.0, 1e-9)
@@ -239,20 +218,20 @@ change = "100*load"
         """Stretches are left of second order in the growth only: a tenth of it leaves a hundredth of them."""
         left = []
         for change in (2.0, 0.2):
-            results = self.run_case(HEATED, f'temperature.change="{change}*load*y/0.01"', "loading.steps=1", judged=False)
+            results = self.results(HEATED, f'temperature.change="{change}*load*y/0.01"', "loading.steps=1")
             left.append(numpy.abs(results.steps[-1].stretch).max() / (1e-3 * change))
         self.assertLess(left[0], 0.01)
         self.assertAlmostEqual(left[1] / left[0], 0.1, delta=0.02)
 
     def test_bonds_break_by_the_stretch_that_is_left(self):
         held = HEATED.replace("[temperature]", '[material.damage]\nlaw = "critical_stretch"\ncritical = 0.01\n[temperature]')
-        free = self.run_case(held, "loading.steps=2", judged=False)
+        free = self.results(held, "loading.steps=2")
         self.assertEqual(free.summary["broken_bonds"], 0)  # at a growth of 20 critical stretches
         ends = held.replace('set = "corner"\ndisplacement = [0, 0]', 'set = "right"\ndisplacement = [0, 0]')
         ends = ends.replace('set = "foot"\ndisplacement = ["free", 0]', 'set = "start"\ndisplacement = [0, 0]')
         ends = ends.replace("[material]", '[[set]]\nname = "start"\nwhere = "x < 1e-3"\n[material]')
-        cold = self.run_case(ends, 'temperature.change="-30*load"', "solver.mode=adaptive", "loading.steps=2",
-                             "relaxation.steps=10")  # fmt: skip
+        cold = self.judged(ends, 'temperature.change="-30*load"', "solver.mode=adaptive", "loading.steps=2",
+                           "relaxation.steps=10")  # fmt: skip
         self.assertGreater(cold.summary["broken_bonds"], 0)  # cooled between its ends by three of them
         row = cold.table("history")[-1]
         self.assertLess(abs(row["balance_error"]), 0.05 * row["external_work"])
@@ -282,23 +261,20 @@ displacement = [{", ".join(f'"0.2*load*({c} - 0.0005)"' for c in "xyz"[:dimensio
 [[eigenstrain]]
 strain = "0.2*load"
 """
-                results = self.run_case(text, judged=False)
+                results = self.results(text)
                 growth = 0.2 * (results.reference - 0.0005)
                 error = numpy.abs(results.steps[-1].displacement - growth).max()
                 self.assertLess(error, 1e-9 * numpy.abs(growth).max(), zeros)
-                told = peristat("check-tangent", self.folder / "case.toml").json()
+                told = self.command("check-tangent", text).json()
                 self.assertLess(max(told["residual_error"], told["tangent_error"]), 1e-6)
                 self.assertLess(max(told["force_sum"], told["moment_sum"]), 1e-12)
 
     def test_what_is_interrupted_goes_on_under_the_same_temperature(self):
         text = HEATED.replace('set = "corner"\ndisplacement = [0, 0]', 'set = "right"\ndisplacement = [0, 0]')
-        whole = self.run_case(text, "loading.steps=4", "temperature.change=\"20*load*x/0.02\"", judged=True)
-        path = self.folder / "case.toml"
-        run = peristat("run", path, "--quiet", "--no-plots", "--output", self.folder / "part", "--stop-after", "2",
-                       "--set", "loading.steps=4", "--set", 'temperature.change="20*load*x/0.02"')  # fmt: skip
-        self.assertEqual(run.code, 130, run.said)
-        run = peristat("resume", self.folder / "part", "--quiet", "--no-plots")
-        self.assertEqual(run.code, 0, run.said)
+        changes = "loading.steps=4", 'temperature.change="20*load*x/0.02"'
+        whole = self.judged(text, *changes)
+        self.run_case(text, *changes, name="part", words=("--stop-after", 2), code=130)
+        self.resume("part")
         self.assertEqual((self.folder / "part/history.csv").read_text(), (self.folder / "out/history.csv").read_text())
         self.assertEqual(len(whole.steps), 4)
 
@@ -311,10 +287,7 @@ strain = "0.2*load"
             (HEATED, ("solver.fragments=remove",), "could not grow or shrink"),
         ):
             with self.subTest(told=told):
-                words = [word for setting in settings for word in ("--set", setting)]
-                run = peristat("check", self.write(text), *words)
-                self.assertEqual(run.code, 2, run.said)
-                self.assertIn(told, run.said)
+                self.assert_refused(self.command("check", text, *settings), told)
 
 
 RING = """
@@ -361,7 +334,8 @@ class Pressed(Loads):
     def test_a_ring_grows_as_lame_says(self):
         errors = []
         for spacing in (0.1, 0.05, 0.025):
-            results = self.run_case(RING.format(spacing=spacing, pressure=1e4), judged=spacing > 0.04)
+            run = self.judged if spacing > 0.04 else self.results
+            results = run(RING.format(spacing=spacing, pressure=1e4))
             found, radius = self.growth(results)
             errors.append(found / ring.lame(radius, 0.5, 1, 1e4, 1e9).mean() - 1)
         self.assertLess(abs(errors[-1]), 0.05)
@@ -378,12 +352,12 @@ class Pressed(Loads):
             self.assertAlmostEqual(numpy.log2(coarse / fine), 2, delta=0.1)
 
     def test_a_ring_at_large_strain(self):
-        results = self.run_case(RING.format(spacing=0.05, pressure=0.1e9), "loading.steps=4")
+        results = self.judged(RING.format(spacing=0.05, pressure=0.1e9), "loading.steps=4")
         found, radius = self.growth(results)
         radii, displacement = ring.solve(0.5, 1.0, 0.1e9, 1e9)
         expected = numpy.interp(radius, radii, displacement).mean()
         linear = ring.lame(radius, 0.5, 1, 0.1e9, 1e9).mean()
-        small, radius = self.growth(self.run_case(RING.format(spacing=0.05, pressure=1e4)))
+        small, radius = self.growth(self.judged(RING.format(spacing=0.05, pressure=1e4)))
         of_lattice = small / ring.lame(radius, 0.5, 1, 1e4, 1e9).mean()
         # What the lattice errs by at small strain it also does at large ones, to a tenth of the difference that the
         # strain makes.
@@ -393,11 +367,11 @@ class Pressed(Loads):
         self.assertLess(max(row["newton_iterations"] for row in iterations), 7)
 
     def test_pressure_on_a_closed_boundary_has_no_resultant(self):
-        told = peristat("check-tangent", self.write(RING.format(spacing=0.1, pressure=5e8))).json()
+        text = RING.format(spacing=0.1, pressure=5e8)
+        told = self.command("check-tangent", text).json()
         self.assertLess(max(told["force_sum"], told["moment_sum"]), 1e-12)
         self.assertLess(max(told["residual_error"], told["tangent_error"]), 1e-6)
-        run = peristat("check", self.folder / "case.toml")
-        self.assertIn("closed or held", run.said)
+        self.assertIn("closed or held", self.command("check", text).said)
 
     def test_in_space_too(self):
         text = """
@@ -421,34 +395,29 @@ displacement = [0, 0, 0]
 set = "all"
 pressure = "5e4*load"
 """
-        told = peristat("check-tangent", self.write(text)).json()
+        told = self.command("check-tangent", text).json()
         self.assertLess(max(told["force_sum"], told["moment_sum"]), 1e-12)
         self.assertLess(max(told["residual_error"], told["tangent_error"]), 1e-6)
-        results = self.run_case(text)
+        results = self.judged(text)
         self.assertLess(results.steps[-1].stretch.min(), -0.01)
 
     def test_an_open_boundary_is_told_and_forces_are_exact(self):
         load = '[[load]]\nside = "y+"\npressure = "2e7*load"\n'
-        run = peristat("check", self.write(PLATE + load))
-        self.assertEqual(run.code, 0, run.said)
-        self.assertIn("open or uneven", run.said)
+        ended = self.assert_completed(self.command("check", PLATE + load))
+        self.assertIn("open or uneven", ended.said)
         for settings in ((), ("loading.steps=3",), ("solver.mode=relaxation",)):
             with self.subTest(settings=settings):
-                results = self.run_case(PLATE + load, *settings)
+                results = self.judged(PLATE + load, *settings)
                 self.assertGreater(numpy.abs(results.steps[-1].displacement).max(), 1e-3)  # it has turned
         row = results.table("history")[-1]
         self.assertLess(abs(row["balance_error"]), 1e-6 * row["external_work"])
 
     def test_what_cannot_be_is_refused(self):
-        path = self.write(PLATE + '[[load]]\nside = "y+"\npressure = 1\n')
-        run = peristat("check", path, "--set", "solver.tangent=matrix_free")
-        self.assertEqual(run.code, 2, run.said)
-        self.assertIn("pressure", run.said)
-        path = self.write(PLATE.replace("[material]", '[[set]]\nname = "inside"\nwhere = "abs(x-0.01) < 2e-3 && '
-                                        'abs(y-0.005) < 2e-3"\n[material]') + '[[load]]\nset = "inside"\npressure = 1\n')  # fmt: skip
-        run = peristat("check", path)
-        self.assertEqual(run.code, 2, run.said)
-        self.assertIn("no boundary", run.said)
+        text = PLATE + '[[load]]\nside = "y+"\npressure = 1\n'
+        self.assert_refused(self.command("check", text, "solver.tangent=matrix_free"), "pressure")
+        inside = '[[set]]\nname = "inside"\nwhere = "abs(x-0.01) < 2e-3 && abs(y-0.005) < 2e-3"\n'
+        load = '[[load]]\nset = "inside"\npressure = 1\n'
+        self.assert_refused(self.command("check", PLATE + inside + load), "no boundary")
 
 
 if __name__ == "__main__":

@@ -1,13 +1,12 @@
 """Commands that README, pages and headers of cases print are accepted, and do what stands beside them."""
 
-import pathlib
 import re
 import shlex
-import tempfile
 import unittest
 
-from tests.printed.runs import rows
-from tests.reference.program import ROOT, peristat
+from tests.acceptance.folder import Folder
+from tests.reference.program import ROOT, settings
+from tests.reference.results import table
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
@@ -24,11 +23,9 @@ def commands(path):
     return [shlex.split(line, comments=True)[1:] for line in lines if line.startswith("./peristat ")]
 
 
-class Commands(unittest.TestCase):
+class Commands(Folder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_commands_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         (self.folder / "cases").symlink_to(ROOT / "cases")
         (strip,) = (text for text in blocks(ROOT / "README.md", "toml") if 'title = "Pulled strip"' in text)
         (self.folder / "strip.toml").write_text(strip)
@@ -38,11 +35,7 @@ class Commands(unittest.TestCase):
         command, *rest = words
         sets = [rest[k + 1] for k, word in enumerate(rest) if word == "--set"]
         sets += [re.split(r",(?![^\[]*\])", rest[k + 1])[0] for k, word in enumerate(rest) if word == "--vary"]
-        settings = [word for key in sets for word in ("--set", key)]
-        if command == "calibrate":
-            ended = peristat(command, *rest, folder=self.folder)
-        else:
-            ended = peristat("check", rest[0], *settings, folder=self.folder)
+        ended = self.peristat(*words) if command == "calibrate" else self.peristat("check", rest[0], *settings(*sets))
         self.assertEqual(ended.code, 0, f"{' '.join(words)}\n{ended.said}")
 
     def test_are_accepted(self):
@@ -67,17 +60,15 @@ class Commands(unittest.TestCase):
 
     def test_strip_of_readme(self):
         elastic, torn, cycle = (words for words in commands(ROOT / "README.md") if words[:2] == ["run", "strip.toml"])
-        self.assertEqual(peristat(*elastic, "--quiet", folder=self.folder).code, 0)
-        self.assertEqual(len(rows(self.folder / "results/strip/history.csv")), 11)  # step 0 is one
-        ended = peristat(*torn, "--quiet", "--output", "torn", folder=self.folder, limited=False)
-        self.assertEqual(ended.code, 0, ended.said)
-        last = rows(self.folder / "torn/history.csv")[-1]
+        self.assert_completed(self.peristat(*elastic, "--quiet"))
+        self.assertEqual(len(table(self.folder / "results/strip/history.csv")), 11)  # step 0 is one
+        self.assert_completed(self.peristat(*torn, "--quiet", "--output", "torn", limited=False))
+        last = table(self.folder / "torn/history.csv")[-1]
         self.assertGreater(last["broken_bonds"], 0)  # "until it breaks"
-        peak = max(abs(row["reaction_x:left"]) for row in rows(self.folder / "torn/history.csv"))
+        peak = max(abs(row["reaction_x:left"]) for row in table(self.folder / "torn/history.csv"))
         self.assertLess(abs(last["reaction_x:left"]), 1e-2 * peak)  # what loose points between the pieces carry
-        ended = peristat(*cycle, "--quiet", "--output", "cycle", folder=self.folder)
-        self.assertEqual(ended.code, 0, ended.said)
-        self.assertEqual([row["load_factor"] for row in rows(self.folder / "cycle/history.csv")], [0, 1, 0, 1.2])
+        self.assert_completed(self.peristat(*cycle, "--quiet", "--output", "cycle"))
+        self.assertEqual([row["load_factor"] for row in table(self.folder / "cycle/history.csv")], [0, 1, 0, 1.2])
 
 
 if __name__ == "__main__":

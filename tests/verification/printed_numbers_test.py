@@ -5,18 +5,18 @@ tolerance where it isn't the rounding of the printed digits. Runs of fracture ar
 """
 
 import math
-import pathlib
 import re
-import tempfile
 import unittest
 
 import numpy
 
+from tests.acceptance.folder import Folder
 from tests.printed.comparison import PrintedTest
 from tests.printed.page import numbers
-from tests.printed.runs import calibrate, check, rows, run
+from tests.printed.runs import calibrate, check, run
 from tests.reference import ring
-from tests.reference.program import ROOT, peristat
+from tests.reference.program import ROOT
+from tests.reference.results import table
 
 ENERGY = "quadrature.surface_correction=energy"
 
@@ -270,7 +270,7 @@ class Calibrated(PrintedTest):
                     flat["lattice"]["anisotropy"], solid["lattice"]["anisotropy"])  # fmt: skip
 
 
-class Theory(PrintedTest):
+class Theory(PrintedTest, Folder):
     page = "docs/theory.md"
 
     def test_continuum_constants_of_cpd(self):
@@ -300,15 +300,11 @@ class Theory(PrintedTest):
             [[support]]
             set = "left"
             displacement = [0, 0]"""
-        with tempfile.TemporaryDirectory(prefix="peristat_printed_") as folder:
-            case = pathlib.Path(folder, "square.toml")
-            case.write_text(square)
-            for place, perturbation in ((r"is stable at $\nu = {}$ and unstable at ${}$;", 0),
-                                        (r"it is stable at ${}$ and unstable at ${}$.", 0.2)):  # fmt: skip
-                for ratio, code in zip(numbers(self.page, place), (0, 2)):
-                    ended = peristat("check", case, "--set", f"lattice.perturbation={perturbation}",
-                                     "--set", f"material.poisson_ratio={ratio.value}")  # fmt: skip
-                    self.assertEqual(ended.code, code, ended.said)
+        for place, perturbation in ((r"is stable at $\nu = {}$ and unstable at ${}$;", 0),
+                                    (r"it is stable at ${}$ and unstable at ${}$.", 0.2)):  # fmt: skip
+            for ratio, code in zip(numbers(self.page, place), (0, 2)):
+                changes = f"lattice.perturbation={perturbation}", f"material.poisson_ratio={ratio.value}"
+                self.assert_code(self.command("check", square, *changes), code)
 
     def test_softening(self):
         """The table of the force's peak and the lowest stiffness, from the formulas above it."""
@@ -332,7 +328,7 @@ class Theory(PrintedTest):
                                                                       for words in (square, notched)))  # fmt: skip
 
 
-class LinearSolvers(PrintedTest):
+class LinearSolvers(PrintedTest, Folder):
     """The table's bodies with loads that look random, and the first system of a step. Another
     right-hand side than the benchmark's: a fifth, and one iteration."""
 
@@ -367,13 +363,9 @@ class LinearSolvers(PrintedTest):
 
     def iterations(self, body, preconditioner):
         extent, more = self.BODIES[body]
-        with tempfile.TemporaryDirectory(prefix="peristat_printed_") as folder:
-            case = pathlib.Path(folder, "case.toml")
-            case.write_text(self.CASE.format(extent=extent, more=more))
-            ended = peristat("run", case, "--quiet", "--threads", 1, "--output", pathlib.Path(folder, "out"),
-                             "--set", f"solver.preconditioner={preconditioner}", limited=False)  # fmt: skip
-            self.assertEqual(ended.code, 0, ended.said)
-            return rows(pathlib.Path(folder, "out", "iterations.csv"))[1]["linear_iterations"]
+        case = self.CASE.format(extent=extent, more=more)
+        results = self.results(case, f"solver.preconditioner={preconditioner}", limited=False)
+        return results.table("iterations")[1]["linear_iterations"]
 
     def assert_row(self, body):
         text = (ROOT / "docs/linear-solvers.md").read_text()
@@ -441,7 +433,7 @@ class Motions(PrintedTest):
         self.prints("of {} J of work {} J are kinetic energy", last["external_work"], last["kinetic_energy"], within=0.01)
         self.assertLess(abs(last["balance_error"]), 1e-3 * last["external_work"])
         height = plate.points("reference")[:, 1]
-        of = rows(plate.folder / "broken_bonds.csv")
+        of = table(plate.folder / "broken_bonds.csv")
         middles = numpy.array([height[[int(row["first_point"]), int(row["second_point"])]].mean() for row in of])
         above, below = (middles > 1e-9).sum(), (middles < -1e-9).sum()
         self.assertGreater(above, 2000)
@@ -474,7 +466,7 @@ class Motions(PrintedTest):
     def test_kalthoff_winkler(self):
         self.page = "cases/bond_models/kalthoff_winkler.toml"
         plate = run("bond_models/kalthoff_winkler")
-        broken = rows(plate.folder / "broken_bonds.csv")
+        broken = table(plate.folder / "broken_bonds.csv")
         self.prints("from {} us on", 1e6 * broken[0]["load_factor"], within=0.1)  # a row
         self.assertGreater(plate.history[-1]["tip"], 0.099)
         self.prints("{} bonds are broken", plate.history[-1]["broken_bonds"], within=0.05)

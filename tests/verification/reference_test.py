@@ -3,20 +3,18 @@
 import collections
 import csv
 import itertools
-import pathlib
 import shutil
-import tempfile
 import unittest
 
 import h5py
 import numpy
 
+from tests.acceptance.folder import Folder
 from tests.reference.body import Body
 from tests.reference.case import Case, evaluate, read_points
 from tests.reference.clouds import LAWS, random_cloud, random_deformation, random_places, toml, write_points
 from tests.reference.influence import POWERS
 from tests.reference.mechanics import STEP, Mechanics
-from tests.reference.program import peristat
 from tests.reference.verify import Verification
 
 # Both sides sum some 10^2 to 10^4 terms of stretches near 1e-2 in double precision: a term has lost
@@ -32,11 +30,11 @@ def mechanics_of(path):
     return mechanics, sets
 
 
-class Clouds(unittest.TestCase):
+class Clouds(Folder):
+    threads = 2
+
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_reference_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.random = numpy.random.default_rng(20)
 
     def compare(self, path, amount, size):
@@ -45,9 +43,8 @@ class Clouds(unittest.TestCase):
         reference = mechanics.body.reference
         expressions = random_deformation(self.random, reference.shape[1], size, amount)
         displacement = numpy.stack([evaluate(e, reference) for e in expressions], 1) - reference
-        run = peristat("check-tangent", path, "--deformation", "; ".join(expressions))
-        self.assertEqual(run.code, 0, run.said)
-        told, tangent = run.json(), mechanics.tangent(displacement)
+        ended = self.command("check-tangent", path, words=("--deformation", "; ".join(expressions)))
+        told, tangent = self.assert_completed(ended).json(), mechanics.tangent(displacement)
         forces = mechanics.gradient(displacement)
         for key, value in (("energy", mechanics.energy(displacement)),
                            ("residual_norm", numpy.linalg.norm(forces)),
@@ -146,9 +143,7 @@ class Clouds(unittest.TestCase):
                 path = random_cloud(self.random, self.folder, dimension, count=count, horizon=1.5,
                                     material=material)  # fmt: skip
                 if dimension == 3 and not len(mechanics_of(path)[0].body.tuples[3]):
-                    run = peristat("check", path)
-                    self.assertEqual(run.code, 2, run.said)
-                    self.assertIn("material.c3", run.said)
+                    self.assert_refused(self.command("check", path), "material.c3")
                     continue
                 mechanics, _ = self.compare(path, 0.05, 3.0)
                 for factor in mechanics.body.flatness.values():
@@ -174,9 +169,7 @@ class Clouds(unittest.TestCase):
                                     load=[{"set": "middle", "total_force": ["0.3*load", *still[1:]]}],
                                     loading={"steps": 4}, relaxation={"steps": 8},
                                     solver={"mode": "adaptive" if LAWS[law] else "newton"})  # fmt: skip
-                output = self.folder / f"{model}_{dimension}_{law}"
-                run = peristat("run", path, "--quiet", "--output", output)
-                self.assertIn(run.code, (0, 3), run.said)
+                output = self.run_case(path, name=f"{model}_{dimension}_{law}", code=(0, 3))
                 verification = Verification(output, path.read_text(), self.folder)
                 if verification.histories_are_known:
                     self.assertEqual(verification.run(), [])
@@ -192,16 +185,14 @@ def period(axis, length, gradient):
     return {"axis": axis, "from": 0.0, "to": float(length), "gradient": gradient}
 
 
-class Beyond(unittest.TestCase):
+class Beyond(Folder):
     """Planes of symmetry and periods: the reference continues the body, the program has images and folds forces."""
 
     SIDE = {1: 12, 2: 6, 3: 4}  # points
     PULL = {"bond": 0.12, "cpd": 0.1}  # strain
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory(prefix="peristat_beyond_")
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        super().setUp()
         self.random = numpy.random.default_rng(21)
 
     def arrangements(self, dimension):
@@ -258,11 +249,7 @@ class Beyond(unittest.TestCase):
         return case | beyond
 
     def judged(self, case, name):
-        path = self.folder / "case.toml"
-        path.write_text(toml(case))
-        run = peristat("run", path, "--quiet", "--no-plots", "--threads", 1, "--output", self.folder / name)
-        self.assertIn(run.code, (0, 3), run.said)
-        return Verification(self.folder / name, path.read_text(), self.folder)
+        return Verification(self.run_case(case, name=name, code=(0, 3)), toml(case), self.folder)
 
     def test_runs_are_what_the_continued_body_says(self):
         seen = collections.Counter()

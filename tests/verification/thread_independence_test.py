@@ -1,22 +1,17 @@
 """Cracks take the same path, bond by bond, on any number of threads."""
 
-import os
-import pathlib
-import subprocess
 import sys
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from tests.reference.program import ROOT, execute
 
 
 class ThreadIndependence(unittest.TestCase):
     def told(self, *cases):
-        process = subprocess.run(
-            [sys.executable, "-BEs", str(ROOT / "benchmarks/thread_independence.py"), *cases],
-            capture_output=True, text=True, env=dict(os.environ))  # fmt: skip
-        self.assertEqual(process.returncode, 0, process.stdout + process.stderr)
-        return [[cell.strip() for cell in line.strip("|").split("|")]
-                for line in process.stdout.splitlines()[2:]]  # fmt: skip
+        command = [sys.executable, "-BEs", ROOT / "benchmarks/thread_independence.py", *cases]
+        ended = execute(command, seconds=1500, limited=False)
+        self.assertEqual(ended.code, 0, ended.said)
+        return [[cell.strip() for cell in line.strip("|").split("|")] for line in ended.output.splitlines()[2:]]
 
     def test_square_breaks_sixteen_bonds_first(self):
         # What a relaxation without inertia does, which cannot jump a barrier.
