@@ -172,17 +172,18 @@ double chance(const Ends& ends, std::uint64_t seed) {
   return double((bits ^ (bits >> 31)) >> 11) * 0x1p-53;
 }
 
-/// Each of these points slides along a direction of its own. Its degree of freedom stands behind
-/// those of the points, in the order given.
+/// Each of these points slides along a direction of its own. Its degree of freedom comes after
+/// those of the points, in the order of `among`: the same on all ranks.
 std::vector<FreeHandle> slides_of(const std::vector<GlobalIndex>& numbers, std::size_t dofs,
                                   const std::vector<GlobalIndex>& among) {
   std::vector<FreeHandle> slides;
-  for (const GlobalIndex number : among) {
+  for (std::size_t k = 0; k < among.size(); ++k) {
+    const GlobalIndex number = among[k];
     const auto place = std::find(numbers.begin(), numbers.end(), number);
     if (place == numbers.end()) continue;
     const double angle = 0.3 + 0.1 * double(number);
     const HeldMotion motion{Index(place - numbers.begin()), {std::cos(angle), std::sin(angle), 0}};
-    slides.push_back({dofs + slides.size(), motion, true});
+    slides.push_back({dofs + k, motion, true});
   }
   return slides;
 }
@@ -203,8 +204,8 @@ void expect_same_fragments(const Both& both, const Broken& broken, std::vector<c
   std::iota(all.begin(), all.end(), GlobalIndex(0));
   holding.handles = slides_of(all, prescribed.size(), sliding);
   holding_here.handles = slides_of(both.part.number, prescribed_here.size(), sliding);
-  prescribed.resize(prescribed.size() + holding.handles.size());
-  prescribed_here.resize(prescribed_here.size() + holding_here.handles.size());
+  prescribed.resize(prescribed.size() + sliding.size());
+  prescribed_here.resize(prescribed_here.size() + sliding.size());
   const Fragments expected =
       find_fragments(both.whole, both.of_whole.bonds(), broken.of_whole, prescribed, u, holding);
   const Fragments found =
