@@ -120,7 +120,7 @@ TEST(Cholesky, TakesABodyWithoutFreeDegreesOfFreedom) {
 /// Large enough that some iterations cost less than a factorisation: affordable_iterations.
 System large_system() {
   tests::BoxSetting box = tests::small_box(3);
-  box.extent = {13, 12, 11};
+  box.extent = {14, 13, 12};
   const BoxBody body(box);
   return System(box, some_prescribed(body), std::vector<double>(body.dofs(), 0.0));
 }
