@@ -4,7 +4,7 @@
 
 namespace peristat {
 
-/// Placeholder for a solver where no equations are solved.
+/// Takes the place of a solver in runs that solve no equations.
 class NoSolver : public LinearSolver {
  public:
   [[nodiscard]] LinearOutcome analyze(const BlockPattern&, const FreeDofs&) override {

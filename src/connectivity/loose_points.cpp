@@ -133,8 +133,7 @@ struct LooseWeb {
   std::vector<double> number;  // in the whole body
   std::vector<double> positions;
   std::vector<Support> support;
-  std::vector<FreeHandle>
-      slides;  // their degrees of freedom are numbered after those of the points
+  std::vector<FreeHandle> slides;  // numbered after the components of the points
   Bonds bonds;
 
   [[nodiscard]] Index row_of(double of_body) const {
@@ -154,7 +153,7 @@ std::vector<FreeHandle> own_slides(const std::vector<Index>& loose,
 }
 
 LooseWeb gather_loose_points(const Web& web, const std::vector<Index>& loose,
-                             const std::vector<FreeHandle>& own_slides,
+                             const std::vector<FreeHandle>& slides_of_rank,
                              const std::vector<Support>& support, const Sharing& sharing) {
   constexpr std::size_t width = 13;  // number, place, support
   const std::vector<double> number = whole_numbers(sharing, support.size(), web.dimension());
@@ -172,7 +171,7 @@ LooseWeb gather_loose_points(const Web& web, const std::vector<Index>& loose,
     });
   }
   std::vector<double> slides;  // number of the point, direction
-  for (const FreeHandle& slide : own_slides) {
+  for (const FreeHandle& slide : slides_of_rank) {
     slides.push_back(number[std::size_t(slide.moved_by.member)]);
     slides.insert(slides.end(), slide.moved_by.along.begin(), slide.moved_by.along.end());
   }
