@@ -6,18 +6,19 @@
 #include <string>
 
 #include "src/core/stopwatch.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
 
 /// Clears the entries of ghosts and of their images, which belong to other ranks.
-void clear_ghosts(const Sharing& sharing, int dimension, std::span<double> gradient) {
-  if (gradient.empty()) return;
+void clear_ghosts(const IndexMap& index_map, int dimension, std::span<double> gradient) {
+  if (gradient.empty() || index_map.is_whole()) return;
   const auto fill = [&](Index first, std::ptrdiff_t last) {
     std::fill(gradient.begin() + std::ptrdiff_t(first) * dimension, gradient.begin() + last, 0.0);
   };
-  fill(sharing.owned(), std::ptrdiff_t(sharing.first_image()) * dimension);
-  fill(sharing.first_image() + sharing.owned_images(), std::ptrdiff_t(gradient.size()));
+  fill(index_map.owned(), std::ptrdiff_t(index_map.first_image()) * dimension);
+  fill(index_map.first_image() + index_map.owned_images(), std::ptrdiff_t(gradient.size()));
 }
 
 /// Sums the ranks' evaluations, except for the utilisation, see Evaluation. Collective.
@@ -38,17 +39,18 @@ Evaluation sum_of(const Communicator& ranks, const Evaluation& mine) {
 
 }  // namespace
 
-Assembler::Assembler(const Points& points, const Model& model, int threads, const Sharing* sharing)
+Assembler::Assembler(const Points& points, const Model& model, int threads,
+                     const IndexMap& index_map)
     : points_(points),
       model_(model),
       pattern_(model.pattern()),
       workspace_(pattern_, points.dimension, threads),
-      sharing_(sharing) {
+      index_map_(index_map) {
   if (model.terms().empty()) throw std::logic_error("a model without terms has no energy");
   for (const auto& term : model.terms()) {
-    terms_.push_back(term->passes({points_, model_, pattern_, workspace_, sharing_}));
+    terms_.push_back(term->passes({points_, model_, pattern_, workspace_, index_map_}));
   }
-  if (!sharing_) return;
+  if (index_map.is_whole()) return;
   if (!model.has_rows()) throw std::logic_error("Assembler: convolutions have no ranks");
   of_points_.resize(points.volume.size());
 }
@@ -94,7 +96,7 @@ Evaluation Assembler::gradient(const StateView& at, std::span<double> gradient) 
 }
 
 Evaluation Assembler::of_part(TermPasses& term, const StateView& at, Evaluation found) {
-  if (!sharing_ || term.shares_energy()) return found;
+  if (index_map_.is_whole() || term.shares_energy()) return found;
   term.point_energies(at, of_points_, Write::over);
   found.energy = 0.0;
   for (Index i = 0; i < points_.count(); ++i) {
@@ -104,9 +106,8 @@ Evaluation Assembler::of_part(TermPasses& term, const StateView& at, Evaluation 
 }
 
 Evaluation Assembler::of_all(const Evaluation& mine, std::span<double> gradient) const {
-  if (!sharing_) return mine;
-  clear_ghosts(*sharing_, points_.dimension, gradient);
-  return sum_of(sharing_->ranks(), mine);
+  clear_ghosts(index_map_, points_.dimension, gradient);
+  return sum_of(index_map_.ranks(), mine);
 }
 
 Evaluation Assembler::commit(std::span<const double> displacement, History& history,
@@ -132,7 +133,7 @@ Evaluation Assembler::commit_forces(std::span<const double> displacement, Histor
 void Assembler::follower_force(const StateView& at, std::span<double> force) {
   std::fill(force.begin(), force.end(), 0.0);
   for_each_term([&](TermPasses& term, Write) { term.follower_force(at, force); });
-  if (sharing_) clear_ghosts(*sharing_, points_.dimension, force);
+  clear_ghosts(index_map_, points_.dimension, force);
 }
 
 DamageGrowth Assembler::growth(const StateView& at) {
@@ -142,11 +143,11 @@ DamageGrowth Assembler::growth(const StateView& at) {
     of_term.growth = term.growth(at);
     found += of_term;
   });
-  return sharing_ ? of_all(found.growth) : found.growth;
+  return of_all(found.growth);
 }
 
 DamageGrowth Assembler::of_all(const DamageGrowth& mine) const {
-  const Communicator& ranks = sharing_->ranks();
+  const Communicator& ranks = index_map_.ranks();
   const std::vector<double> counts = ranks.sum({double(mine.degrading), double(mine.breaking)});
   return {Index(counts[0]), Index(counts[1]), ranks.max(mine.utilisation)};
 }
@@ -154,8 +155,7 @@ DamageGrowth Assembler::of_all(const DamageGrowth& mine) const {
 DamageState Assembler::assess(const History& history, std::span<const double> cut_weight,
                               std::span<double> damage) const {
   DamageState state = assess_damage(model_, history, cut_weight, damage, &points_);
-  if (!sharing_) return state;
-  const Communicator& ranks = sharing_->ranks();
+  const Communicator& ranks = index_map_.ranks();
   // All ranks know what failing points have dissipated in total: it is counted once.
   if (model_.fails_in_avalanches() && ranks.rank() > 0) state.dissipated_energy = 0.0;
   const std::vector<double> sums = ranks.sum({state.dissipated_energy, double(state.broken_bonds)});

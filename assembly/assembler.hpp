@@ -10,8 +10,8 @@
 #include "assembly/terms/damage.hpp"
 #include "assembly/terms/model.hpp"
 #include "assembly/terms/workspace.hpp"
-#include "src/core/sharing.hpp"
 #include "src/geometry/points.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -24,13 +24,14 @@ namespace peristat {
 class Assembler : public Energy {
  public:
   /// Points and model must outlive the assembler.
-  /// @param sharing null: the body is whole. Otherwise points and model are one rank's part of it:
+  /// @param index_map null: the body is whole. Otherwise points and model are one rank's part of
+  /// it:
   ///        energies are those of the whole body, and dE/dx and products are right in the rows of
   ///        owned points, once ghosts hold their owners' values. dE/dx of ghosts is zero. All calls
   ///        are collective.
   /// @throws std::logic_error for a model without terms, and for convolutions on a part of a body
   Assembler(const Points& points, const Model& model, int threads,
-            const Sharing* sharing = nullptr);
+            const IndexMap& index_map = whole_body());
   ~Assembler() override;
 
   /// Initial history, before any load.
@@ -92,7 +93,7 @@ class Assembler : public Energy {
   void virials(const StateView& at, std::span<double> virials);
 
   [[nodiscard]] const Model& model() const { return model_; }
-  [[nodiscard]] const Sharing* sharing() const { return sharing_; }
+  [[nodiscard]] const IndexMap& index_map() const { return index_map_; }
   [[nodiscard]] const Points& points() const override { return points_; }
   [[nodiscard]] const BlockPattern& pattern() const override { return pattern_; }
   [[nodiscard]] int threads() const override { return workspace_.threads(); }
@@ -124,7 +125,7 @@ class Assembler : public Energy {
   BlockPattern pattern_;
   Workspace workspace_;
   std::vector<std::unique_ptr<TermPasses>> terms_;
-  const Sharing* sharing_;
+  const IndexMap& index_map_;
   std::vector<double> of_points_;  // energies of points, on a part of a body
   double seconds_ = 0.0;
 };

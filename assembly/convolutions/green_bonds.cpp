@@ -6,6 +6,7 @@
 #include "assembly/convolutions/linear_bonds.hpp"
 #include "src/core/dual.hpp"
 #include "src/measures/small_algebra.hpp"
+#include "src/parallel/collectives.hpp"
 
 namespace peristat {
 namespace {

@@ -8,6 +8,7 @@
 #include "assembly/convolutions/lattice_forces.hpp"
 #include "assembly/convolutions/lattice_springs.hpp"
 #include "assembly/convolutions/lattice_turn.hpp"
+#include "src/parallel/collectives.hpp"
 
 namespace peristat {
 

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "src/parallel/collectives.hpp"
+
 namespace peristat {
 namespace {
 

@@ -9,6 +9,7 @@
 #include "assembly/convolutions/lattice_forces.hpp"
 #include "assembly/convolutions/lattice_springs.hpp"
 #include "src/materials/lame_constants.hpp"
+#include "src/parallel/collectives.hpp"
 
 namespace peristat {
 

@@ -9,6 +9,8 @@
 #include "assembly/operators/constrained_row_sums.hpp"
 #include "assembly/operators/convolved_tangent.hpp"
 #include "src/measures/small_algebra.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -28,14 +30,14 @@ Tensor transposed(const Tensor& block) {
 }  // namespace
 
 ConstrainedProduct::ConstrainedProduct(std::unique_ptr<TangentOperator> whole, const Points& points,
-                                       const Constraints& constraints, const Sharing* sharing)
+                                       const Constraints& constraints, const IndexMap& index_map)
     : TangentOperator(
           BlockPattern::of_rows(std::vector<Offset>(std::size_t(constraints.rows()) + 1, 0), {}),
           points.dimension, whole->threads()),
       whole_(std::move(whole)),
       points_(points),
       constraints_(constraints),
-      sharing_(sharing),
+      index_map_(index_map),
       reference_(points.reference),
       no_force_(constraints.dofs(), 0.0) {
   for (const Coordinates& handle : constraints.handles()) {
@@ -51,7 +53,7 @@ std::vector<double> ConstrainedProduct::positions() const {
 }
 
 void ConstrainedProduct::sum_handles(std::span<double> of_dofs) const {
-  if (sharing_) add_up(sharing_->ranks(), of_dofs.subspan(points_.reference.size()));
+  add_up(index_map_.ranks(), of_dofs.subspan(points_.reference.size()));
 }
 
 void ConstrainedProduct::add_to_diagonal(const std::vector<Dependence>& of_i, const Tensor& block,
@@ -100,7 +102,7 @@ void ConstrainedProduct::add_shared_blocks(const std::vector<SharedBlock>& mine)
     flat.insert(flat.end(), {double(i), double(j)});
     for (const auto& row : block) flat.insert(flat.end(), row.begin(), row.end());
   }
-  flat = all_together(sharing_->ranks(), flat);
+  flat = concatenated(index_map_.ranks(), flat);
   for (std::size_t k = 0; k < flat.size(); k += 11) {
     const auto masters_of = [&](double follower) -> const std::vector<Dependence>& {
       return constraints_.shared_followers()[std::size_t(follower)].masters;
@@ -150,7 +152,7 @@ void ConstrainedProduct::linearise(Energy& energy, const StateView& at, double p
   if (whole_->has_rows()) add_blocks_between_followers(shared);
   add_shared_blocks(shared);
   const std::size_t of_points = std::size_t(points_.count()) * d * d;
-  if (sharing_) add_up(sharing_->ranks(), std::span(diagonal).subspan(of_points));
+  add_up(index_map_.ranks(), std::span(diagonal).subspan(of_points));
   const auto& sets = constraints_.rigid_sets();
   for (std::size_t k = 0; k < curvature_.size(); ++k) {
     double* const to = &diagonal[std::size_t(sets[k].rotation) * d * d];
@@ -160,12 +162,12 @@ void ConstrainedProduct::linearise(Energy& energy, const StateView& at, double p
 
 void ConstrainedProduct::multiply(std::span<const double> v, std::span<double> result) const {
   moved_.assign(v.begin(), v.end());
-  if (sharing_) sharing_->update_ghosts(moved_);
+  index_map_.update_ghosts(moved_);
   constraints_.extend(displacement_, moved_);
   const std::size_t of_points = points_.reference.size();
   whole_->multiply(std::span<const double>(moved_).first(of_points), result.first(of_points));
   const auto d = std::size_t(dimension);
-  for (Index i = 0; sharing_ && i < points_.count(); ++i) {
+  for (Index i = 0; i < points_.count(); ++i) {
     if (!points_.owns(i)) std::fill_n(result.begin() + std::ptrdiff_t(i) * dimension, d, 0.0);
   }
   constraints_.fold(displacement_, no_force_, result);
@@ -188,7 +190,7 @@ void ConstrainedProduct::for_each_row(const RowVisitor&) const {
 }
 
 void ConstrainedProduct::absolute_row_sums(std::span<double> sums) const {
-  bound_constrained_row_sums(*whole_, points_, constraints_, displacement_, sharing_, sums);
+  bound_constrained_row_sums(*whole_, points_, constraints_, displacement_, index_map_, sums);
 }
 
 std::unique_ptr<TangentOperator> make_convolved_tangent(Energy& energy,

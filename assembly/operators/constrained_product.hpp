@@ -5,7 +5,7 @@
 
 #include "assembly/operators/tangent_operator.hpp"
 #include "src/constraints/constraints.hpp"
-#include "src/core/sharing.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -20,10 +20,11 @@ namespace peristat {
 struct ConstrainedProduct final : TangentOperator {
   /// All references must outlive it.
   /// @param whole K, of the body's points
-  /// @param sharing partition of a distributed body: ghosts and their images have no rows of K, and
+  /// @param index_map partition of a distributed body: ghosts and their images have no rows of K,
+  /// and
   ///        all calls are collective. Null: the body is whole
   ConstrainedProduct(std::unique_ptr<TangentOperator> whole, const Points& points,
-                     const Constraints& constraints, const Sharing* sharing = nullptr);
+                     const Constraints& constraints, const IndexMap& index_map = whole_body());
 
   [[nodiscard]] std::vector<double> positions() const override;
   void linearise(Energy& energy, const StateView& at, double projection) override;
@@ -60,7 +61,7 @@ struct ConstrainedProduct final : TangentOperator {
   std::unique_ptr<TangentOperator> whole_;
   const Points& points_;
   const Constraints& constraints_;
-  const Sharing* sharing_;
+  const IndexMap& index_map_;
   std::vector<double> reference_;     // of points and handles
   std::vector<double> displacement_;  // at which K is linearised
   std::vector<Tensor> curvature_;     // of rigid sets

@@ -6,6 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
+
 namespace peristat {
 namespace {
 
@@ -32,22 +35,22 @@ void add_row_sums(const std::vector<Dependence>& masters, std::span<const double
 /// Sums of |J| over the masters of all ranks, for each component of the shared followers.
 /// Collective.
 std::vector<double> row_sums_of_shared(const Constraints& constraints, std::size_t d,
-                                       const Sharing* sharing) {
+                                       const IndexMap& index_map) {
   std::vector<double> of_rows;
   for (const auto& follower : constraints.shared_followers()) {
     for (std::size_t c = 0; c < 3; ++c) of_rows.push_back(row_sum(follower.masters, c, d));
   }
-  if (sharing) add_up(sharing->ranks(), of_rows);
+  add_up(index_map.ranks(), of_rows);
   return of_rows;
 }
 
 /// |J| 1, per degree of freedom of the points.
 std::vector<double> absolute_followings(const Points& points, const Constraints& constraints,
                                         std::span<const double> displacement,
-                                        const Sharing* sharing) {
+                                        const IndexMap& index_map) {
   std::vector<double> result(points.reference.size(), 1.0);
   const auto d = std::size_t(points.dimension);
-  const std::vector<double> of_shared = row_sums_of_shared(constraints, d, sharing);
+  const std::vector<double> of_shared = row_sums_of_shared(constraints, d, index_map);
   for (Index i = 0; i < points.count(); ++i) {
     if (constraints.stands_alone(i)) continue;
     const std::vector<Dependence> masters = constraints.dependences(i, displacement);
@@ -77,11 +80,11 @@ void multiply_absolute(const TangentOperator& whole, std::span<const double> fol
 
 void bound_constrained_row_sums(const TangentOperator& whole, const Points& points,
                                 const Constraints& constraints,
-                                std::span<const double> displacement, const Sharing* sharing,
+                                std::span<const double> displacement, const IndexMap& index_map,
                                 std::span<double> sums) {
   std::ranges::fill(sums, 0.0);
   const std::size_t of_points = points.reference.size();
-  multiply_absolute(whole, absolute_followings(points, constraints, displacement, sharing),
+  multiply_absolute(whole, absolute_followings(points, constraints, displacement, index_map),
                     sums.first(of_points));
   const auto d = std::size_t(points.dimension);
   const auto& all_shared = constraints.shared_followers();
@@ -98,11 +101,11 @@ void bound_constrained_row_sums(const TangentOperator& whole, const Points& poin
     }
     add_row_sums(constraints.dependences(i, displacement), of_point, d, sums);
   }
-  if (sharing) add_up(sharing->ranks(), of_shared);
+  add_up(index_map.ranks(), of_shared);
   for (std::size_t k = 0; k < all_shared.size(); ++k) {
     add_row_sums(all_shared[k].masters, std::span(of_shared).subspan(3 * k, 3), d, sums);
   }
-  if (sharing) add_up(sharing->ranks(), sums.subspan(of_points));
+  add_up(index_map.ranks(), sums.subspan(of_points));
 }
 
 }  // namespace peristat

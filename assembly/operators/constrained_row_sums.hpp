@@ -4,7 +4,7 @@
 
 #include "assembly/operators/tangent_operator.hpp"
 #include "src/constraints/constraints.hpp"
-#include "src/core/sharing.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -17,11 +17,11 @@ namespace peristat {
 /// are 0.
 /// @param whole K, of the body's points
 /// @param displacement at which K is linearised, of points and handles
-/// @param sharing partition of a distributed body: collective; null: the body is whole
+/// @param index_map partition of a distributed body: collective; null: the body is whole
 /// @param sums of points and handles, per degree of freedom
 void bound_constrained_row_sums(const TangentOperator& whole, const Points& points,
                                 const Constraints& constraints,
-                                std::span<const double> displacement, const Sharing* sharing,
+                                std::span<const double> displacement, const IndexMap& index_map,
                                 std::span<double> sums);
 
 }  // namespace peristat

@@ -5,6 +5,8 @@
 
 #include "assembly/operators/constrained_row_sums.hpp"
 #include "src/core/threads.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -35,14 +37,15 @@ void make_unique(std::vector<Index>& numbers) {
 }
 
 /// True if a row is this rank's: that of an owned point, or its share of a handle's.
-bool has_row(const Sharing* sharing, Index row) {
-  return !sharing || row < sharing->owned() || row >= sharing->count();
+bool has_row(const IndexMap& index_map, Index row) {
+  return index_map.owns(row) || row >= index_map.count();
 }
 
 /// Couples the handles that points of any rank couple, so that their rows have one layout on all
 /// ranks. Collective.
-void agree_on_handles(const Sharing& sharing, std::vector<std::vector<Index>>& columns) {
-  const Index first = sharing.count();  // each rank has as many handles, after its points
+/// @param first row of a handle: each rank has as many, after its points
+void agree_on_handles(const Communicator& ranks, Index first,
+                      std::vector<std::vector<Index>>& columns) {
   std::vector<double> pairs;
   for (auto row = std::size_t(first); row < columns.size(); ++row) {
     for (const Index column : columns[row]) {
@@ -50,7 +53,7 @@ void agree_on_handles(const Sharing& sharing, std::vector<std::vector<Index>>& c
       pairs.push_back(double(column - first));
     }
   }
-  pairs = all_together(sharing.ranks(), pairs);
+  pairs = concatenated(ranks, pairs);
   for (std::size_t k = 0; k < pairs.size(); k += 2) {
     columns[std::size_t(first) + std::size_t(pairs[k])].push_back(first + Index(pairs[k + 1]));
   }
@@ -59,12 +62,12 @@ void agree_on_handles(const Sharing& sharing, std::vector<std::vector<Index>>& c
 }  // namespace
 
 BlockPattern constrained_pattern(const BlockPattern& whole, const Constraints& constraints,
-                                 const Sharing* sharing) {
+                                 const IndexMap& index_map) {
   std::vector<std::vector<Index>> more(std::size_t(constraints.rows()));
   const std::vector<double> at_rest(constraints.dofs(), 0.0);
   const auto couple = [&](Index a, Index b) {
     const Index row = std::min(a, b);
-    if (a != b && has_row(sharing, row)) more[std::size_t(row)].push_back(std::max(a, b));
+    if (a != b && has_row(index_map, row)) more[std::size_t(row)].push_back(std::max(a, b));
   };
   std::vector<std::vector<Index>> masters(std::size_t(whole.points()));
   for (Index i = 0; i < whole.points(); ++i) {
@@ -84,15 +87,13 @@ BlockPattern constrained_pattern(const BlockPattern& whole, const Constraints& c
       for (const Index b : masters[whole.partner[bond]]) couple(a, b);
     }
   });
-  if (sharing) {
-    for (auto row = std::size_t(sharing->count()); row < more.size(); ++row) make_unique(more[row]);
-    agree_on_handles(*sharing, more);
-  }
+  for (auto row = std::size_t(whole.points()); row < more.size(); ++row) make_unique(more[row]);
+  agree_on_handles(index_map.ranks(), whole.points(), more);
   std::vector<Offset> offset{0};
   std::vector<Index> partner;
   for (Index i = 0; i < constraints.rows(); ++i) {
     std::vector<Index>& row = more[std::size_t(i)];
-    if (i < whole.points() && constraints.stands_alone(i) && has_row(sharing, i)) {
+    if (i < whole.points() && constraints.stands_alone(i) && has_row(index_map, i)) {
       for (const Index j : whole.of(i)) {
         if (constraints.stands_alone(j)) row.push_back(j);
       }
@@ -106,12 +107,12 @@ BlockPattern constrained_pattern(const BlockPattern& whole, const Constraints& c
 }
 
 ConstrainedTangent::ConstrainedTangent(const Energy& energy, const Constraints& constraints,
-                                       const Sharing* sharing)
-    : Tangent(constrained_pattern(energy.pattern(), constraints, sharing),
+                                       const IndexMap& index_map)
+    : Tangent(constrained_pattern(energy.pattern(), constraints, index_map),
               energy.points().dimension, energy.threads(), Blocks::whole),
       points_(energy.points()),
       constraints_(constraints),
-      sharing_(sharing),
+      index_map_(index_map),
       whole_(energy),
       place_(std::size_t(whole_.pattern.blocks()), nowhere),
       reference_(energy.points().reference) {
@@ -120,7 +121,7 @@ ConstrainedTangent::ConstrainedTangent(const Energy& energy, const Constraints& 
   }
   reference = reference_;
   for (Index i = 0; i < whole_.pattern.points(); ++i) {
-    if (!constraints.stands_alone(i) || !has_row(sharing, i)) continue;
+    if (!constraints.stands_alone(i) || !has_row(index_map, i)) continue;
     for (Offset bond = whole_.pattern.offset[i]; bond < whole_.pattern.offset[i + 1]; ++bond) {
       const Index j = whole_.pattern.partner[bond];
       if (constraints.stands_alone(j)) place_[std::size_t(bond)] = place_of(pattern, i, j);
@@ -146,39 +147,33 @@ void ConstrainedTangent::linearise(Energy& energy, const StateView& at, double p
 }
 
 void ConstrainedTangent::gather_handles() {
-  if (!sharing_) return;
   const std::size_t entries = std::size_t(dimension) * std::size_t(dimension);
-  const auto first = std::size_t(sharing_->count());
-  const bool has_them = sharing_->ranks().rank() == 0;
+  const auto first = std::size_t(points_.count());
   for (const std::span<double> shares :
        {std::span(diagonal).subspan(first * entries),
         std::span(off_diagonal).subspan(std::size_t(pattern.offset[first]) * entries)}) {
-    add_up(sharing_->ranks(), shares);
-    if (!has_them) std::ranges::fill(shares, 0.0);
+    add_up(index_map_.ranks(), shares);
+    if (!index_map_.is_first_rank()) std::ranges::fill(shares, 0.0);
   }
 }
 
 /// Rows of handles are partial: each rank has the columns of its own points.
 void ConstrainedTangent::multiply(std::span<const double> v, std::span<double> result) const {
-  if (!sharing_) {
-    Tangent::multiply(v, result);
-    return;
-  }
   factor_.assign(v.begin(), v.end());
-  sharing_->update_ghosts(factor_);
+  index_map_.update_ghosts(factor_);
   Tangent::multiply(factor_, result);
-  add_up(sharing_->ranks(), result.subspan(points_.reference.size()));
+  add_up(index_map_.ranks(), result.subspan(points_.reference.size()));
 }
 
 void ConstrainedTangent::absolute_row_sums(std::span<double> sums) const {
   if (constraints_.couples_points()) {  // as on a part of a body, which lacks rows
     std::vector<double> displacement(position);
     for (std::size_t dof = 0; dof < position.size(); ++dof) displacement[dof] -= reference_[dof];
-    bound_constrained_row_sums(whole_, points_, constraints_, displacement, sharing_, sums);
+    bound_constrained_row_sums(whole_, points_, constraints_, displacement, index_map_, sums);
     return;
   }
   Tangent::absolute_row_sums(sums);
-  if (sharing_) add_up(sharing_->ranks(), sums.subspan(points_.reference.size()));
+  add_up(index_map_.ranks(), sums.subspan(points_.reference.size()));
 }
 
 void ConstrainedTangent::add_blocks_between_free_points() {
@@ -186,7 +181,7 @@ void ConstrainedTangent::add_blocks_between_free_points() {
   run_on_threads(threads(), [&](int thread) {
     const RowRange range = whole_.ranges[std::size_t(thread)];
     for (Index i = range.first; i < range.last; ++i) {
-      if (!constraints_.stands_alone(i) || !has_row(sharing_, i)) continue;
+      if (!constraints_.stands_alone(i) || !has_row(index_map_, i)) continue;
       std::copy_n(&whole_.diagonal[std::size_t(i) * entries], entries,
                   &diagonal[std::size_t(i) * entries]);
       for (Offset bond = whole_.pattern.offset[i]; bond < whole_.pattern.offset[i + 1]; ++bond) {
@@ -278,7 +273,7 @@ void ConstrainedTangent::add(Index row, Index column, const Tensor& block) {
 }
 
 void ConstrainedTangent::add_curvature(const StateView& at) {
-  if (sharing_ && sharing_->ranks().rank() > 0) return;
+  if (!index_map_.is_first_rank()) return;
   const auto& sets = constraints_.rigid_sets();
   for (std::size_t k = 0; k < at.curvature.size(); ++k) {
     add(sets[k].rotation, sets[k].rotation, at.curvature[k]);

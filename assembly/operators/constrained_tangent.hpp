@@ -4,16 +4,16 @@
 
 #include "assembly/operators/tangent.hpp"
 #include "src/constraints/constraints.hpp"
-#include "src/core/sharing.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
 /// Pattern of K_q: the points and handles that it couples if K has the pattern `whole`.
-/// @param sharing partition of a distributed body: the pattern then has the rows of owned points
+/// @param index_map partition of a distributed body: the pattern then has the rows of owned points
 ///        and of handles. Collective
 [[nodiscard]] BlockPattern constrained_pattern(const BlockPattern& whole,
                                                const Constraints& constraints,
-                                               const Sharing* sharing = nullptr);
+                                               const IndexMap& index_map = whole_body());
 
 /// Tangent of a body with dependent degrees of freedom,
 ///
@@ -28,10 +28,10 @@ namespace peristat {
 class ConstrainedTangent final : public Tangent {
  public:
   /// All references must outlive it.
-  /// @param sharing partition of a distributed body in which only images and rigid sets follow
+  /// @param index_map partition of a distributed body in which only images and rigid sets follow
   ///        others: what follows a rank's points is present on that rank. Null: the body is whole
   ConstrainedTangent(const Energy& energy, const Constraints& constraints,
-                     const Sharing* sharing = nullptr);
+                     const IndexMap& index_map = whole_body());
 
   /// See couplings_in_place.
   [[nodiscard]] Couplings in_place() const;
@@ -59,7 +59,7 @@ class ConstrainedTangent final : public Tangent {
 
   const Points& points_;
   const Constraints& constraints_;
-  const Sharing* sharing_;
+  const IndexMap& index_map_;
   Tangent whole_;                       ///< K, of the body's points
   std::vector<Offset> place_;           ///< per block of K: its position here; -1: none
   std::vector<double> reference_;       ///< of points and handles

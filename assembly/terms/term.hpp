@@ -12,11 +12,11 @@
 #include "assembly/operators/tangent.hpp"
 #include "assembly/terms/balances.hpp"
 #include "src/geometry/points.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
 class Model;
-class Sharing;
 struct Workspace;
 
 /// Whether a pass overwrites what its result held or adds to it.
@@ -93,9 +93,9 @@ struct TermSetting {
   const Model& model;
   const BlockPattern& pattern;
   Workspace& workspace;
-  /// Null: the body is whole. Otherwise the points are a part of it, and a commit, which is
-  /// collective, may communicate to agree on the new history. No other pass communicates.
-  const Sharing* sharing = nullptr;
+  /// A commit, which is collective, may communicate to agree on the new history. No other pass
+  /// communicates.
+  const IndexMap& index_map = whole_body();
 };
 
 /// How many interactions of a kind there are.

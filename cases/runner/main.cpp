@@ -31,6 +31,7 @@
 #include "src/core/input_error.hpp"
 #include "src/core/machine_error.hpp"
 #include "src/core/threads.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/search/linearisation.hpp"
 #include "solvers/search/softest_mode.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "assembly/operators/convolved_tangent.hpp"
 #include "solvers/motion/newmark.hpp"
-#include "solvers/motion/shared_stiffness.hpp"
+#include "solvers/motion/stable_step.hpp"
 #include "solvers/motion/velocity_verlet.hpp"
 #include "src/core/number_text.hpp"
 
@@ -190,7 +190,7 @@ Stiffness Dynamics::stiffness_at(const Trial& state) {
   tangent.linearise(assembler, state.at(), projection_for_stiffness(assembler));
   is_linearised_ = true;
   const Stiffness now =
-      bound_stiffness(tangent, free, setting().mass, setting().most_points, assembler.sharing());
+      bound_stiffness(tangent, free, setting().mass, setting().most_points, assembler.index_map());
   const Stiffness& known = path_.state().dynamics.stiffness;
   const bool is_enough = options_.time_step > 0.0 && now.stable_step() >= options_.time_step;
   if (is_enough) return now;
@@ -198,7 +198,7 @@ Stiffness Dynamics::stiffness_at(const Trial& state) {
     return {now.bound, known.eigenvalue * std::max(1.0, now.bound / known.bound)};
   }
   path_.state().dynamics.stiffness =
-      find_stiffness(tangent, free, setting().mass, setting().most_points, assembler.sharing());
+      find_stiffness(tangent, free, setting().mass, setting().most_points, assembler.index_map());
   return path_.state().dynamics.stiffness;
 }
 

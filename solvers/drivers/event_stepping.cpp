@@ -9,9 +9,9 @@
 #include "assembly/terms/damage.hpp"
 #include "solvers/drivers/implicit_stepping.hpp"
 #include "solvers/drivers/increment.hpp"
-#include "solvers/linear/vector_verbs.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/vector_verbs.hpp"
 #include "src/potentials/make_saw_tooth.hpp"
 
 namespace peristat {

@@ -4,7 +4,8 @@
 #include <cstdint>
 
 #include "assembly/terms/damage.hpp"
-#include "solvers/linear/vector_verbs.hpp"
+#include "src/core/vector_verbs.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 /// Takes floating pieces out of the equations. A piece that a support still moves is kept: only its
 /// free motions are pinned.
 void remove_pieces(Fragments& found, const std::vector<char>& prescribed, int dimension,
-                   const Sharing* sharing) {
+                   const IndexMap& index_map) {
   const auto d = std::size_t(dimension);
   std::vector<double> removed(std::size_t(found.count) + 1, 1.0);
   removed[0] = 0.0;  // pieces that are held
@@ -20,7 +21,7 @@ void remove_pieces(Fragments& found, const std::vector<char>& prescribed, int di
   for (std::size_t dof = 0; dof < dofs; ++dof) {
     if (prescribed[dof]) removed[std::size_t(found.piece[dof / d])] = 0.0;
   }
-  if (sharing != nullptr) removed = sharing->ranks().min(removed);
+  removed = index_map.ranks().min(removed);
   for (std::size_t dof = 0; dof < dofs; ++dof) {
     if (removed[std::size_t(found.piece[dof / d])] != 0.0) found.pinned[dof] = 1;
   }
@@ -37,9 +38,9 @@ void FragmentPins::find(const Assembler& assembler, const State& state,
   const std::vector<double> rest(is_linear ? state.displacement.size() : 0, 0.0);
   const std::vector<double>& moved = is_linear ? rest : state.displacement;
   found = find_fragments(assembler.points(), *network.bonds, network.broken, prescribed, moved,
-                         conditions.holding(moved), assembler.sharing());
+                         conditions.holding(moved), assembler.index_map());
   if (remedy == FragmentRemedy::remove) {
-    remove_pieces(found, prescribed, assembler.points().dimension, assembler.sharing());
+    remove_pieces(found, prescribed, assembler.points().dimension, assembler.index_map());
   }
 }
 

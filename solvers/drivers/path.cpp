@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "solvers/drivers/increment.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 
@@ -46,7 +47,7 @@ Path::Path(const PathSetting& setting, PathState from)
     throw std::logic_error("a path that its stand-in carries goes on with the stand-in");
   }
   state_.accepted.environment = setting.conditions.environment(load_point(state_.accepted));
-  if (setting.body.assembler.sharing()) {  // whose states do not include images
+  if (!setting.body.assembler.index_map().is_whole()) {  // whose states do not include images
     setting.conditions.constraints().move(state_.accepted.displacement);
   }
   number_equations();
@@ -102,8 +103,7 @@ std::optional<std::string> Path::refusal_of_conditions(const LoadPoint& at) cons
   } catch (const InputError& error) {
     refusal = description(error);
   }
-  return body().assembler.sharing() ? first_of_all(body().assembler.sharing()->ranks(), refusal)
-                                    : refusal;
+  return first_of_all(body().assembler.index_map().ranks(), refusal);
 }
 
 std::string Path::description(const InputError& error) const {

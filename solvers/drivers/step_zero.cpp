@@ -11,8 +11,7 @@ namespace peristat {
 namespace {
 
 Preload preload_of(const Path& path) {
-  const Sharing* const parts = path.body().assembler.sharing();
-  return find_preload(path.setting().conditions, parts ? &parts->ranks() : nullptr);
+  return find_preload(path.setting().conditions, path.body().assembler.index_map().ranks());
 }
 
 std::string_view mode_at_rest(const Mode& mode) {

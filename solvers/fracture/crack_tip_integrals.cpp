@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "assembly/terms/bonds/deformation_gradients.hpp"
-#include "solvers/linear/vector_verbs.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/vector_verbs.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -71,7 +71,7 @@ std::vector<ImageKind> CrackTipIntegrals::kinds_of_images() const {
   const Images& images = points_.images;
   std::vector<double> is_there(images.kinds.size(), 0.0);
   for (const std::size_t kind : images.kind) is_there[kind] = 1.0;
-  if (setting_.sharing) is_there = setting_.sharing->ranks().max(is_there);
+  is_there = setting_.index_map.ranks().max(is_there);
   std::vector<ImageKind> kinds;
   for (std::size_t kind = 0; kind < is_there.size(); ++kind) {
     if (is_there[kind] > 0.0) kinds.push_back(images.kinds[kind]);
@@ -214,7 +214,7 @@ std::vector<double> CrackTipIntegrals::translation_of(Assembler& assembler,
       }
     }
   }
-  if (setting_.sharing) setting_.sharing->update_ghosts(translation);
+  setting_.index_map.update_ghosts(translation);
   for (Index image = points_.own(); image < points_.count(); ++image) {
     const ImageKind& kind = points_.image_kind(image);
     for (std::size_t r = 0; r < d; ++r) {

@@ -9,8 +9,9 @@
 #include "assembly/assembler.hpp"
 #include "solvers/fracture/crack_tip.hpp"
 #include "solvers/fracture/williams_fields.hpp"
-#include "solvers/linear/sums.hpp"
 #include "src/geometry/points.hpp"
+#include "src/parallel/index_map.hpp"
+#include "src/parallel/sums.hpp"
 
 namespace peristat {
 
@@ -18,9 +19,8 @@ namespace peristat {
 struct CrackTipSetting {
   double horizon = 0.0;        ///< [m]
   double cross_section = 1.0;  ///< 2D: thickness [m]
-  /// Null: the points are the whole body's. Otherwise those of a part: all calls are collective,
-  /// with the same results on all ranks.
-  const Sharing* sharing = nullptr;
+  /// All calls are collective, with the same results on all ranks.
+  const IndexMap& index_map = whole_body();
 };
 
 /// J, stress intensity factors and T-stress of a crack's tip.
@@ -73,7 +73,7 @@ class CrackTipIntegrals {
   void check_ring(const std::string& key) const;
   void weigh();
   [[nodiscard]] double front_length(Index points) const;
-  [[nodiscard]] Sums sums() const { return {setting_.sharing, points_.dimension}; }
+  [[nodiscard]] Sums sums() const { return {setting_.index_map, points_.dimension}; }
   [[nodiscard]] double largest(std::span<const double> values) const;
   [[nodiscard]] Rings fluxes(Assembler& assembler, const StateView& at,
                              std::span<const double> translation) const;

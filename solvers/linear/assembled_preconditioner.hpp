@@ -2,7 +2,7 @@
 
 #include "solvers/linear/preconditioner.hpp"
 #include "solvers/linear/trilinos/matrix_preconditioner.hpp"
-#include "src/core/sharing.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -11,9 +11,10 @@ namespace peristat {
 /// motions of the current configuration.
 class AssembledPreconditioner : public Preconditioner {
  public:
-  /// @param sharing partition of the body, which outlives this; null: the body is not partitioned
-  explicit AssembledPreconditioner(MatrixPreconditionerKind kind, const Sharing* sharing = nullptr)
-      : preconditioner_(kind), sharing_(sharing) {}
+  /// @param index_map of the body's points; it outlives this
+  explicit AssembledPreconditioner(MatrixPreconditionerKind kind,
+                                   const IndexMap& index_map = whole_body())
+      : preconditioner_(kind), index_map_(index_map) {}
 
   void analyze(const BlockPattern&, const FreeDofs& free) override { free_ = &free; }
   /// @throws std::logic_error for a tangent without stored blocks
@@ -25,7 +26,7 @@ class AssembledPreconditioner : public Preconditioner {
 
  private:
   MatrixPreconditioner preconditioner_;
-  const Sharing* sharing_;
+  const IndexMap& index_map_;
   const FreeDofs* free_ = nullptr;
   std::string description_ = "Trilinos";
 };

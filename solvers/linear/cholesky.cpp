@@ -13,9 +13,9 @@
 #include "solvers/linear/lower_triangle.hpp"
 #include "solvers/linear/speeds.hpp"
 #include "solvers/linear/trilinos/krylov.hpp"
-#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/linear/zero_pivot.hpp"
 #include "src/core/stopwatch.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {

@@ -6,7 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "solvers/linear/sums.hpp"
+#include "src/parallel/index_map.hpp"
+#include "src/parallel/sums.hpp"
 
 namespace peristat {
 namespace {
@@ -14,14 +15,14 @@ namespace {
 /// Numbers the columns of the degrees of freedom. Ghosts that the rows reach come last, and
 /// rows.ghosts receives their equations in the whole matrix.
 std::vector<Index> number_columns(const BlockPattern& pattern, const FreeDofs& free,
-                                  const Sharing& sharing, CompressedRows& rows) {
-  const auto d = std::size_t(free.dimension), owned = std::size_t(sharing.owned());
-  const double first = double(sharing.ranks().count_all(free.count()).before);
+                                  const IndexMap& index_map, CompressedRows& rows) {
+  const auto d = std::size_t(free.dimension), owned = std::size_t(index_map.owned());
+  const double first = double(index_map.ranks().count_all(free.count()).before);
   std::vector<double> number(free.equation.size());
   for (std::size_t k = 0; k < number.size(); ++k) {
     number[k] = free.equation[k] == FreeDofs::none ? -1.0 : first + free.equation[k];
   }
-  sharing.update_ghosts(number);
+  index_map.update_ghosts(number);
   std::vector<char> is_reached(number.size() / d, 0);
   for (Offset bond = 0; bond < pattern.offset[owned]; ++bond) {
     is_reached[std::size_t(pattern.partner[bond])] = 1;
@@ -38,7 +39,7 @@ std::vector<Index> number_columns(const BlockPattern& pattern, const FreeDofs& f
 }  // namespace
 
 CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free,
-                               const Sharing* sharing) {
+                               const IndexMap& index_map) {
   const BlockPattern& pattern = tangent.pattern;
   const Index points = pattern.points();
   const int d = tangent.dimension;
@@ -63,11 +64,11 @@ CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free,
   CompressedRows rows;
   rows.rows = free.count();
   std::vector<Index> with_ghosts;
-  if (sharing) {
-    rows.ranks = &sharing->ranks();
-    with_ghosts = number_columns(pattern, free, *sharing, rows);
+  if (!index_map.is_whole()) {
+    rows.ranks = &index_map.ranks();
+    with_ghosts = number_columns(pattern, free, index_map, rows);
   }
-  const std::vector<Index>& column_of = sharing ? with_ghosts : free.equation;
+  const std::vector<Index>& column_of = index_map.is_whole() ? free.equation : with_ghosts;
   rows.begin.reserve(std::size_t(rows.rows) + 1);
   rows.begin.push_back(0);
   const std::size_t entries =
@@ -101,9 +102,9 @@ CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free,
 EquationBlocks equation_blocks(const FreeDofs& free) { return {free.dimension, free.dof}; }
 
 NearNullSpace rigid_motions(std::span<const double> positions, const FreeDofs& free,
-                            const Sharing* sharing) {
+                            const IndexMap& index_map) {
   const int d = free.dimension;
-  const Sums sums(sharing, d);
+  const Sums sums(index_map, d);
   const std::size_t equations = free.dof.size(), dofs = sums.own(positions.size());
   // Centred, so that rotations and translations are far from parallel.
   std::vector<double> centre(4, 0.0);

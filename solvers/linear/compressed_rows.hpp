@@ -5,15 +5,15 @@
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/free_dofs.hpp"
 #include "solvers/linear/trilinos/matrix_preconditioner.hpp"
-#include "src/core/sharing.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
 /// Returns K_ff: rows and columns of the free degrees of freedom, both triangles. Collective if the
 /// body is partitioned.
-/// @param sharing partition of the body, whose ghosts have columns here but no equations
+/// @param index_map partition of the body, whose ghosts have columns here but no equations
 [[nodiscard]] CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free,
-                                             const Sharing* sharing = nullptr);
+                                             const IndexMap& index_map = whole_body());
 
 /// Returns the point and component of each equation.
 [[nodiscard]] EquationBlocks equation_blocks(const FreeDofs& free);
@@ -22,8 +22,8 @@ namespace peristat {
 /// the free degrees of freedom, one after the other. Lengths are divided by the body's, so that all
 /// entries are of order one. Collective if the body is partitioned.
 /// @param positions points x dimension, row major [m]
-/// @param sharing partition of the body; null: the body is not partitioned
+/// @param index_map of the body's points
 [[nodiscard]] NearNullSpace rigid_motions(std::span<const double> positions, const FreeDofs& free,
-                                          const Sharing* sharing = nullptr);
+                                          const IndexMap& index_map = whole_body());
 
 }  // namespace peristat

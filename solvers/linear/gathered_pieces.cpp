@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "src/core/sharing.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -55,7 +55,7 @@ GatheredPieces::GatheredPieces(const Communicator& ranks, std::span<const std::i
 }
 
 std::vector<double> GatheredPieces::sum(std::vector<double> mine, int width) const {
-  if (!ranks_) return mine;
+  if (ranks_->count() == 1) return mine;
   const auto w = std::size_t(width);
   std::vector<double> all(gathers() ? std::size_t(count_) * w : 0);
   ranks_->gather(packed(std::span<const double>(mine)), [&](int rank, const std::string& bytes) {
@@ -69,7 +69,7 @@ std::vector<double> GatheredPieces::sum(std::vector<double> mine, int width) con
 }
 
 std::vector<double> GatheredPieces::share_out(std::vector<double> all, int width) const {
-  if (!ranks_) return all;
+  if (ranks_->count() == 1) return all;
   const auto w = std::size_t(width);
   std::string bytes = gathers() ? packed(std::span<const double>(all)) : std::string();
   ranks_->broadcast(bytes);
@@ -99,10 +99,10 @@ void GatheredPieces::for_each_pair(Pairs pairs, int width, const VisitPair& visi
   });
 }
 
-std::vector<std::int64_t> labels_over_ranks(const Sharing& sharing, int dimension,
+std::vector<std::int64_t> labels_over_ranks(const IndexMap& index_map,
                                             std::span<const Index> joined) {
-  const Communicator& ranks = sharing.ranks();
-  const auto owned = std::size_t(sharing.owned());
+  const Communicator& ranks = index_map.ranks();
+  const auto owned = std::size_t(index_map.owned());
   const auto [before, all] = ranks.count_all(std::int64_t(owned));
   const double first = double(before);
   constexpr double none = std::numeric_limits<double>::max();
@@ -110,13 +110,13 @@ std::vector<std::int64_t> labels_over_ranks(const Sharing& sharing, int dimensio
   // ranks.
   std::vector<double> least(joined.size(), none), of_points(joined.size(), none);
   for (std::size_t i = owned; i-- > 0;) least[std::size_t(joined[i])] = first + double(i);
-  const auto handles = std::size_t(sharing.count());  // handles follow all points of this rank
+  const auto handles = std::size_t(index_map.count());  // handles follow all points of this rank
   for (std::size_t i = handles; i < joined.size(); ++i) {
     least[std::size_t(joined[i])] = double(all) + double(i - handles);
   }
   for (bool changed = true; changed;) {
     for (std::size_t i = 0; i < joined.size(); ++i) of_points[i] = least[std::size_t(joined[i])];
-    update_ghost_values(sharing, dimension, of_points);
+    index_map.update_ghost_values(of_points);
     changed = false;
     for (std::size_t i = owned; i < joined.size(); ++i) {
       double& here = least[std::size_t(joined[i])];

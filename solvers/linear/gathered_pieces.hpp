@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "src/core/sharing.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -22,7 +22,7 @@ class GatheredPieces {
 
   [[nodiscard]] Index count() const { return count_; }  ///< of the whole body
   /// True if values are gathered on this rank.
-  [[nodiscard]] bool gathers() const { return !ranks_ || ranks_->rank() == 0; }
+  [[nodiscard]] bool gathers() const { return ranks_->rank() == 0; }
 
   /// Sums values of the pieces over the ranks.
   /// @param mine width numbers for each piece of this rank
@@ -44,7 +44,7 @@ class GatheredPieces {
   void for_each_pair(Pairs pairs, int width, const VisitPair& visit) const;
 
  private:
-  const Communicator* ranks_ = nullptr;
+  const Communicator* ranks_ = &sole_rank();
   Index count_ = 0;
   std::vector<Index> number_;                 // numbers in the body of the pieces of this rank
   std::vector<std::vector<Index>> of_ranks_;  // at rank 0: `number_` of every rank
@@ -56,7 +56,7 @@ class GatheredPieces {
 /// ghost. Collective.
 /// @param joined for each point and handle here, the representative of all that links join with it
 ///        on this rank
-[[nodiscard]] std::vector<std::int64_t> labels_over_ranks(const Sharing& sharing, int dimension,
+[[nodiscard]] std::vector<std::int64_t> labels_over_ranks(const IndexMap& index_map,
                                                           std::span<const Index> joined);
 
 }  // namespace peristat

@@ -6,9 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/linear/worst_outcome.hpp"
 #include "src/core/stopwatch.hpp"
+#include "src/core/vector_verbs.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {
@@ -37,7 +39,7 @@ const char* words_for(KrylovMethod method) {
 
 IterativeSolver::IterativeSolver(KrylovMethod method,
                                  std::unique_ptr<Preconditioner> preconditioner, int max_iterations,
-                                 int restart, const Communicator* ranks)
+                                 int restart, const Communicator& ranks)
     : method_(method),
       preconditioner_(std::move(preconditioner)),
       max_iterations_(max_iterations),
@@ -45,11 +47,11 @@ IterativeSolver::IterativeSolver(KrylovMethod method,
       ranks_(ranks) {}
 
 double IterativeSolver::norm_of_all(std::span<const double> v) const {
-  return ranks_ ? std::sqrt(ranks_->sum(dot(v, v))) : norm(v);
+  return peristat::norm_of_all(ranks_, norm(v));
 }
 
 bool IterativeSolver::is_empty(std::size_t equations) const {
-  return (ranks_ ? ranks_->max(double(equations)) : double(equations)) == 0.0;
+  return ranks_.max(double(equations)) == 0.0;
 }
 
 LinearOutcome IterativeSolver::analyze(const BlockPattern& pattern, const FreeDofs& free) {
@@ -95,7 +97,7 @@ LinearOutcome IterativeSolver::factorize(const TangentOperator& tangent, FactorU
   largest_diagonal_ = 0.0;
   const LinearOutcome outcome = worst_outcome(ranks_, look_at(tangent));
   if (outcome != LinearOutcome::solved) return outcome;
-  if (ranks_) largest_diagonal_ = ranks_->max(largest_diagonal_);
+  largest_diagonal_ = ranks_.max(largest_diagonal_);
   if (use == FactorUse::may_reuse && built_ && !worn_) return LinearOutcome::solved;
   return build();
 }
@@ -116,7 +118,7 @@ LinearOutcome IterativeSolver::iterate(std::span<const double> b, std::span<doub
   options.tolerance = tolerance;
   options.max_iterations = max_iterations_;
   options.restart = restart_;
-  options.ranks = ranks_;
+  options.ranks = &ranks_;
   const KrylovResult result = solve_krylov(
       int(size),
       [&](const double* v, double* product) {

@@ -5,6 +5,8 @@
 
 #include "solvers/linear/preconditioner.hpp"
 #include "solvers/linear/trilinos/krylov.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 
@@ -21,7 +23,7 @@ class IterativeSolver : public LinearSolver {
   ///        the same outcomes; null: this rank has all equations
   IterativeSolver(KrylovMethod method, std::unique_ptr<Preconditioner> preconditioner,
                   int max_iterations, int restart = KrylovOptions{}.restart,
-                  const Communicator* ranks = nullptr);
+                  const Communicator& ranks = sole_rank());
 
   LinearOutcome analyze(const BlockPattern& pattern, const FreeDofs& free) override;
   void count_pivots(bool) override {}  // inertia is never known
@@ -47,7 +49,7 @@ class IterativeSolver : public LinearSolver {
   KrylovMethod method_;
   std::unique_ptr<Preconditioner> preconditioner_;
   int max_iterations_, restart_;
-  const Communicator* ranks_;
+  const Communicator& ranks_;
   const FreeDofs* free_ = nullptr;
   const TangentOperator* tangent_ = nullptr;
   LinearStatistics statistics_;

@@ -16,6 +16,7 @@
 #include "solvers/linear/sparse_lu.hpp"
 #include "solvers/linear/speeds.hpp"
 #include "solvers/linear/surrogate.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -56,44 +57,41 @@ constexpr int patience_with_inertia = 100;
 using SharedBox = std::shared_ptr<const LatticeBox>;
 
 std::unique_ptr<Preconditioner> make_preconditioner(PreconditionerKind kind, const SharedBox& box,
-                                                    const Sharing* sharing) {
+                                                    const IndexMap& index_map) {
   switch (kind) {
     case PreconditionerKind::jacobi:
       return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::entries);
     case PreconditionerKind::block_jacobi:
       return std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points);
     case PreconditionerKind::surrogate:
-      return std::make_unique<Surrogate>(sharing);
+      return std::make_unique<Surrogate>(index_map);
     case PreconditionerKind::sines:
       if (!box) throw std::logic_error("sines need the box of a lattice");
       return std::make_unique<Sines>(box);
     case PreconditionerKind::riluk:
-      return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::riluk, sharing);
+      return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::riluk, index_map);
     case PreconditionerKind::chebyshev:
       return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::chebyshev,
-                                                       sharing);
+                                                       index_map);
     case PreconditionerKind::multigrid:
       return std::make_unique<AssembledPreconditioner>(MatrixPreconditionerKind::multigrid,
-                                                       sharing);
+                                                       index_map);
     case PreconditionerKind::local_operator:
       return std::make_unique<LocalOperator>();
     case PreconditionerKind::rigid_pieces:
     case PreconditionerKind::automatic:
       break;
   }
-  return std::make_unique<RigidPieces>(sharing);
-}
-
-const Communicator* ranks_of(const Sharing* sharing) {
-  return sharing ? &sharing->ranks() : nullptr;
+  return std::make_unique<RigidPieces>(index_map);
 }
 
 std::unique_ptr<LinearSolver> make_iterative(
     PreconditionerKind kind, int max_iterations, const SharedBox& box = {},
-    KrylovMethod method = KrylovMethod::conjugate_gradients, const Sharing* sharing = nullptr) {
-  return std::make_unique<IterativeSolver>(method, make_preconditioner(kind, box, sharing),
+    KrylovMethod method = KrylovMethod::conjugate_gradients,
+    const IndexMap& index_map = whole_body()) {
+  return std::make_unique<IterativeSolver>(method, make_preconditioner(kind, box, index_map),
                                            max_iterations, KrylovOptions{}.restart,
-                                           ranks_of(sharing));
+                                           index_map.ranks());
 }
 
 KrylovMethod krylov_method(LinearMethod method) {
@@ -172,11 +170,12 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
 }
 
 ChosenSolver choose_on_ranks(const LinearProblem& problem, SolverLadder::Reporter tell) {
-  const auto rung = [sharing = problem.sharing](const char* name, PreconditionerKind kind,
-                                                int most) {
-    return SolverLadder::Rung{
-        name,
-        [=] { return make_iterative(kind, most, {}, KrylovMethod::conjugate_gradients, sharing); }};
+  const auto rung = [&index_map = *problem.index_map](const char* name, PreconditionerKind kind,
+                                                      int most) {
+    return SolverLadder::Rung{name, [=, &index_map] {
+                                return make_iterative(kind, most, {},
+                                                      KrylovMethod::conjugate_gradients, index_map);
+                              }};
   };
   std::vector<SolverLadder::Rung> rungs{
       rung("pcg with rigid_pieces", PreconditionerKind::rigid_pieces, patience_on_ranks),
@@ -189,8 +188,8 @@ ChosenSolver choose_on_ranks(const LinearProblem& problem, SolverLadder::Reporte
 /// Number of vectors that GMRES keeps before it restarts.
 int restart_for(const LinearProblem& problem) {
   const double vector = 8.0 * std::max(problem.unknowns, 1.0);
-  double room = share_of_vectors * problem.available_bytes / vector;
-  if (problem.sharing) room = problem.sharing->ranks().min(room);
+  const double room =
+      problem.index_map->ranks().min(share_of_vectors * problem.available_bytes / vector);
   return static_cast<int>(std::clamp(room, least_vectors, most_vectors));
 }
 
@@ -198,14 +197,15 @@ std::unique_ptr<LinearSolver> make_unsymmetric(LinearMethod method, Precondition
                                                const LinearProblem& problem, int max_iterations) {
   if (method == LinearMethod::lu) return std::make_unique<SparseLu>(problem.available_bytes);
   if (kind == PreconditionerKind::automatic) {
-    kind = problem.sharing ? PreconditionerKind::block_jacobi : PreconditionerKind::local_operator;
+    kind = problem.index_map->is_whole() ? PreconditionerKind::local_operator
+                                         : PreconditionerKind::block_jacobi;
   }
   auto preconditioner = kind == PreconditionerKind::local_operator
                             ? std::make_unique<LocalOperator>(problem.available_bytes)
-                            : make_preconditioner(kind, {}, problem.sharing);
+                            : make_preconditioner(kind, {}, *problem.index_map);
   return std::make_unique<IterativeSolver>(krylov_method(method), std::move(preconditioner),
                                            max_iterations, restart_for(problem),
-                                           ranks_of(problem.sharing));
+                                           problem.index_map->ranks());
 }
 
 /// Estimated seconds of a load step with an unsymmetric tangent, whose product visits every bond
@@ -235,11 +235,11 @@ ChosenSolver choose_unsymmetric(const LinearProblem& problem, SolverLadder::Repo
   const auto [direct, iterative] = UnsymmetricSeconds(problem);
   const bool fits = problem.factor_bytes <= problem.available_bytes;
   const bool is_small = problem.factor_flops <= small_factorisation;
-  const bool is_direct =
-      !problem.sharing && !problem.has_inertia && fits && (is_small || direct <= iterative);
+  const bool is_direct = problem.index_map->is_whole() && !problem.has_inertia && fits &&
+                         (is_small || direct <= iterative);
   std::vector<SolverLadder::Rung> rungs;
   std::string reason;
-  if (problem.sharing) {
+  if (!problem.index_map->is_whole()) {
     rungs = {patient};
     if (problem.has_inertia) rungs.insert(rungs.begin(), light);
     reason = "factorisations are for one rank";
@@ -353,14 +353,14 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const Linear
     case LinearMethod::minres:
     case LinearMethod::gmres:
       return {make_iterative(options.preconditioner, most_iterations, problem.box,
-                             krylov_method(options.method), problem.sharing),
+                             krylov_method(options.method), *problem.index_map),
               false, Seconds(problem).iterative, "as the case asks"};
     case LinearMethod::automatic:
     case LinearMethod::lu:
     case LinearMethod::bicgstab:
       break;
   }
-  if (problem.sharing) return choose_on_ranks(problem, std::move(tell));
+  if (!problem.index_map->is_whole()) return choose_on_ranks(problem, std::move(tell));
   return choose(problem, std::move(tell));
 }
 

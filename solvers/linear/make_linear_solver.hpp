@@ -6,8 +6,8 @@
 
 #include "solvers/linear/linear_solver.hpp"
 #include "solvers/linear/solver_ladder.hpp"
-#include "src/core/sharing.hpp"
 #include "src/geometry/lattice_box.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -63,7 +63,7 @@ struct LinearProblem {
   bool may_soften = false;    ///< damage grows in implicit steps: stability is in question
   bool solves_often = false;  ///< many systems have the same tangent
   bool has_inertia = false;   ///< masses are part of the tangent, as in implicit time steps
-  const Sharing* sharing = nullptr;  ///< of a partitioned body, which outlives the solver
+  const IndexMap* index_map = &whole_body();  ///< of the body's points; it outlives the solver
   /// Lattice sites of the points, which `sines` needs; null: `sines` can't be used.
   std::shared_ptr<const LatticeBox> box{};
 };

@@ -20,8 +20,8 @@
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/gathered_pieces.hpp"
 #include "solvers/linear/worst_outcome.hpp"
-#include "src/core/sharing.hpp"
 #include "src/geometry/squared_distance.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -97,10 +97,12 @@ Index root(std::vector<Index>& parent, Index i) {
 }  // namespace
 
 struct RigidPieces::Levels {
+  explicit Levels(const IndexMap& of) : index_map(of) {}
+
   const FreeDofs* free = nullptr;
-  const Sharing* sharing = nullptr;         // null: the body is not partitioned
-  Index first_ghost = 0, first_handle = 0;  // of a partitioned body
-  bool has_handles = false;                 // this rank of a partitioned body owns generalised dofs
+  const IndexMap& index_map;
+  // Of a partitioned body; a whole one has neither ghosts nor handles apart from points.
+  Index first_ghost = std::numeric_limits<Index>::max(), first_handle = first_ghost;
   std::vector<Index> with_ghosts;   // of a partitioned body: equations, 0 for free dofs of ghosts
   const Index* equation = nullptr;  // per degree of freedom: equation of this rank, or none
   GatheredPieces gathered_pieces;
@@ -123,16 +125,11 @@ struct RigidPieces::Levels {
   double length_unit = 1.0;   // of the arms [m]: keeps them within what single precision holds
   int dimension = 0, threads = 1;
 
-  [[nodiscard]] const Communicator* ranks() const { return sharing ? &sharing->ranks() : nullptr; }
-  [[nodiscard]] Index owned(Index points) const { return sharing ? sharing->owned() : points; }
   /// True for a ghost of a partitioned body: its owner also has the blocks of its bonds.
-  [[nodiscard]] bool is_ghost(Index i) const {
-    return sharing && i >= first_ghost && i < first_handle;
-  }
+  [[nodiscard]] bool is_ghost(Index i) const { return i >= first_ghost && i < first_handle; }
   /// True if the equations of a point, or of a generalised degree of freedom, are this rank's.
   [[nodiscard]] bool has_row(Index i) const {
-    if (!sharing || i < first_ghost) return true;
-    return has_handles && i >= first_handle;
+    return i < first_ghost || (i >= first_handle && index_map.is_first_rank());
   }
   [[nodiscard]] Index pieces_here() const { return static_cast<Index>(offset.size()) - 1; }
 
@@ -140,15 +137,14 @@ struct RigidPieces::Levels {
   /// owner.
   void take_part() {
     equation = free->equation.data();
-    if (!sharing) return;
-    first_ghost = sharing->owned();
-    first_handle = sharing->count();
-    has_handles = sharing->ranks().rank() == 0;
+    if (index_map.is_whole()) return;
+    first_ghost = index_map.owned();
+    first_handle = index_map.count();
     std::vector<double> is_free(free->equation.size());
     for (std::size_t k = 0; k < is_free.size(); ++k) {
       is_free[k] = free->equation[k] == FreeDofs::none ? 0.0 : 1.0;
     }
-    sharing->update_ghosts(is_free);
+    index_map.update_ghosts(is_free);
     with_ghosts = free->equation;
     for (std::size_t k = 0; k < is_free.size(); ++k) {
       if (with_ghosts[k] == FreeDofs::none && is_free[k] > 0.0) with_ghosts[k] = 0;
@@ -161,7 +157,7 @@ struct RigidPieces::Levels {
   void find_boxes(const TangentOperator& tangent, std::span<const double> position) {
     const int d = dimension;
     const Couplings in_place = couplings_in_place(tangent);
-    const Index own = owned(in_place.points());
+    const Index own = index_map.own_rows(in_place.points());
     double longest = 0.0, shortest = std::numeric_limits<double>::infinity();
     for (Index i = 0; i < own; ++i) {
       for (const Index j : in_place.of(i)) {
@@ -177,17 +173,14 @@ struct RigidPieces::Levels {
       least[k % d] = std::min(least[k % d], position[k]);
       most[k % d] = std::max(most[k % d], position[k]);
     }
-    double all = own;
-    if (const Communicator* const with = ranks()) {
-      const std::vector<double> ends = with->max(
-          {longest, -shortest, most[0], most[1], most[2], -least[0], -least[1], -least[2]});
-      longest = ends[0];
-      shortest = -ends[1];
-      for (std::size_t c = 0; c < 3; ++c) {
-        most[c] = ends[2 + c];
-        least[c] = -ends[5 + c];
-      }
-      all = double(with->count_all(own).all);
+    const double all = double(index_map.ranks().count_all(own).all);
+    const std::vector<double> ends = index_map.ranks().max(
+        {longest, -shortest, most[0], most[1], most[2], -least[0], -least[1], -least[2]});
+    longest = ends[0];
+    shortest = -ends[1];
+    for (std::size_t c = 0; c < 3; ++c) {
+      most[c] = ends[2 + c];
+      least[c] = -ends[5 + c];
     }
     longest = std::sqrt(longest);
     length_unit = longest > 0.0 ? longest : 1.0;
@@ -199,7 +192,7 @@ struct RigidPieces::Levels {
         count[c] = std::max(1.0, std::round((most[c] - least[c] + shortest) / width));
       }
       width *= 1.1;
-    } while (is_too_fine(d, count, all, ranks() ? ranks()->count() : 1));
+    } while (is_too_fine(d, count, all, index_map.ranks().count()));
     has_boxes = true;
     box.resize(std::size_t(tangent.pattern.points()));
     for (Index i = 0; i < tangent.pattern.points(); ++i) {
@@ -220,11 +213,11 @@ struct RigidPieces::Levels {
 
   /// Returns the traces of the diagonal blocks of ghosts, as their owners have them.
   [[nodiscard]] std::vector<double> traces_of_ghosts(const TangentOperator& tangent) const {
-    if (!sharing) return {};
+    if (index_map.is_whole()) return {};
     std::vector<double> traces(std::size_t(tangent.pattern.points()));
-    for (Index i = 0; i < sharing->owned(); ++i) traces[std::size_t(i)] = trace(tangent, i);
-    update_ghost_values(*sharing, dimension, traces);
-    traces.erase(traces.begin(), traces.begin() + std::ptrdiff_t(sharing->owned()));
+    for (Index i = 0; i < index_map.owned(); ++i) traces[std::size_t(i)] = trace(tangent, i);
+    index_map.update_ghost_values(traces);
+    traces.erase(traces.begin(), traces.begin() + std::ptrdiff_t(index_map.owned()));
     return traces;
   }
 
@@ -239,7 +232,7 @@ struct RigidPieces::Levels {
   [[nodiscard]] std::vector<Index> join_in_boxes(const TangentOperator& tangent) const {
     const BlockPattern& pattern = tangent.pattern;
     const int entries = dimension * dimension;
-    const Index points = pattern.points(), own = owned(points);
+    const Index points = pattern.points(), own = index_map.own_rows(points);
     const std::vector<double> of_ghosts = traces_of_ghosts(tangent);
     const auto trace_of = [&](Index i) {
       return i < own ? trace(tangent, i) : of_ghosts[std::size_t(i - own)];
@@ -277,13 +270,13 @@ struct RigidPieces::Levels {
   /// @return number of pieces
   Index number_pieces_of_part(const TangentOperator& tangent, const std::vector<Index>& joined) {
     const BlockPattern& pattern = tangent.pattern;
-    const Index points = pattern.points(), own = sharing->owned();
+    const Index points = pattern.points(), own = index_map.owned();
     std::vector<char> is_reached(std::size_t(points), 0);
     for (Index i = 0; i < points; ++i) is_reached[std::size_t(i)] = char(has_row(i));
     for (Offset bond = 0; bond < pattern.offset[own]; ++bond) {
       is_reached[std::size_t(pattern.partner[bond])] = 1;
     }
-    const std::vector<std::int64_t> labels = labels_over_ranks(*sharing, dimension, joined);
+    const std::vector<std::int64_t> labels = labels_over_ranks(index_map, joined);
     std::unordered_map<std::int64_t, Index> number;
     std::vector<std::int64_t> of_pieces;
     piece.assign(points, FreeDofs::none);
@@ -293,7 +286,7 @@ struct RigidPieces::Levels {
       if (is_new) of_pieces.push_back(labels[std::size_t(i)]);
       piece[i] = at->second;
     }
-    gathered_pieces = GatheredPieces(sharing->ranks(), of_pieces);
+    gathered_pieces = GatheredPieces(index_map.ranks(), of_pieces);
     return Index(of_pieces.size());
   }
 
@@ -302,7 +295,7 @@ struct RigidPieces::Levels {
     const Index points = tangent.pattern.points();
     const std::vector<Index> joined = join_in_boxes(tangent);
     Index pieces = 0;
-    if (sharing) {
+    if (!index_map.is_whole()) {
       pieces = number_pieces_of_part(tangent, joined);
     } else {
       std::vector<Index> number(points, FreeDofs::none);
@@ -521,7 +514,7 @@ struct RigidPieces::Levels {
       }
       end_run();
     });
-    return sharing ? of_ranks<D>(parts) : parts;
+    return index_map.is_whole() ? parts : of_ranks<D>(parts);
   }
 
   template <int D>
@@ -606,10 +599,7 @@ struct RigidPieces::Levels {
   LinearOutcome build_coarse(const TangentOperator& tangent) {
     find_arms<D>(tangent.positions());
     find_basis<D>(find_grams<D>());
-    is_fine_alone = first.back() == 0;
-    if (const Communicator* const with = ranks()) {
-      is_fine_alone = with->max(double(first.back())) == 0.0;
-    }
+    is_fine_alone = index_map.ranks().max(double(first.back())) == 0.0;
     if (is_fine_alone) return LinearOutcome::solved;
     const std::vector<CoarseBlocks<D>> blocks = coarse_blocks<D>(tangent);
     if (!gathered_pieces.gathers()) return LinearOutcome::solved;
@@ -681,8 +671,7 @@ struct RigidPieces::Levels {
   }
 };
 
-RigidPieces::RigidPieces(const Sharing* sharing) : levels_(std::make_unique<Levels>()) {
-  levels_->sharing = sharing;
+RigidPieces::RigidPieces(const IndexMap& index_map) : levels_(std::make_unique<Levels>(index_map)) {
   levels_->coarse.cholmod().print = 0;  // negative pivots are an outcome, not a warning
 }
 RigidPieces::~RigidPieces() = default;
@@ -699,7 +688,7 @@ LinearOutcome RigidPieces::build(const TangentOperator& tangent) {
   levels.threads = tangent.threads();
   levels.is_fine_alone = true;
   levels.take_part();
-  const LinearOutcome outcome = worst_outcome(levels.ranks(), levels.fine.build(tangent));
+  const LinearOutcome outcome = worst_outcome(levels.index_map.ranks(), levels.fine.build(tangent));
   if (outcome != LinearOutcome::solved) return outcome;
   if (!levels.has_boxes) levels.find_boxes(tangent, tangent.reference);
   levels.find_pieces(tangent);

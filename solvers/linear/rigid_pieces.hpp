@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "solvers/linear/preconditioner.hpp"
-#include "src/core/sharing.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -27,8 +27,8 @@ namespace peristat {
 /// 0 stores E and its factor.
 class RigidPieces : public Preconditioner {
  public:
-  /// @param sharing partition of the body, which outlives this; null: the body is not partitioned
-  explicit RigidPieces(const Sharing* sharing = nullptr);
+  /// @param index_map of the body's points; it outlives this
+  explicit RigidPieces(const IndexMap& index_map = whole_body());
   ~RigidPieces() override;
 
   void analyze(const BlockPattern& pattern, const FreeDofs& free) override;

@@ -12,10 +12,10 @@
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/compressed_rows.hpp"
-#include "solvers/linear/sums.hpp"
 #include "solvers/linear/worst_outcome.hpp"
-#include "src/core/sharing.hpp"
 #include "src/geometry/squared_distance.hpp"
+#include "src/parallel/index_map.hpp"
+#include "src/parallel/sums.hpp"
 
 namespace peristat {
 namespace {
@@ -37,8 +37,10 @@ constexpr double loose = 1e-3;
 }  // namespace
 
 struct Surrogate::StandIn {
+  explicit StandIn(const IndexMap& of) : index_map(of) {}
+
   const FreeDofs* free = nullptr;
-  const Sharing* sharing = nullptr;  // null: the body is not partitioned
+  const IndexMap& index_map;
   BlockJacobi fine{BlockJacobi::Blocks::points};
   Bonds short_bonds;
   std::vector<char> is_short;        // per bond of the pattern
@@ -50,7 +52,7 @@ struct Surrogate::StandIn {
   /// Chooses the short bonds, in the reference configuration.
   LinearOutcome choose_bonds(const TangentOperator& tangent, std::span<const double> position) {
     const BlockPattern& pattern = tangent.pattern;
-    const Index points = pattern.points(), of_rank = sharing ? sharing->owned() : points;
+    const Index points = pattern.points(), of_rank = index_map.own_rows(points);
     // Spacing at a point: mean distance of as many nearest neighbours as a lattice point has at one
     // spacing.
     constexpr std::size_t most = 6;
@@ -83,7 +85,7 @@ struct Surrogate::StandIn {
       }
       spacing[i] = count > 0 ? sum / double(count) : 0.0;
     }
-    if (sharing) update_ghost_values(*sharing, tangent.dimension, spacing);
+    index_map.update_ghost_values(spacing);
     is_short.assign(std::size_t(pattern.blocks()), 0);
     short_bonds.offset.assign(std::size_t(points) + 1, 0);
     for_each_bond([&](Index i, Index j, Offset bond) {
@@ -97,7 +99,7 @@ struct Surrogate::StandIn {
     springs =
         std::make_unique<Tangent>(BlockPattern(short_bonds), tangent.dimension, tangent.threads());
     multigrid.reset();
-    if (sharing) {  // no rank has all springs to factorise
+    if (!index_map.is_whole()) {  // no rank has all springs to factorise
       multigrid.emplace(MatrixPreconditionerKind::multigrid);
       return LinearOutcome::solved;
     }
@@ -114,7 +116,7 @@ struct Surrogate::StandIn {
     const BlockPattern& pattern = tangent.pattern;
     const int d = tangent.dimension, entries = d * d;
     const auto count = std::size_t(tangent.threads());
-    const Index of_rank = sharing ? sharing->owned() : pattern.points();
+    const Index of_rank = index_map.own_rows(pattern.points());
     std::vector<double> moment(count, 0.0), short_moment(count, 0.0);
     tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
       if (i >= of_rank) return;
@@ -147,7 +149,7 @@ struct Surrogate::StandIn {
     double all = 0.0, of_short = 0.0;
     for (const double part : moment) all += part;
     for (const double part : short_moment) of_short += part;
-    const Sums sums(sharing, d);
+    const Sums sums(index_map, d);
     all = sums.of_all(all);
     of_short = sums.of_all(of_short);
     const double gamma = of_short > 0.0 ? all / of_short : 1.0;
@@ -173,9 +175,7 @@ struct Surrogate::StandIn {
   }
 };
 
-Surrogate::Surrogate(const Sharing* sharing) : stand_in_(std::make_unique<StandIn>()) {
-  stand_in_->sharing = sharing;
-}
+Surrogate::Surrogate(const IndexMap& index_map) : stand_in_(std::make_unique<StandIn>(index_map)) {}
 Surrogate::~Surrogate() = default;
 
 void Surrogate::analyze(const BlockPattern& pattern, const FreeDofs& free) {
@@ -190,11 +190,12 @@ void Surrogate::analyze(const BlockPattern& pattern, const FreeDofs& free) {
 
 LinearOutcome Surrogate::build(const TangentOperator& tangent) {
   StandIn& s = *stand_in_;
-  const Sharing* const sharing = s.sharing;
+  const IndexMap& index_map = s.index_map;
   // No rank has complete rows of generalised degrees of freedom.
-  if (sharing && tangent.pattern.points() > sharing->count()) return LinearOutcome::inaccurate;
-  const LinearOutcome outcome =
-      worst_outcome(sharing ? &sharing->ranks() : nullptr, s.fine.build(tangent));
+  if (!index_map.is_whole() && tangent.pattern.points() > index_map.count()) {
+    return LinearOutcome::inaccurate;
+  }
+  const LinearOutcome outcome = worst_outcome(index_map.ranks(), s.fine.build(tangent));
   if (outcome != LinearOutcome::solved) return outcome;
   const std::vector<double> position = tangent.positions();
   if (!s.springs) {
@@ -203,8 +204,8 @@ LinearOutcome Surrogate::build(const TangentOperator& tangent) {
   }
   s.find_springs(tangent, position);
   if (s.multigrid) {
-    return s.multigrid->build(compressed_rows(*s.springs, *s.free, sharing),
-                              equation_blocks(*s.free), rigid_motions(position, *s.free, sharing))
+    return s.multigrid->build(compressed_rows(*s.springs, *s.free, index_map),
+                              equation_blocks(*s.free), rigid_motions(position, *s.free, index_map))
                ? LinearOutcome::solved
                : LinearOutcome::inaccurate;
   }

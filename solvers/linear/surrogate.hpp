@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "solvers/linear/preconditioner.hpp"
-#include "src/core/sharing.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -24,8 +24,8 @@ namespace peristat {
 /// replaces S^-1.
 class Surrogate : public Preconditioner {
  public:
-  /// @param sharing partition of the body, which outlives this; null: the body is not partitioned
-  explicit Surrogate(const Sharing* sharing = nullptr);
+  /// @param index_map of the body's points; it outlives this
+  explicit Surrogate(const IndexMap& index_map = whole_body());
   ~Surrogate() override;
 
   void analyze(const BlockPattern& pattern, const FreeDofs& free) override;

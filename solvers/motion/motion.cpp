@@ -72,7 +72,7 @@ void Motion::change_supports_and_loads(std::span<double> displacement) {
 }
 
 void Motion::require_conditions_on_all_ranks(double time) {
-  if (!problem_.assembler.sharing()) return;
+  if (problem_.assembler.index_map().is_whole()) return;
   take_on_all_ranks([&] {
     std::vector<double> values(at_.displacement.size());
     problem_.conditions.prescribe(time, values);
@@ -104,8 +104,7 @@ void Motion::add_half_of_heating() {
   const bool has_energy = !now.eigenstretch.empty() || !now.ground.empty();  // pressures have none
   if (problem_.sums().largest_of_all(has_energy ? 1.0 : 0.0) == 0.0) return;
   const double heating = 0.5 * (energy_under(at_.environment) - energy_under(last_environment_));
-  const Sharing* const sharing = problem_.assembler.sharing();
-  if (!sharing || sharing->ranks().rank() == 0) sums_.work += heating;  // of the whole body
+  if (problem_.assembler.index_map().is_first_rank()) sums_.work += heating;  // of the whole body
 }
 
 double Motion::energy_under(const SharedEnvironment& environment) {

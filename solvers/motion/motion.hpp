@@ -8,6 +8,7 @@
 #include "solvers/motion/motion_setting.hpp"
 #include "solvers/problem/equilibrium.hpp"
 #include "src/core/input_error.hpp"
+#include "src/parallel/collectives.hpp"
 
 namespace peristat {
 
@@ -83,15 +84,13 @@ class Motion {
   /// Evaluates conditions at a time; throws on all ranks if they have no value on one of them.
   template <class Take>
   void take_on_all_ranks(const Take& take) {
-    const Sharing* const sharing = problem_.assembler.sharing();
-    if (!sharing) return take();
     std::optional<InputError> refusal;
     try {
       take();
     } catch (const InputError& error) {
       refusal = error;
     }
-    if (sharing->ranks().max(refusal ? 1.0 : 0.0) == 0.0) return;
+    if (!any_of_all(problem_.assembler.index_map().ranks(), refusal.has_value())) return;
     throw refusal.value_or(InputError("", "", "a condition has no value on another rank"));
   }
   /// Finds the forces of the present state, and commits its damage.

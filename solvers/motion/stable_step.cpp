@@ -4,10 +4,9 @@
 #include <limits>
 #include <vector>
 
-#include "solvers/linear/vector_verbs.hpp"
-#include "solvers/motion/shared_stiffness.hpp"
-#include "solvers/ranks/part_of_body.hpp"
 #include "src/core/counter_random.hpp"
+#include "src/core/vector_verbs.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -60,17 +59,11 @@ double largest_of_block(const double* block, const double* mass, const char* is_
   return largest;
 }
 
-/// A whole body, or the part of it that this rank has.
+/// Numbers and sums of a body's points.
 struct Shared {
-  Shared(const Sharing* of, int dimension) : sharing(of), sums(of, dimension) {}
+  Shared(const IndexMap& of, int dimension) : index_map(of), sums(of, dimension) {}
 
-  /// Number of an owned point in the whole body.
-  [[nodiscard]] GlobalIndex number(Index point) const {
-    if (!sharing) return point;
-    return dynamic_cast<const PartOfBody&>(*sharing).number()[std::size_t(point)];
-  }
-
-  const Sharing* sharing;
+  const IndexMap& index_map;
   Sums sums;
 };
 
@@ -103,7 +96,7 @@ GlobalIndex first_stiffest(const TangentOperator& tangent, const FreeDofs& free,
   double number = beyond_all;
   for (Index i = 0; i < own && number == beyond_all; ++i) {
     const double stiffness = stiffness_of_point(tangent, free, mass, i);
-    if (stiffness >= (1.0 - as_stiff) * largest) number = double(of.number(i));
+    if (stiffness >= (1.0 - as_stiff) * largest) number = double(of.index_map.number_of(i));
   }
   return GlobalIndex(-of.sums.largest_of_all(-number));
 }
@@ -157,8 +150,8 @@ Vector start_vector(const FreeDofs& free, GlobalIndex stiffest, int dimension, c
   Vector start(free.equation.size(), 0.0);
   const auto number_of = [&](Index dof) {
     const bool is_of_point = std::size_t(dof) < of.sums.own(start.size());
-    if (!of.sharing || !is_of_point) return GlobalIndex(dof);
-    return of.number(dof / dimension) * dimension + dof % dimension;
+    if (!is_of_point) return GlobalIndex(dof);
+    return of.index_map.number_of(dof / dimension) * dimension + dof % dimension;
   };
   for (const Index dof : free.dof) {
     start[dof] = 2.0 * open_unit(random_bits(seed, std::uint64_t(number_of(dof)))) - 1.0;
@@ -232,16 +225,6 @@ double bound_of(const TangentOperator& tangent, const FreeDofs& free, std::span<
 
 }  // namespace
 
-Stiffness bound_stiffness(const TangentOperator& tangent, const FreeDofs& free,
-                          std::span<const double> mass, int most_points) {
-  return bound_stiffness(tangent, free, mass, most_points, nullptr);
-}
-
-Stiffness find_stiffness(const TangentOperator& tangent, const FreeDofs& free,
-                         std::span<const double> mass, int most_points) {
-  return find_stiffness(tangent, free, mass, most_points, nullptr);
-}
-
 double Stiffness::stable_step() const {
   return eigenvalue > 0.0 ? 2.0 / std::sqrt(eigenvalue) : std::numeric_limits<double>::infinity();
 }
@@ -249,16 +232,17 @@ double Stiffness::stable_step() const {
 double projection_for_stiffness(const Energy& energy) { return energy.has_rows() ? 1.0 : 0.0; }
 
 Stiffness bound_stiffness(const TangentOperator& tangent, const FreeDofs& free,
-                          std::span<const double> mass, int most_points, const Sharing* sharing) {
-  const Shared of(sharing, tangent.dimension);
+                          std::span<const double> mass, int most_points,
+                          const IndexMap& index_map) {
+  const Shared of(index_map, tangent.dimension);
   const double largest = stiffest(tangent, free, mass, of.sums);
   const double bound = bound_of(tangent, free, mass, most_points, largest, of.sums);
   return {bound, bound};
 }
 
 Stiffness find_stiffness(const TangentOperator& tangent, const FreeDofs& free,
-                         std::span<const double> mass, int most_points, const Sharing* sharing) {
-  const Shared of(sharing, tangent.dimension);
+                         std::span<const double> mass, int most_points, const IndexMap& index_map) {
+  const Shared of(index_map, tangent.dimension);
   const double largest = stiffest(tangent, free, mass, of.sums);
   const double bound = bound_of(tangent, free, mass, most_points, largest, of.sums);
   const double equations = of.sums.of_all(double(free.dof.size()));

@@ -5,6 +5,7 @@
 #include "assembly/energy/energy.hpp"
 #include "assembly/operators/tangent_operator.hpp"
 #include "solvers/linear/free_dofs.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -28,15 +29,18 @@ struct Stiffness {
 /// one, 0 for convolutions, whose projected tangent has other eigenvalues.
 [[nodiscard]] double projection_for_stiffness(const Energy& energy);
 
-/// @param tangent of a state, with that projection
+/// Collective.
+/// @param tangent of a state, with that projection; of a part, if the body is partitioned
 /// @param mass per degree of freedom [kg]
 /// @param most_points points per interaction: 2 of a bond, 4 of a tetrahedron; 0: not known
 [[nodiscard]] Stiffness bound_stiffness(const TangentOperator& tangent, const FreeDofs& free,
-                                        std::span<const double> mass, int most_points);
+                                        std::span<const double> mass, int most_points,
+                                        const IndexMap& index_map = whole_body());
 
 /// Also finds the eigenvalue, with products of the tangent: by Lanczos' method, or if the tangent
 /// is not symmetric by the power method.
 [[nodiscard]] Stiffness find_stiffness(const TangentOperator& tangent, const FreeDofs& free,
-                                       std::span<const double> mass, int most_points);
+                                       std::span<const double> mass, int most_points,
+                                       const IndexMap& index_map = whole_body());
 
 }  // namespace peristat

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "assembly/assembler.hpp"
-#include "solvers/linear/vector_verbs.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "solvers/linear/vector_verbs.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 
@@ -129,7 +129,7 @@ void share_out_jump(const EquilibriumProblem& problem, std::span<const double> f
 
 void move_followers(const EquilibriumProblem& problem, Trial& trial) {
   const Constraints& constraints = problem.conditions.constraints();
-  if (problem.assembler.sharing()) problem.assembler.sharing()->update_ghosts(trial.displacement);
+  problem.assembler.index_map().update_ghosts(trial.displacement);
   if (!constraints.none()) constraints.move(trial.displacement);
 }
 
@@ -151,7 +151,7 @@ double heating_work(Assembler& assembler, const StateView& from, const StateView
   const auto [before, after] = std::pair(from.environment, to.environment);
   const bool is_same = before == after || (before && after && *before == *after);
   // Points of this rank may see no change where those of other ranks do.
-  const Sums sums(assembler.sharing(), assembler.points().dimension);
+  const Sums sums(assembler.index_map(), assembler.points().dimension);
   if (sums.largest_of_all(is_same ? 0.0 : 1.0) == 0.0) return 0.0;
   const auto added_at = [&](const StateView& at) {
     const auto energy_under = [&](const SharedEnvironment& environment) {

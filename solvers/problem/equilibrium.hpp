@@ -8,8 +8,8 @@
 #include "assembly/assembler.hpp"
 #include "assembly/operators/tangent_operator.hpp"
 #include "solvers/linear/free_dofs.hpp"
-#include "solvers/linear/sums.hpp"
 #include "src/conditions/conditions.hpp"
+#include "src/parallel/sums.hpp"
 
 namespace peristat {
 
@@ -49,7 +49,7 @@ struct EquilibriumProblem {
   const InertialSprings* inertia = nullptr;  ///< in a step of an implicit motion
 
   /// Sums over the whole body.
-  [[nodiscard]] Sums sums() const { return {assembler.sharing(), assembler.points().dimension}; }
+  [[nodiscard]] Sums sums() const { return {assembler.index_map(), assembler.points().dimension}; }
 
   /// Loading data that the energy depends on, at a load point and with `inertia`.
   [[nodiscard]] SharedEnvironment environment(const LoadPoint& at) const;

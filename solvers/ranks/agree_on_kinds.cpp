@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "solvers/ranks/heard_of_bonds.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

@@ -1,8 +1,9 @@
 #pragma once
 
-#include "src/core/communicator.hpp"
-#include "src/geometry/numbered_points.hpp"
+#include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
+#include "src/parallel/communicator.hpp"
+#include "src/parallel/numbered_points.hpp"
 
 namespace peristat {
 

@@ -15,6 +15,7 @@
 #include "src/core/infinity.hpp"
 #include "src/neighbourhood/horizon.hpp"
 #include "src/neighbourhood/search.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

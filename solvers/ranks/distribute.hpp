@@ -1,7 +1,7 @@
 #pragma once
 
-#include "src/core/communicator.hpp"
 #include "src/geometry/part.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

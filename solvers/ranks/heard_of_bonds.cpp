@@ -6,6 +6,7 @@
 
 #include "solvers/ranks/ranks.hpp"
 #include "src/geometry/image_number.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

@@ -3,10 +3,10 @@
 #include <functional>
 #include <vector>
 
-#include "src/core/communicator.hpp"
-#include "src/geometry/numbered_points.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
+#include "src/parallel/communicator.hpp"
+#include "src/parallel/numbered_points.hpp"
 
 namespace peristat {
 

@@ -1,9 +1,10 @@
 #include <cstddef>
 
 #include "solvers/linear/load_module.hpp"
-#include "solvers/ranks/ghost_exchange.hpp"
 #include "solvers/ranks/ranks.hpp"
 #include "solvers/ranks/trilinos/module.hpp"
+#include "src/parallel/communicator.hpp"
+#include "src/parallel/ghost_exchange.hpp"
 
 namespace peristat {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "solvers/ranks/agree_on_kinds.hpp"
 #include "src/geometry/counts_bond.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {
@@ -52,7 +53,10 @@ Bonds make_bonds(const Part& part, SurfaceCorrection surface, const BondSetting&
     if (which == PartBonds::among_neighbours) return !(near_i && near_j);
     return which == PartBonds::of_owned || !(near_i || near_j);
   });
-  agree_on_kinds(bonds, part.points, numbered_points(part), ranks);
+  const std::span<const GlobalIndex> numbers = part.number;
+  const auto owned = std::size_t(part.owned);
+  agree_on_kinds(bonds, part.points, {numbers.first(owned), numbers.subspan(owned), part.owner},
+                 ranks);
   return bonds;
 }
 

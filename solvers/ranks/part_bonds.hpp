@@ -1,9 +1,9 @@
 #pragma once
 
 #include "assembly/terms/term.hpp"
-#include "src/core/communicator.hpp"
 #include "src/geometry/part.hpp"
 #include "src/materials/quadrature.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

@@ -3,15 +3,16 @@
 #include <cstddef>
 #include <utility>
 
+#include "src/parallel/index_map.hpp"
+
 namespace peristat {
 
-std::vector<char> without_ghosts(const Sharing& sharing, std::vector<char> prescribed,
+std::vector<char> without_ghosts(const IndexMap& index_map, std::vector<char> prescribed,
                                  int dimension) {
   const auto d = std::ptrdiff_t(dimension);
-  const auto handles = std::min(prescribed.begin() + sharing.count() * d, prescribed.end());
-  const bool owns_handles = sharing.ranks().rank() == 0;
-  std::fill(prescribed.begin() + sharing.owned() * d, owns_handles ? handles : prescribed.end(),
-            char(1));
+  const auto handles = std::min(prescribed.begin() + index_map.count() * d, prescribed.end());
+  std::fill(prescribed.begin() + index_map.owned() * d,
+            index_map.is_first_rank() ? handles : prescribed.end(), char(1));
   return prescribed;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "assembly/assembler.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -16,8 +17,8 @@ namespace peristat {
 template <class Operator>
 struct PartTangent final : Operator {
   /// @throws std::logic_error if the energy is that of a whole body
-  explicit PartTangent(Assembler& energy) : Operator(energy), sharing_(energy.sharing()) {
-    if (!sharing_) throw std::logic_error("PartTangent: of a whole body");
+  explicit PartTangent(Assembler& energy) : Operator(energy), index_map_(energy.index_map()) {
+    if (index_map_.is_whole()) throw std::logic_error("PartTangent: of a whole body");
     this->reference = energy.points().reference;
     factor_.resize(this->reference.size());
   }
@@ -25,20 +26,20 @@ struct PartTangent final : Operator {
   /// Ignores entries of v for ghosts; those of the result are meaningless.
   void multiply(std::span<const double> v, std::span<double> result) const override {
     std::copy(v.begin(), v.end(), factor_.begin());
-    sharing_->update_ghosts(factor_);
+    index_map_.update_ghosts(factor_);
     Operator::multiply(factor_, result);
   }
   [[nodiscard]] bool multiplies_in_place() const override { return true; }
 
  private:
-  const Sharing* sharing_;
+  const IndexMap& index_map_;
   mutable std::vector<double> factor_;  // with the ghosts' values
 };
 
 /// Flags of degrees of freedom without an equation on this rank: those of ghosts and images, those
 /// of handles except on rank 0, and those that are prescribed.
 /// @param prescribed one flag per degree of freedom of all points here
-[[nodiscard]] std::vector<char> without_ghosts(const Sharing& sharing, std::vector<char> prescribed,
-                                               int dimension);
+[[nodiscard]] std::vector<char> without_ghosts(const IndexMap& index_map,
+                                               std::vector<char> prescribed, int dimension);
 
 }  // namespace peristat

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "solvers/ranks/records.hpp"
-#include "src/core/communicator.hpp"
+#include "src/parallel/communicator.hpp"
+#include "src/parallel/ghost_exchange.hpp"
 
 namespace peristat {
 
@@ -29,5 +30,14 @@ namespace peristat {
                                          const std::vector<double>& positions,
                                          const std::vector<std::int64_t>& numbers,
                                          const std::vector<double>& weights);
+
+/// Exchange of ghosts between ranks.
+/// @param owned, ghosts numbers in the whole body of the points that this rank owns, and of those
+///        whose values it needs; each is owned by one rank
+/// @param width values per point
+/// @throws std::logic_error for a ghost that no other rank owns
+[[nodiscard]] std::unique_ptr<GhostExchange> make_ghost_exchange(
+    const Communicator& ranks, const std::vector<std::int64_t>& owned,
+    const std::vector<std::int64_t>& ghosts, int width);
 
 }  // namespace peristat

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "src/parallel/communicator.hpp"
+
 namespace peristat {
 namespace {
 

@@ -5,10 +5,10 @@
 #include <limits>
 #include <utility>
 
-#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/search/condition_rates.hpp"
 #include "solvers/search/convergence.hpp"
 #include "solvers/search/linearisation.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "solvers/linear/vector_verbs.hpp"
 #include "src/core/input_error.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/search/way_of_load.hpp"
 #include "src/core/threads.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {
@@ -224,8 +224,7 @@ class Relaxation {
   /// Adds work that all ranks know, at rank 0 alone: contributions of the ranks are summed at the
   /// end.
   void add_work_of_body(double work) {
-    const Sharing* const sharing = problem_.assembler.sharing();
-    if (sharing == nullptr || sharing->ranks().rank() == 0) result_.external_work += work;
+    if (problem_.assembler.index_map().is_first_rank()) result_.external_work += work;
   }
 
   [[nodiscard]] double energy_under(const SharedEnvironment& environment) {
@@ -237,7 +236,6 @@ class Relaxation {
   template <class Body>
   FourSums sum(const Body& body) {
     FourSums total = sum_here(body);
-    if (problem_.assembler.sharing() == nullptr) return total;
     const std::vector<double> all =
         of_body_.of_all(std::vector<double>(total.begin(), total.end()));
     std::copy(all.begin(), all.end(), total.begin());

@@ -6,10 +6,11 @@
 #include <limits>
 #include <utility>
 
-#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/problem/working_force.hpp"
 #include "solvers/search/linearisation.hpp"
 #include "solvers/search/way_of_load.hpp"
+#include "src/core/vector_verbs.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -146,12 +147,11 @@ class Flow {
   /// Number in the whole body of a degree of freedom of this rank: those of points come first, then
   /// those of handles (generalised degrees of freedom).
   [[nodiscard]] GlobalIndex dof_of_body(Index dof) const {
-    const Sharing* const sharing = problem_.assembler.sharing();
+    const IndexMap& index_map = problem_.assembler.index_map();
     const Points& points = problem_.assembler.points();
     const Index d = points.dimension, point = dof / d;
     if (point >= points.count()) return (points_of_body_ + point - points.count()) * d + dof % d;
-    if (sharing == nullptr) return dof;
-    return sharing->number()[std::size_t(point)] * d + dof % d;
+    return index_map.number_of(point) * d + dof % d;
   }
 
   /// Residual, zero on degrees of freedom that are not free.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/linear/vector_verbs.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solvers/linear/vector_verbs.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 

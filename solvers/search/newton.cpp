@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <utility>
 
-#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/search/convergence.hpp"
 #include "solvers/search/linearisation.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/linear/vector_verbs.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {

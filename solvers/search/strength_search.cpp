@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "assembly/terms/bonds/borne_stretches.hpp"
-#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/search/convergence.hpp"
 #include "solvers/search/linearisation.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {

@@ -22,8 +22,8 @@
 #include "solvers/study/collocation_model.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/fracture_data.hpp"
-#include "solvers/study/idle_interfaces.hpp"
 #include "solvers/study/linear_model.hpp"
+#include "solvers/study/require_memory_for.hpp"
 #include "solvers/study/state_model.hpp"
 #include "solvers/study/surface_sites.hpp"
 #include "src/connectivity/fragments.hpp"
@@ -35,6 +35,8 @@
 #include "src/geometry/image_kinds.hpp"
 #include "src/neighbourhood/horizon.hpp"
 #include "src/neighbourhood/share_on_horizon.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -90,7 +92,7 @@ Model make_bond_model(const Body& body, const PointMaterials& materials, Bonds b
   const BondMaterials mixed(of, materials, body.factors, body.points,
                             micromoduli(of, materials, body.setting));
   if (!of.is_uniform()) {
-    refuse_idle_interfaces(of, materials, bonds, body.part ? &body.part->ranks() : nullptr);
+    refuse_idle_interfaces(of, materials, bonds, body.index_map->ranks());
     mixed.weigh(bonds);
   }
   cut = cut_bonds(bonds, body.points, of.cracks);
@@ -135,17 +137,17 @@ void make_model(Body& body, const MakeNetwork& make_network, int threads) {
   CutBonds cut;
   if (is_linear) {
     body.model = make_linear_model(of, materials, body.factors, body.points, body.setting,
-                                   std::move(bonds), cut, body.part.get(), threads);
+                                   std::move(bonds), cut, *body.index_map, threads);
   } else if (of.has_states()) {
     body.model = make_state_model(of, materials, body.factors, body.points, setting,
-                                  std::move(bonds), cut, body.part.get(), threads);
+                                  std::move(bonds), cut, *body.index_map, threads);
   } else if (of.is_collocated()) {
     body.model =
         make_collocation_model(of, materials, body.factors, body.points, setting, std::move(bonds),
-                               cut, body.collocation, body.part.get(), threads);
+                               cut, body.collocation, *body.index_map, threads);
   } else if (is_cpd) {
     body.model = make_cpd_model(of, materials, body.factors, body.points, body.setting,
-                                std::move(bonds), cut, body.part.get(), threads);
+                                std::move(bonds), cut, *body.index_map, threads);
   } else {
     body.model = make_bond_model(body, materials, std::move(bonds), cut);
   }
@@ -160,10 +162,8 @@ void store_interactions(Body& body, int threads) {
   for (const auto& term : body.model.terms()) storage.needed += term->bytes_to_store();
   // A rank may have no points; there is no estimate for this case.
   double others = body.points.count() == 0 ? 0.0 : estimate_memory(body).least_bytes();
-  if (body.part) {
-    storage.needed = sum_on_machine(body.part->ranks(), storage.needed);
-    others = sum_on_machine(body.part->ranks(), others);
-  }
+  storage.needed = sum_on_machine(body.index_map->ranks(), storage.needed);
+  others = sum_on_machine(body.index_map->ranks(), others);
   storage.room = std::max(0.5 * (available_memory() - others), 0.0);
   if (!storage.fits()) return;
   for (const auto& term : body.model.terms()) term->store(body.points, threads);
@@ -216,12 +216,13 @@ LoadingProgramme programme_of(const BodySpecification& of) {
   return of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme);
 }
 
-LoadSetting load_setting(const BodySpecification& of, const Points& points) {
+LoadSetting load_setting(const BodySpecification& of, const Points& points,
+                         const IndexMap& index_map) {
   const PointMaterials materials(of, points);
   const bool has_gravity = std::any_of(
       of.loads.begin(), of.loads.end(),
       [](const LoadSpecification& load) { return load.kind == LoadSpecification::Kind::gravity; });
-  LoadSetting setting{of.horizon};
+  LoadSetting setting{.horizon = of.horizon, .index_map = index_map};
   setting.density = of_materials(materials, points, &MaterialSpecification::density, "density",
                                  has_gravity ? "gravity" : "");
   setting.thermal_expansion =
@@ -293,38 +294,22 @@ int usable_threads(int asked_for) {
   return threads;
 }
 
-std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of, int threads) {
-  threads = usable_threads(threads);
-  check_points(points);
-  check_specification(of, points);
-  auto owned = std::make_unique<Body>();
-  Body& body = *owned;
+namespace {
+
+/// Stores points and specification, before any bond is made.
+void begin_body(Body& body, Points points, const BodySpecification& of) {
   body.points = std::move(points);
-  const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
-  add_images(body.points, of.constraints.symmetries, periods, reach_of_images(of, body.points));
   body.setting = bond_setting(of, body.points);
   body.specification = with_stretches(of, body.setting, body.points.spacing);
   require_resolved(body.points, body.setting.horizon);
-  BodySize expected = size_of(body.points);
-  expected.horizon_ratio = reach_ratio(of.volume_correction, of.horizon_shape,
-                                       body.points.dimension, body.horizon_ratio());
-  if (of.is_convolved()) {
-    expected.horizon_ratio =
-        network_setting(of, body.points, body.setting).horizon / body.points.spacing;
-  }
-  expected.bonds = expected_bonds(expected.points, body.points.dimension, expected.horizon_ratio);
-  const bool stores_states = of.has_states() && !of.is_convolved();
-  if (stores_states) reach_twice(expected);
-  // State-based bodies need a stored tangent for products.
-  require_memory(estimate_memory(expected).bytes(false, stores_states, {}),
-                 fmt::format("the body with {} points", body.points.count()));
-  make_model(
-      body,
-      [&](const BondSetting& setting) {
-        return make_bonds(body.points, of.surface_correction, setting, threads);
-      },
-      threads);
-  LoadSetting loads = load_setting(of, body.points);
+}
+
+/// Makes model and conditions of a body's points.
+template <class MakeBonds>
+void complete_body(Body& body, const BodySpecification& of, const MakeBonds& make_bonds,
+                   int threads) {
+  make_model(body, make_bonds, threads);
+  LoadSetting loads = load_setting(of, body.points, *body.index_map);
   take_surface(body, loads, threads);
   body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
                                                  programme_of(of), of.controls, loads,
@@ -335,7 +320,45 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of
   add_terms_of_conditions(body.model, body);
   const Stopwatch watch(body.seconds_neighbourhood);
   store_interactions(body, threads);
-  return owned;
+}
+
+/// Bytes of the bonds that so many points are expected to have.
+double expected_bytes(const Body& body, const BodySpecification& of) {
+  if (body.points.count() == 0) return 0.0;  // there is no estimate for this case
+  BodySize expected = size_of(body.points);
+  expected.horizon_ratio = reach_ratio(of.volume_correction, of.horizon_shape,
+                                       body.points.dimension, body.horizon_ratio());
+  if (of.is_convolved()) {
+    expected.horizon_ratio =
+        network_setting(of, body.points, body.setting).horizon / body.points.spacing;
+  }
+  expected.bonds = expected_bonds(expected.points, body.points.dimension, expected.horizon_ratio);
+  // State-based bodies need a stored tangent for products.
+  const bool stores_states = of.has_states() && !of.is_convolved();
+  if (stores_states) reach_twice(expected);
+  return estimate_memory(expected).bytes(false, stores_states, {});
+}
+
+}  // namespace
+
+std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of, int threads) {
+  threads = usable_threads(threads);
+  check_points(points);
+  check_specification(of, points);
+  const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
+  add_images(points, of.constraints.symmetries, periods, reach_of_images(of, points));
+  auto body = std::make_unique<Body>();
+  begin_body(*body, std::move(points), of);
+  const Index own = body->points.own();
+  body->index_map = std::make_unique<const IndexMap>(own, body->points.count() - own);
+  require_memory_for(*body, expected_bytes(*body, of));
+  complete_body(
+      *body, of,
+      [&](const BondSetting& setting) {
+        return make_bonds(body->points, of.surface_correction, setting, threads);
+      },
+      threads);
+  return body;
 }
 
 namespace {
@@ -364,22 +387,6 @@ void refuse_without_ranks(const BodySpecification& of) {
   }
 }
 
-double bytes_of_part(const Points& points, const BodySpecification& of) {
-  if (points.count() == 0) return 0.0;  // there is no estimate for this case
-  BodySize expected = size_of(points);
-  expected.horizon_ratio = reach_ratio(of.volume_correction, of.horizon_shape, points.dimension,
-                                       of.horizon / points.spacing);
-  expected.bonds = expected_bonds(expected.points, points.dimension, expected.horizon_ratio);
-  if (of.has_states()) reach_twice(expected);
-  return estimate_memory(expected).bytes(false, of.has_states(), {});
-}
-
-/// @throws MemoryError if the parts on one machine can't fit into it
-void require_memory_for(const Part& part, const BodySpecification& of, const Communicator& ranks) {
-  require_memory(sum_on_machine(ranks, bytes_of_part(part.points, of)),
-                 fmt::format("what a machine has of the body with {} points", part.whole));
-}
-
 }  // namespace
 
 std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
@@ -389,34 +396,17 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   part.points.owned = part.owned;
   check_specification(of, part.points);
   add_images(part.points, part.images, part.reach);
-  auto made = std::make_unique<Body>();
-  Body& body = *made;
-  body.setting = bond_setting(of, part.points);
-  body.specification = with_stretches(of, body.setting, part.points.spacing);
-  require_resolved(part.points, body.setting.horizon);
-  require_memory_for(part, of, ranks);
-  body.part = std::make_unique<const PartOfBody>(part, ranks);
-  body.points = part.points;
-  make_model(
-      body,
+  auto body = std::make_unique<Body>();
+  begin_body(*body, part.points, of);
+  body->index_map = std::make_unique<const IndexMap>(make_index_map(part, ranks));
+  require_memory_for(*body, expected_bytes(*body, of));
+  complete_body(
+      *body, of,
       [&](const BondSetting& setting) {
         return make_bonds(part, of.surface_correction, setting, ranks, threads, bonds_of_part(of));
       },
       threads);
-  LoadSetting loads = load_setting(of, body.points);
-  loads.ranks = &ranks;
-  loads.numbers = body.part->numbered();
-  take_surface(body, loads, threads);
-  body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
-                                                 programme_of(of), of.controls, loads,
-                                                 of.eigenstrains, of.constraints, of.foundations);
-  if (loads.surface) {
-    refuse_points_on_faces(body.points, *loads.surface, body.conditions->prescribed());
-  }
-  add_terms_of_conditions(body.model, body);
-  const Stopwatch watch(body.seconds_neighbourhood);
-  store_interactions(body, threads);
-  return made;
+  return body;
 }
 
 void add_terms_of_conditions(Model& model, const Body& body) {
@@ -460,9 +450,9 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.has_symmetric_blocks = body.model.has_symmetric_blocks();
   size.is_constrained = !body.conditions->constraints().none();
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
-  if (body.part) {
-    size.ranks = body.part->ranks().count();
-    size.gathered_points = body.part->ranks().rank() == 0 ? double(body.part->whole()) : 0.0;
+  if (!body.index_map->is_whole()) {
+    size.ranks = body.index_map->ranks().count();
+    size.gathered_points = body.index_map->is_first_rank() ? double(body.index_map->whole()) : 0.0;
   }
   for (const auto& term : body.model.terms()) {
     size.blocks = std::max(size.blocks, double(term->couplings().partner.size()));
@@ -558,14 +548,13 @@ namespace {
 /// Describes the parts of the body that may move freely; empty if there are none.
 std::string describe_free_motions(const Body& body, const Bonds& bonds) {
   const std::vector<FreeMotion> parts =
-      free_motions(body.points, bonds, body.conditions->holding(at_rest(body)), body.part.get());
-  const GlobalIndex whole = body.part ? body.part->whole() : body.points.own();
+      free_motions(body.points, bonds, body.conditions->holding(at_rest(body)), *body.index_map);
   std::string text;
   constexpr std::size_t most_listed = 5;
   for (std::size_t k = 0; k < std::min(parts.size(), most_listed); ++k) {
     const FreeMotion& part = parts[k];
     const std::string place = place_text(part.place, body.points.dimension);
-    if (part.points == whole) {
+    if (part.points == body.index_map->whole()) {
       text += "the whole body may ";
     } else if (part.points == 1) {
       text += "the isolated point at " + place + " m may ";
@@ -591,10 +580,10 @@ std::vector<std::pair<double, Coordinates>> places_of_loose(const Body& body,
   std::vector<double> flat;
   for (const Index point : loose) {
     const Coordinates at = body.points.position(point);
-    flat.push_back(body.part ? double(body.part->number()[std::size_t(point)]) : double(point));
+    flat.push_back(double(body.index_map->number_of(point)));
     flat.insert(flat.end(), at.begin(), at.end());
   }
-  if (body.part) flat = all_together(body.part->ranks(), flat);
+  flat = concatenated(body.index_map->ranks(), flat);
   std::vector<std::pair<double, Coordinates>> places;
   for (std::size_t k = 0; k < flat.size(); k += 4) {
     places.emplace_back(flat[k], Coordinates{flat[k + 1], flat[k + 2], flat[k + 3]});
@@ -607,7 +596,7 @@ std::vector<std::pair<double, Coordinates>> places_of_loose(const Body& body,
 std::string describe_loose_points(const Body& body, const Bonds& bonds) {
   const std::vector<double> rest = at_rest(body);
   const Fragments fragments = find_fragments(body.points, bonds, {}, body.conditions->prescribed(),
-                                             rest, body.conditions->holding(rest), body.part.get());
+                                             rest, body.conditions->holding(rest), *body.index_map);
   const auto places = places_of_loose(body, fragments.loose);
   if (places.empty()) return {};
   return fmt::format("{} {} on too few bonds to be held by them, {}at {} m", places.size(),
@@ -628,10 +617,8 @@ std::string describe_flatness(const Body& body) {
       low = std::min(low, body.points.position(i)[c]);
       high = std::max(high, body.points.position(i)[c]);
     }
-    if (body.part) {
-      low = body.part->ranks().min(low);
-      high = body.part->ranks().max(high);
-    }
+    low = body.index_map->ranks().min(low);
+    high = body.index_map->ranks().max(high);
     extent[std::size_t(c)] = high - low;
   }
   const double largest = std::max({extent[0], extent[1], extent[2]});

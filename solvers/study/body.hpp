@@ -7,11 +7,12 @@
 
 #include "assembly/terms/model.hpp"
 #include "solvers/linear/memory_estimate.hpp"
-#include "solvers/ranks/part_of_body.hpp"
+#include "solvers/ranks/make_index_map.hpp"
 #include "solvers/study/body_specification.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/collocation_model.hpp"
 #include "src/conditions/conditions.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -42,7 +43,7 @@ struct Body {
   std::vector<BondEnds> cut_bonds;   ///< by pre-cracks
   CollocationSummary collocation;    ///< of model lps
   double seconds_neighbourhood = 0.0;
-  std::unique_ptr<const PartOfBody> part;  ///< null: the body is not partitioned
+  std::unique_ptr<const IndexMap> index_map;
 
   [[nodiscard]] double horizon_ratio() const { return setting.horizon / points.spacing; }
 };

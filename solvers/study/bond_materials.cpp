@@ -10,10 +10,10 @@
 #include <fmt/format.h>
 
 #include "solvers/study/bond_potential.hpp"
-#include "solvers/study/idle_interfaces.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/materials/bulk_bonds.hpp"
+#include "src/parallel/communicator.hpp"
 #include "src/potentials/make_saw_tooth.hpp"
 
 namespace peristat {
@@ -232,12 +232,7 @@ BondMaterials::Failing BondMaterials::smooth_potential(const Bonds& bonds) const
 }
 
 void refuse_idle_interfaces(const BodySpecification& from, const PointMaterials& materials,
-                            const Bonds& bonds) {
-  refuse_idle_interfaces(from, materials, bonds, nullptr);
-}
-
-void refuse_idle_interfaces(const BodySpecification& from, const PointMaterials& materials,
-                            const Bonds& bonds, const Communicator* ranks) {
+                            const Bonds& bonds, const Communicator& ranks) {
   std::vector<double> is_met(from.interfaces.size());
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
@@ -249,7 +244,7 @@ void refuse_idle_interfaces(const BodySpecification& from, const PointMaterials&
       }
     }
   }
-  if (ranks) is_met = ranks->max(is_met);
+  is_met = ranks.max(is_met);
   for (std::size_t k = 0; k < is_met.size(); ++k) {
     if (is_met[k] > 0.0) continue;
     throw InputError("interfaces[" + std::to_string(k) + "]", "",

@@ -8,6 +8,7 @@
 #include "src/geometry/points.hpp"
 #include "src/materials/directed_constant.hpp"
 #include "src/neighbourhood/bonds.hpp"
+#include "src/parallel/communicator.hpp"
 #include "src/potentials/potential.hpp"
 
 namespace peristat {
@@ -94,9 +95,10 @@ class BondMaterials {
 [[nodiscard]] std::vector<PointMaterials::Material> all_materials(const BodySpecification& from,
                                                                   const PointMaterials& materials);
 
-/// Refuses an interface that no bond crosses: a name or a set must be wrong.
+/// Refuses an interface that no bond of any rank crosses: a name or a set must be wrong.
+/// Collective.
 /// @throws InputError ("interfaces[0].between")
 void refuse_idle_interfaces(const BodySpecification& from, const PointMaterials& materials,
-                            const Bonds& bonds);
+                            const Bonds& bonds, const Communicator& ranks);
 
 }  // namespace peristat

@@ -8,9 +8,10 @@
 
 #include "assembly/terms/collocation/collocation_term.hpp"
 #include "assembly/terms/collocation/make_collocation_network.hpp"
-#include "solvers/study/idle_interfaces.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -44,17 +45,16 @@ constexpr int farthest_whole_ball = 4;
 
 /// Position of the first point of the whole body whose entry is 0; nothing if there is none.
 std::optional<Coordinates> first_without(const std::vector<double>& has, const Points& points,
-                                         const PartOfBody* part) {
+                                         const IndexMap& index_map) {
   constexpr double nowhere = 1e300;
   const Index own = points.owned.value_or(points.count());
   const Index here = Index(std::find(has.begin(), has.begin() + own, 0.0) - has.begin());
-  if (!part) return here < own ? std::optional(points.position(here)) : std::nullopt;
-  const double number = here < own ? double(part->number()[std::size_t(here)]) : nowhere;
-  const double first = part->ranks().min(number);
+  const double number = here < own ? double(index_map.number_of(here)) : nowhere;
+  const double first = index_map.ranks().min(number);
   if (first == nowhere) return std::nullopt;
   Coordinates place{};
   if (number == first) place = points.position(here);
-  add_up(part->ranks(), place);
+  add_up(index_map.ranks(), place);
   return place;
 }
 
@@ -62,10 +62,10 @@ std::optional<Coordinates> first_without(const std::vector<double>& has, const P
 /// surfaces are made up from points with the same deficit: the operator has eigenvalues of the
 /// other sign, so that a strip bends against its load.
 void refuse_thin_bodies(const Points& points, const CollocationNetwork& network,
-                        const PartOfBody* part) {
+                        const IndexMap& index_map) {
   const Index own = points.owned.value_or(points.count());
   std::vector<double> near(network.is_whole.begin(), network.is_whole.end());
-  if (part) update_ghost_values(*part, points.dimension, near);
+  index_map.update_ghost_values(near);
   for (int bonds = 0; bonds < farthest_whole_ball; ++bonds) {
     const std::vector<double> before = near;
     for (Index i = 0; i < own; ++i) {
@@ -73,9 +73,9 @@ void refuse_thin_bodies(const Points& points, const CollocationNetwork& network,
         near[i] = before[std::size_t(network.neighbour[std::size_t(e)])];
       }
     }
-    if (part) update_ghost_values(*part, points.dimension, near);
+    index_map.update_ghost_values(near);
   }
-  const std::optional<Coordinates> at = first_without(near, points, part);
+  const std::optional<Coordinates> at = first_without(near, points, index_map);
   if (!at) return;
   throw InputError("material.model", "lps",
                    "needs bodies thicker than two horizons: no point within four bonds of the one "
@@ -122,7 +122,7 @@ double lps_critical_stretch(const MaterialSpecification& material, const BondSet
 Model make_collocation_model(const BodySpecification& from, const PointMaterials& materials,
                              const PointFactors& factors, const Points& points,
                              const BondSetting& setting, Bonds bonds, CutBonds& cut,
-                             CollocationSummary& summary, const PartOfBody* part, int threads) {
+                             CollocationSummary& summary, const IndexMap& index_map, int threads) {
   require_lattice(points);
   std::vector<DirectedConstant> moduli;
   auto constants = std::make_shared<LameConstants>();
@@ -139,14 +139,14 @@ Model make_collocation_model(const BodySpecification& from, const PointMaterials
   }
   const BondMaterials mixed(from, materials, factors, points, std::move(moduli));
   if (!from.is_uniform()) {
-    refuse_idle_interfaces(from, materials, bonds, part ? &part->ranks() : nullptr);
+    refuse_idle_interfaces(from, materials, bonds, index_map.ranks());
     mixed.weigh(bonds);
   }
   cut = cut_bonds(bonds, points, from.cracks);
   MadeCollocationNetwork made =
       make_collocation_network(points, bonds, setting.horizon, from.collocation.degree, threads);
   summary = {made.negative, made.lowered, made.solves, made.lowest};
-  refuse_thin_bodies(points, made.network, part);
+  refuse_thin_bodies(points, made.network, index_map);
   if (from.collocation.normals == NormalSource::exact) {
     made.network.normals = normals_of_faces(from, points, setting.horizon, made.network, cut);
   }

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "assembly/terms/model.hpp"
-#include "solvers/ranks/part_of_body.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "src/connectivity/crack.hpp"
 #include "src/materials/lame_constants.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -24,14 +24,13 @@ struct CollocationSummary {
 
 /// Makes the model of a body of model "lps"; `cut` receives the bonds that its pre-cracks have cut.
 /// Its bonds are those of a bond model that dissipates as much.
-/// @param part null: the body is not partitioned
 /// @throws InputError ("material.model") for points on no lattice of squares or cubes, and as
 ///         optimised_weights does
 [[nodiscard]] Model make_collocation_model(const BodySpecification& from,
                                            const PointMaterials& materials,
                                            const PointFactors& factors, const Points& points,
                                            const BondSetting& setting, Bonds bonds, CutBonds& cut,
-                                           CollocationSummary& summary, const PartOfBody* part,
+                                           CollocationSummary& summary, const IndexMap& index_map,
                                            int threads);
 
 }  // namespace peristat

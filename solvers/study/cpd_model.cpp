@@ -8,11 +8,11 @@
 #include "assembly/terms/simplices/simplex_term.hpp"
 #include "solvers/ranks/agree_on_kinds.hpp"
 #include "solvers/study/bond_potential.hpp"
-#include "solvers/study/idle_interfaces.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/image_number.hpp"
 #include "src/neighbourhood/neighbour_counts.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -23,21 +23,12 @@ struct HigherConstant {
   FactorsOfKinds factors{};  ///< by the kinds of points of several materials
 };
 
-/// Gives ghosts the values of their owners, one per point.
-void update_ghosts(const PartOfBody& part, int dimension, std::vector<double>& values) {
-  const auto d = std::size_t(dimension);
-  std::vector<double> first(values.size() * d, 0.0);  // an exchange has d values per point
-  for (std::size_t i = 0; i < values.size(); ++i) first[i * d] = values[i];
-  part.update_ghosts(first);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = first[i * d];
-}
-
 /// Numbers in the whole body of the points of a part, followed by images as they are there.
-PointNumbers numbers_of(const PartOfBody& part, const Points& points) {
+PointNumbers numbers_of(const IndexMap& index_map, const Points& points) {
   PointNumbers numbers;
   for (Index point = 0; point < points.count(); ++point) {
-    numbers.push_back(image_number(points, point) * part.whole() +
-                      part.number_of(points.source(point)));
+    numbers.push_back(image_number(points, point) * index_map.whole() +
+                      index_map.number_of(points.source(point)));
   }
   return numbers;
 }
@@ -46,17 +37,16 @@ PointNumbers numbers_of(const PartOfBody& part, const Points& points) {
 ///        surface
 /// @param left bonds that have an influence and that pre-cracks have not cut; interactions with
 ///        other bonds are lost
-/// @param part null: the body is not partitioned. Otherwise a ghost's interactions are counted by
-///        its owner
+/// Collective: a ghost's interactions are counted by its owner.
 template <class Measure>
 Simplices<Measure> make_simplices(const BodySpecification& from, const Points& points,
                                   const Bonds& bonds, const Bonds& left,
                                   const BulkNeighbourhood& bulk, const Kernel& kernel,
                                   HigherConstant constant, const PointFactors& factors,
-                                  const PartOfBody* part, int threads) {
+                                  const IndexMap& index_map, int threads) {
   Interactions<Measure> interactions(points, bonds, kernel.cross_section, threads);
   const auto found = double(interactions.count());
-  if ((part ? part->ranks().max(found) : found) == 0.0) {
+  if (index_map.ranks().max(found) == 0.0) {
     constexpr bool is_triangle = Measure::arms == 2;
     throw InputError(is_triangle ? "material.c2" : "material.c3", number_text(constant.constant),
                      std::string("the body has no ") + (is_triangle ? "triangles" : "tetrahedra") +
@@ -67,7 +57,7 @@ Simplices<Measure> make_simplices(const BodySpecification& from, const Points& p
   }
   auto shares = weight_shares<Measure>(
       points, effective_volumes(interactions, neighbour_counts(bonds), bulk, from.weights));
-  if (part) update_ghosts(*part, points.dimension, shares);
+  index_map.update_ghost_values(shares);
   for (std::size_t i = 0; i < factors.stiffness.size(); ++i) shares[i] *= factors.stiffness[i];
   if (left.count() < bonds.count()) {
     interactions = Interactions<Measure>(points, left, kernel.cross_section, threads);
@@ -209,7 +199,7 @@ CpdConstants cpd_constants_of(const MaterialSpecification& material, const std::
 
 Model make_cpd_model(const BodySpecification& from, const PointMaterials& materials,
                      const PointFactors& factors, const Points& points, const BondSetting& setting,
-                     Bonds bonds, CutBonds& cut, const PartOfBody* part, int threads) {
+                     Bonds bonds, CutBonds& cut, const IndexMap& index_map, int threads) {
   // Tables have entries for the materials of four points.
   constexpr std::size_t most = 24;
   if (materials.all().size() > most) {
@@ -239,7 +229,7 @@ Model make_cpd_model(const BodySpecification& from, const PointMaterials& materi
   set_one_neighbour_weights(bonds, points, bulk);
   const BondMaterials mixed(from, materials, factors, points, std::move(c1));
   if (!from.is_uniform()) {
-    refuse_idle_interfaces(from, materials, bonds, part ? &part->ranks() : nullptr);
+    refuse_idle_interfaces(from, materials, bonds, index_map.ranks());
     mixed.weigh(bonds);
   }
   Bonds left = bonds;
@@ -250,7 +240,7 @@ Model make_cpd_model(const BodySpecification& from, const PointMaterials& materi
     left.remove_if(
         [&](Index, Offset bond) { return setting.influence_at(left.length(bond)) == 0.0; });
   }
-  if (part) agree_on_kinds(left, points, part->numbered(), part->ranks());
+  if (!index_map.is_whole()) agree_on_kinds(left, points, index_map.numbered(), index_map.ranks());
   cut = cut_bonds(left, points, from.cracks);
   auto [potential, never_fails] = mixed.potential(left);
   Model model(std::move(left), std::move(potential), std::move(never_fails));
@@ -258,16 +248,16 @@ Model make_cpd_model(const BodySpecification& from, const PointMaterials& materi
   std::optional<Simplices<Volume>> tetrahedra;
   if (of_triangles.constant != 0.0) {
     triangles = make_simplices<Area>(from, points, bonds, model.bonds(), bulk, setting,
-                                     of_triangles, factors, part, threads);
+                                     of_triangles, factors, index_map, threads);
   }
   if (of_tetrahedra.constant != 0.0) {
     tetrahedra = make_simplices<Volume>(from, points, bonds, model.bonds(), bulk, setting,
-                                        of_tetrahedra, factors, part, threads);
+                                        of_tetrahedra, factors, index_map, threads);
   }
   if (triangles || tetrahedra) {
-    model.add(std::make_shared<SimplexTerm>(model.bond_term(), std::move(triangles),
-                                            std::move(tetrahedra),
-                                            part ? numbers_of(*part, points) : PointNumbers()));
+    model.add(std::make_shared<SimplexTerm>(
+        model.bond_term(), std::move(triangles), std::move(tetrahedra),
+        index_map.is_whole() ? PointNumbers() : numbers_of(index_map, points)));
   }
   return model;
 }

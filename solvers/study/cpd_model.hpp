@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "assembly/terms/model.hpp"
-#include "solvers/ranks/part_of_body.hpp"
 #include "solvers/study/body_specification.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/point_materials.hpp"
 #include "src/connectivity/crack.hpp"
 #include "src/materials/cpd_constants.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -36,11 +36,10 @@ void refuse_damage_of_negative_constants(const MaterialSpecification& material,
 /// @throws InputError for damage together with a negative constant
 /// @param bonds without weights yet
 /// @param cut receives the bonds that pre-cracks have cut
-/// @param part null: the body is not partitioned. Otherwise the part, with the bonds
-///        among_neighbours
+/// @param bonds of a part: those among_neighbours
 [[nodiscard]] Model make_cpd_model(const BodySpecification& from, const PointMaterials& materials,
                                    const PointFactors& factors, const Points& points,
                                    const BondSetting& setting, Bonds bonds, CutBonds& cut,
-                                   const PartOfBody* part, int threads);
+                                   const IndexMap& index_map, int threads);
 
 }  // namespace peristat

@@ -5,13 +5,13 @@
 #include <limits>
 #include <string>
 
-#include "solvers/linear/sums.hpp"
 #include "solvers/study/cpd_model.hpp"
 #include "solvers/study/point_materials.hpp"
 #include "src/conditions/points_of_set.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/measures/small_algebra.hpp"
+#include "src/parallel/sums.hpp"
 
 namespace peristat {
 namespace {
@@ -54,7 +54,7 @@ TipElasticity elasticity_of(const PointMaterials::Material& material, const Body
 /// Returns the material of the points about a tip; refuses a ring with two.
 std::size_t material_about(const Body& body, const PointMaterials& materials,
                            const CrackTipIntegrals& tip, const std::string& key) {
-  const Sums of_body(body.part.get(), body.points.dimension);
+  const Sums of_body(*body.index_map, body.points.dimension);
   double first = std::numeric_limits<double>::infinity(), last = -first;
   for (const Index point : tip.points()) {
     const auto of = double(materials.of(body.points.source(point)));
@@ -118,10 +118,10 @@ std::vector<CrackTip> make_crack_tips(const Body& body,
     if (body.specification.eigenstrains.are_there()) {
       throw InputError(key, "", "does not go with eigenstrains or a temperature");
     }
-    if (body.part) refuse_without_ranks(tips[k], key);
+    if (!body.index_map->is_whole()) refuse_without_ranks(tips[k], key);
     CrackTip tip{{body.points,
                   tips[k],
-                  {body.setting.reach(), body.setting.cross_section, body.part.get()},
+                  {body.setting.reach(), body.setting.cross_section, *body.index_map},
                   key},
                  nullptr};
     refuse_held_rings(body, tip.integrals, key);

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "assembly/terms/damage.hpp"
-#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/search/newton.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/vector_verbs.hpp"
 #include "src/geometry/images.hpp"
 #include "src/measures/small_algebra.hpp"
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/search/bordered_newton.hpp"
 #include "src/core/input_error.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 

@@ -14,12 +14,12 @@
 #include "assembly/terms/linear/linear_term.hpp"
 #include "assembly/terms/points/convolved_term.hpp"
 #include "solvers/study/fracture_data.hpp"
-#include "solvers/study/idle_interfaces.hpp"
 #include "solvers/study/state_model.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/lattice_box.hpp"
 #include "src/geometry/lattice_frame.hpp"
 #include "src/materials/lame_constants.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -357,7 +357,7 @@ Model make_correspondence(const BodySpecification& from, const PointMaterials& m
 Model make_linear_model(const BodySpecification& from, const PointMaterials& materials,
                         const PointFactors& factors, const Points& points,
                         const BondSetting& setting, Bonds bonds, CutBonds& cut,
-                        const PartOfBody* part, int threads) {
+                        const IndexMap& index_map, int threads) {
   if (points.own() < points.count()) drop_weightless(bonds);
   if (from.force_operator == ForceOperator::fft) {
     static_cast<void>(cut_bonds(bonds, points, from.cracks));
@@ -381,7 +381,7 @@ Model make_linear_model(const BodySpecification& from, const PointMaterials& mat
     lattice = lattice_of(from, points, setting, mixed.modulus(), cut, threads);
   } else {
     if (!from.is_uniform()) {
-      refuse_idle_interfaces(from, materials, bonds, part ? &part->ranks() : nullptr);
+      refuse_idle_interfaces(from, materials, bonds, index_map.ranks());
       mixed.weigh(bonds);
     }
     cut = cut_bonds(bonds, points, from.cracks);

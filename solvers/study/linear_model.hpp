@@ -1,9 +1,9 @@
 #pragma once
 
 #include "assembly/terms/model.hpp"
-#include "solvers/ranks/part_of_body.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "src/connectivity/crack.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -17,12 +17,12 @@ namespace peristat {
 /// bonds that its pre-cracks have cut.
 /// @param setting of all its bonds
 /// @param bonds those of network_setting
-/// @param part of a partitioned body, of bonds alone; null: the body is not partitioned
+/// @param index_map of a partitioned body, for bonds alone
 /// @throws InputError ("force_operator") for forces that are no convolution
 [[nodiscard]] Model make_linear_model(const BodySpecification& from,
                                       const PointMaterials& materials, const PointFactors& factors,
                                       const Points& points, const BondSetting& setting, Bonds bonds,
-                                      CutBonds& cut, const PartOfBody* part, int threads);
+                                      CutBonds& cut, const IndexMap& index_map, int threads);
 
 /// Returns the operator that sums a body's forces faster in a motion by explicit steps. Other runs,
 /// which need more than forces, get bonds; models that only convolutions can sum get these.

@@ -16,6 +16,7 @@
 #include "solvers/search/updated_tangent.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "src/core/input_error.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -88,7 +89,7 @@ MemoryEstimate estimate_memory_of_part(const Body& body) {
   if (body.points.count() > 0) return estimate_memory(body);
   MemoryEstimate nothing;
   nothing.size.dimension = body.points.dimension;
-  nothing.size.ranks = body.part->ranks().count();
+  nothing.size.ranks = body.index_map->ranks().count();
   return nothing;
 }
 
@@ -249,7 +250,7 @@ std::shared_ptr<const LatticeBox> box_for_sines(const StudyOptions& options, con
 LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
                                     const MemoryEstimate& estimate,
                                     std::shared_ptr<const LatticeBox> box,
-                                    SolverLadder::Reporter tell, const Sharing* sharing) {
+                                    SolverLadder::Reporter tell, const IndexMap& index_map) {
   LinearSolverOptions linear =
       model.has_rows() ? options.linear : options_of_convolutions(options, box != nullptr);
   const bool is_symmetric = model.balances().potential;
@@ -262,7 +263,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
     throw InputError("tangent", "matrix_free", "is for bonds alone");
   LinearProblem problem;
   problem.is_symmetric = is_symmetric;
-  problem.sharing = sharing;
+  problem.index_map = &index_map;
   problem.unknowns = estimate.size.free_dofs;
   problem.has_inertia = options.loading.mode == Mode::dynamics &&
                         options.loading.dynamics.scheme == MotionScheme::newmark;
@@ -305,7 +306,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
   if (options.loading.mode == Mode::dynamics && is_explicit) return systems_of_motion(body);
   refuse_to_solve_for(body, options.loading);
   refuse_products_with_constraints(options, body);
-  if (body.part) {
+  if (!body.index_map->is_whole()) {
     refuse_solvers_without_ranks(options, body);
     StudyOptions of_part = options;
     const bool has_rows = has_rows_of_part(body);
@@ -315,7 +316,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
       of_part.tangent = TangentStorage::stored;
     }
     LinearSystems systems = choose_linear_systems(
-        of_part, body.model, estimate_memory_of_part(body), {}, std::move(tell), body.part.get());
+        of_part, body.model, estimate_memory_of_part(body), {}, std::move(tell), *body.index_map);
     systems.has_rows = has_rows;
     return systems;
   }
@@ -346,15 +347,11 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
 
 namespace {
 
-/// Operator of the points of this rank.
-std::unique_ptr<TangentOperator> make_plain(Assembler& assembler, bool is_stored) {
-  if (!is_stored) return std::make_unique<MatrixFreeTangent>(assembler);
-  return std::make_unique<Tangent>(assembler);
-}
-
-std::unique_ptr<TangentOperator> make_shared_operator(Assembler& assembler, bool is_stored) {
-  if (!is_stored) return std::make_unique<PartTangent<MatrixFreeTangent>>(assembler);
-  return std::make_unique<PartTangent<Tangent>>(assembler);
+/// Operator of the points of this rank, with the values of ghosts where the body is partitioned.
+template <class Operator>
+std::unique_ptr<TangentOperator> make_plain(Assembler& assembler) {
+  if (assembler.index_map().is_whole()) return std::make_unique<Operator>(assembler);
+  return std::make_unique<PartTangent<Operator>>(assembler);
 }
 
 }  // namespace
@@ -362,21 +359,25 @@ std::unique_ptr<TangentOperator> make_shared_operator(Assembler& assembler, bool
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,
                                                              const Constraints& constraints) const {
   const bool is_convolved = !assembler.has_rows();
-  const Sharing* const sharing = assembler.sharing();
+  const IndexMap& index_map = assembler.index_map();
   if (!is_convolved && !assembler.has_potential()) {
-    if (sharing) return std::make_unique<PartTangent<RowsOfEnergy>>(assembler);
-    return std::make_unique<RowsOfEnergy>(assembler);
+    return make_plain<RowsOfEnergy>(assembler);
   }
   if (is_convolved) return make_convolved_tangent(assembler, constraints);
-  if (!constraints.none() && (!sharing || (is_stored && has_rows))) {
-    return std::make_unique<ConstrainedTangent>(assembler, constraints, sharing);
+  if (!constraints.none() && (index_map.is_whole() || (is_stored && has_rows))) {
+    return std::make_unique<ConstrainedTangent>(assembler, constraints, index_map);
   }
-  if (!constraints.none()) {
-    return std::make_unique<ConstrainedProduct>(make_plain(assembler, is_stored),
-                                                assembler.points(), constraints, sharing);
+  if (!constraints.none()) {  // which updates the ghosts itself
+    std::unique_ptr<TangentOperator> plain;
+    if (is_stored) {
+      plain = std::make_unique<Tangent>(assembler);
+    } else {
+      plain = std::make_unique<MatrixFreeTangent>(assembler);
+    }
+    return std::make_unique<ConstrainedProduct>(std::move(plain), assembler.points(), constraints,
+                                                index_map);
   }
-  if (sharing) return make_shared_operator(assembler, is_stored);
-  return make_plain(assembler, is_stored);
+  return is_stored ? make_plain<Tangent>(assembler) : make_plain<MatrixFreeTangent>(assembler);
 }
 
 }  // namespace peristat

@@ -6,6 +6,7 @@
 #include "solvers/linear/memory_estimate.hpp"
 #include "solvers/study/body.hpp"
 #include "solvers/study/study_options.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -38,12 +39,11 @@ struct LinearSystems {
 /// @param estimate memory estimate of the body
 /// @param box see box_for_sines
 /// @param tell see make_linear_solver
-/// @param sharing partition of the body; null: the body is not partitioned
 /// @throws InputError ("tangent") if the model needs a stored tangent
 [[nodiscard]] LinearSystems choose_linear_systems(const StudyOptions& options, const Model& model,
                                                   const MemoryEstimate& estimate,
                                                   std::shared_ptr<const LatticeBox> box,
                                                   SolverLadder::Reporter tell,
-                                                  const Sharing* sharing = nullptr);
+                                                  const IndexMap& index_map = whole_body());
 
 }  // namespace peristat

@@ -5,13 +5,14 @@
 
 #include "assembly/terms/points/point_term.hpp"
 #include "assembly/terms/states/state_term.hpp"
-#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/study/point_materials.hpp"
 #include "src/conditions/absorption.hpp"
 #include "src/conditions/initial_state.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/vector_verbs.hpp"
 #include "src/geometry/squared_distance.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {
@@ -60,10 +61,8 @@ void refuse_wild_start(const Body& body, const std::vector<double>& displacement
 /// MotionSetting::most_points for the states of the whole body.
 int most_points_of_states(const StateTerm& states, const Body& body) {
   StateRatios ratios = state_ratios(states.shares().constants, body.points.dimension);
-  if (body.part) {
-    const Communicator& ranks = body.part->ranks();
-    ratios = {ranks.max(ratios.most), ranks.min(ratios.least)};
-  }
+  const Communicator& ranks = body.index_map->ranks();
+  ratios = {ranks.max(ratios.most), ranks.min(ratios.least)};
   return int(std::ceil(ratios.bound_over_blocks()));
 }
 

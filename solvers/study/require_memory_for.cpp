@@ -6,15 +6,16 @@
 
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/ranks/sum_on_machine.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
 void require_memory_for(const Body& body, double bytes) {
-  if (!body.part) {
-    return require_memory(bytes, fmt::format("the body with {} points", body.points.count()));
-  }
-  require_memory(sum_on_machine(body.part->ranks(), bytes),
-                 fmt::format("what a machine has of the body with {} points", body.part->whole()));
+  const IndexMap& index_map = *body.index_map;
+  require_memory(
+      sum_on_machine(index_map.ranks(), bytes),
+      fmt::format("{}the body with {} points", index_map.is_whole() ? "" : "what a machine has of ",
+                  index_map.is_whole() ? body.points.count() : index_map.whole()));
 }
 
 }  // namespace peristat

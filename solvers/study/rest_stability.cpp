@@ -20,6 +20,7 @@
 #include "solvers/study/without_equation.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {
@@ -70,14 +71,13 @@ void refuse_unstable_rest(const Body& body, const StudyOptions& options) {
   if (body.specification.material.model != MaterialModel::cpd) return;
   const auto [of, negative] = negative_material(body);
   const FreeDofs free(without_equation(body), body.points.dimension);
-  const Communicator* const ranks = body.part ? &body.part->ranks() : nullptr;
-  const Communicator::Counts equations =
-      ranks ? ranks->count_all(free.count()) : Communicator::Counts{0, free.count()};
+  const Communicator& ranks = body.index_map->ranks();
+  const Communicator::Counts equations = ranks.count_all(free.count());
   if (negative.empty() || equations.all == 0) return;
 
   const LinearSystems systems = choose_linear_systems(options, body, {});
   require_memory_for(body, systems.bytes);
-  Assembler assembler(body.points, body.model, usable_threads(options.threads), body.part.get());
+  Assembler assembler(body.points, body.model, usable_threads(options.threads), *body.index_map);
   const Constraints& constraints = body.conditions->constraints();
   const std::unique_ptr<TangentOperator> tangent = systems.make_tangent(assembler, constraints);
   const std::vector<double> reference(constraints.dofs(), 0.0);
@@ -87,7 +87,7 @@ void refuse_unstable_rest(const Body& body, const StudyOptions& options) {
   if (systems.chosen.is_direct) {
     solver = std::make_unique<Cholesky>(FactorReuse{0});
   } else {
-    std::unique_ptr<Preconditioner> preconditioner = std::make_unique<RigidPieces>(body.part.get());
+    std::unique_ptr<Preconditioner> preconditioner = std::make_unique<RigidPieces>(*body.index_map);
     if (!systems.has_rows) {
       preconditioner = std::make_unique<BlockJacobi>(BlockJacobi::Blocks::points);
     }

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "assembly/terms/states/state_term.hpp"
-#include "solvers/study/idle_interfaces.hpp"
 #include "src/core/input_error.hpp"
 #include "src/materials/lame_constants.hpp"
 #include "src/neighbourhood/influence.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -53,7 +53,7 @@ double state_critical_stretch(const MaterialSpecification& material, const BondS
 Model make_state_model(const BodySpecification& from, const PointMaterials& materials,
                        const PointFactors& factors, const Points& points,
                        const BondSetting& setting, Bonds bonds, CutBonds& cut,
-                       const PartOfBody* part, int threads) {
+                       const IndexMap& index_map, int threads) {
   refuse_what_has_no_states(points);
   std::vector<DirectedConstant> moduli;
   std::vector<LamePair> of_material;
@@ -71,7 +71,7 @@ Model make_state_model(const BodySpecification& from, const PointMaterials& mate
   const BondMaterials mixed(from, materials, factors, points, std::move(moduli));
   if (!from.is_uniform()) {
     // The kernel of the states does not depend on materials; the energy that bonds dissipate does.
-    refuse_idle_interfaces(from, materials, bonds, part ? &part->ranks() : nullptr);
+    refuse_idle_interfaces(from, materials, bonds, index_map.ranks());
     Bonds plain = bonds;
     static_cast<void>(cut_bonds(plain, points, from.cracks));
     shares.kernel = kernel_of_weights(plain);

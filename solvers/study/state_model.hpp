@@ -1,9 +1,9 @@
 #pragma once
 
 #include "assembly/terms/model.hpp"
-#include "solvers/ranks/part_of_body.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "src/connectivity/crack.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -21,11 +21,11 @@ namespace peristat {
 /// Makes the model of a body of model "lps" with the form "energy"; `cut` receives the bonds that
 /// its pre-cracks have cut. Collective for a part.
 /// @param setting see state_setting, with which the bonds were made
-/// @param part null: the body is not partitioned. Otherwise the part, with the bonds of_neighbours
+/// @param bonds of a part: those of_neighbours
 /// @throws InputError ("material.model") for planes of symmetry, periods and given neighbours
 [[nodiscard]] Model make_state_model(const BodySpecification& from, const PointMaterials& materials,
                                      const PointFactors& factors, const Points& points,
                                      const BondSetting& setting, Bonds bonds, CutBonds& cut,
-                                     const PartOfBody* part, int threads);
+                                     const IndexMap& index_map, int threads);
 
 }  // namespace peristat

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "solvers/motion/shared_stiffness.hpp"
+#include "solvers/motion/stable_step.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"
 #include "solvers/study/require_memory_for.hpp"
@@ -11,6 +11,7 @@
 #include "solvers/study/without_equation.hpp"
 #include "src/conditions/points_of_set.hpp"
 #include "src/core/number_text.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -109,7 +110,7 @@ void refuse_modes_without_ranks(const Body& body, const StudyOptions& options) {
 
 void check_study(const Body& body, const StudyOptions& options) {
   check_options(options);
-  if (body.part) refuse_modes_without_ranks(body, options);
+  if (!body.index_map->is_whole()) refuse_modes_without_ranks(body, options);
   const bool moves = options.loading.mode == Mode::dynamics;
   if (moves != body.conditions->programme().is_of_time()) {
     throw InputError(
@@ -134,10 +135,10 @@ void check_study(const Body& body, const StudyOptions& options) {
 
 SolvedModel::SolvedModel(const Points& points, const Model& model, const Constraints& constraints,
                          const FreeDofs& free, LinearSystems systems, int threads,
-                         const Sharing* sharing)
+                         const IndexMap& index_map)
     : systems_(std::move(systems)),
       free_(free),
-      assembler_(points, model, threads, sharing),
+      assembler_(points, model, threads, index_map),
       tangent_(systems_.make_tangent(assembler_, constraints)) {}
 
 LinearOutcome SolvedModel::analyze() { return solver().analyze(tangent_->pattern, free_); }
@@ -153,7 +154,7 @@ Study::Study(const Body& body, StudyOptions options, SolverLadder::Reporter tell
   require_memory_for(body, systems.bytes);
   equations_ =
       std::make_unique<SolvedModel>(body.points, body.model, body.conditions->constraints(), free_,
-                                    std::move(systems), options_.threads, body.part.get());
+                                    std::move(systems), options_.threads, *body.index_map);
 }
 
 LinearOutcome Study::analyze() {
@@ -178,7 +179,7 @@ const Stiffness& Study::find_initial_stiffness() {
   tangent.linearise(assembler, {displacement, history, Damage::grows, conditions.environment(0.0)},
                     projection_for_stiffness(assembler));
   motion_->at_start =
-      find_stiffness(tangent, free, motion_->mass, motion_->most_points, assembler.sharing());
+      find_stiffness(tangent, free, motion_->mass, motion_->most_points, assembler.index_map());
   const double step = options_.loading.dynamics.time_step;
   const double stable = motion_->at_start->stable_step();
   if (options_.loading.dynamics.scheme == MotionScheme::newmark) {

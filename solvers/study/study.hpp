@@ -9,6 +9,7 @@
 #include "solvers/motion/motion_setting.hpp"
 #include "solvers/study/body.hpp"
 #include "solvers/study/linear_systems.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -16,10 +17,9 @@ namespace peristat {
 class SolvedModel {
  public:
   /// All references must outlive it.
-  /// @param sharing null: the body is not partitioned
   SolvedModel(const Points& points, const Model& model, const Constraints& constraints,
               const FreeDofs& free, LinearSystems systems, int threads,
-              const Sharing* sharing = nullptr);
+              const IndexMap& index_map = whole_body());
 
   /// Prepares the solver.
   [[nodiscard]] LinearOutcome analyze();

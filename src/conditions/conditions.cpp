@@ -66,7 +66,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
                        const Eigenstrains& eigenstrains, const ConstraintSpecification& constraints,
                        const std::vector<FoundationSpecification>& foundations)
     : points_(points),
-      ranks_(setting.ranks),
+      ranks_(setting.index_map.ranks()),
       programme_(std::move(programme)),
       prescribed_(points.reference.size(), 0),
       made_{Constraints(points)} {
@@ -108,9 +108,8 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     }
   }
   add_eigenstrains(eigenstrains, setting);
-  foundations_ = Foundations(points, foundations, parameters, setting.ranks);
-  made_ = make_constraints(points, constraints, prescribed_, parameters, setting.ranks,
-                           setting.numbers);
+  foundations_ = Foundations(points, foundations, parameters, setting.index_map.ranks());
+  made_ = make_constraints(points, constraints, prescribed_, parameters, setting.index_map);
   refuse_shared_names();
   hold_periodic_cell(constraints, setting);
   prescribe_handles();
@@ -192,16 +191,15 @@ std::optional<Index> Conditions::point_of_middle(const LoadSetting& setting) con
     for (std::size_t c = 0; c < 3; ++c) sum[c] += at[c];
     sum[3] += 1.0;
   }
-  if (ranks_) sum = ranks_->sum(sum);
+  sum = ranks_.sum(sum);
   const Coordinates middle = scaled<3>(1.0 / sum[3], Coordinates{sum[0], sum[1], sum[2]});
   const NearestPoint mine = nearest_point(points_, middle, own);
-  if (!ranks_) return mine.point;
   // Among points equally near within round-off the lowest number wins, as for a whole body.
-  const double least = ranks_->min(mine.distance);
+  const double least = ranks_.min(mine.distance);
   const bool is_as_near = own > 0 && mine.distance <= least + round_off_of_distances(points_);
-  const double number = is_as_near ? double(setting.numbers.number_of(mine.point))
+  const double number = is_as_near ? double(setting.index_map.number_of(mine.point))
                                    : std::numeric_limits<double>::infinity();
-  if (ranks_->min(number) != number || !is_as_near) return std::nullopt;
+  if (ranks_.min(number) != number || !is_as_near) return std::nullopt;
   return mine.point;
 }
 
@@ -214,7 +212,7 @@ void Conditions::require_balance(std::span<const double> force, const std::strin
     sums[dof % d] += force[dof];
     sums[3 + dof % d] += std::abs(force[dof]);
   }
-  if (ranks_) sums = ranks_->sum(sums);
+  sums = ranks_.sum(sums);
   for (std::size_t c = 0; c < d; ++c) {
     if (!floats_[c] || std::abs(sums[c]) <= round_off * sums[3 + c]) continue;
     throw InputError(
@@ -231,7 +229,7 @@ Conditions::Loaded Conditions::loaded(const LoadSpecification& load, const LoadS
   using Kind = LoadSpecification::Kind;
   if (load.kind == Kind::traction) {
     TractionAreas areas = with_table(table, [&] {
-      return traction_areas(points_, load, setting.horizon, table, setting.ranks);
+      return traction_areas(points_, load, setting.horizon, table, setting.index_map.ranks());
     });
     return {std::move(areas.points), std::move(areas.area)};
   }
@@ -245,7 +243,7 @@ Conditions::Loaded Conditions::loaded(const LoadSpecification& load, const LoadS
   for (const Index point : on.points) on.amount.push_back(points_.volume[point]);
   if (load.kind == Kind::total_force) {
     on.spread_over = std::accumulate(on.amount.begin(), on.amount.end(), 0.0);
-    if (setting.ranks) on.spread_over = setting.ranks->sum(on.spread_over);
+    on.spread_over = setting.index_map.ranks().sum(on.spread_over);
   }
   if (load.kind == Kind::gravity) {
     if (setting.density.empty()) {
@@ -261,7 +259,8 @@ Conditions::Loaded Conditions::loaded(const LoadSpecification& load, const LoadS
 void Conditions::add_pressure(const LoadSpecification& load, const LoadSetting& setting,
                               const std::string& table) {
   const std::size_t first = pressed_.face.size();
-  with_table(table, [&] { add_pressed_faces(points_, load, table, pressed_, setting.ranks); });
+  with_table(table,
+             [&] { add_pressed_faces(points_, load, table, pressed_, setting.index_map.ranks()); });
   const std::string key = table + ".value";
   pressures_.push_back({key, first, pressed_.face.size(), with_key(key, [&] {
                           return Expression(load.value[0], points_.dimension, points_.spacing,
@@ -433,7 +432,7 @@ void Conditions::external_force(const LoadPoint& at, std::span<double> force) co
       });
     }
   };
-  if (!ranks_ || loads_.empty() || floats_ == std::array<bool, 3>{}) {
+  if (loads_.empty() || floats_ == std::array<bool, 3>{}) {
     add_loads();
   } else {
     add_loads_of_all(add_loads);
@@ -448,7 +447,7 @@ void Conditions::add_loads_of_all(const std::function<void()>& add_loads) const 
   } catch (const InputError&) {
     mine = std::current_exception();
   }
-  const bool is_missing = ranks_->max(double(mine != nullptr)) > 0.0;
+  const bool is_missing = ranks_.max(double(mine != nullptr)) > 0.0;
   if (mine) std::rethrow_exception(mine);
   if (is_missing) throw InputError(loads_.front().key, "", "has no value elsewhere in the body");
 }
@@ -492,7 +491,7 @@ Coordinates Conditions::reaction_of(const Restraint& restraint,
                                     std::span<const double> gradient) const {
   const std::size_t d = std::size_t(points_.dimension);
   // All ranks know the forces on handles, so rank 0 alone reports them.
-  const bool is_told_elsewhere = ranks_ && ranks_->rank() > 0 && !restraint.handles.empty();
+  const bool is_told_elsewhere = ranks_.rank() > 0 && !restraint.handles.empty();
   Coordinates sum{};
   if (is_told_elsewhere) return sum;
   switch (restraint.kind) {
@@ -594,28 +593,24 @@ void Conditions::add_held_sums(std::span<const double> displacement, Holding& ho
       holding.links.push_back({motion.member, point});
     }
   }
-  if (!ranks_) {
-    holding.motions.insert(holding.motions.end(), held.begin(), held.end());
-    return;
-  }
   // Each rank has a summand; the lowest rank with a member reports the total.
   std::vector<double> shares, first;
   for (const HeldMotion& motion : held) {
     shares.insert(shares.end(), motion.along.begin(), motion.along.end());
     shares.insert(shares.end(), motion.about.begin(), motion.about.end());
     shares.push_back(motion.member >= 0 ? 1.0 : 0.0);
-    first.push_back(motion.member >= 0 ? double(ranks_->rank()) : double(ranks_->count()));
+    first.push_back(motion.member >= 0 ? double(ranks_.rank()) : double(ranks_.count()));
   }
   if (held.empty()) return;
-  shares = ranks_->sum(shares);
-  first = ranks_->min(first);
+  shares = ranks_.sum(shares);
+  first = ranks_.min(first);
   for (std::size_t k = 0; k < held.size(); ++k) {
     const auto of_all = shares.begin() + std::ptrdiff_t(7 * k);
     HeldMotion& motion = held[k];
     std::copy_n(of_all, 3, motion.along.begin());
     std::copy_n(of_all + 3, 3, motion.about.begin());
     if (of_all[6] > 1.0) holding.ties.push_back(motion.member);
-    if (first[k] == double(ranks_->rank())) holding.motions.push_back(motion);
+    if (first[k] == double(ranks_.rank())) holding.motions.push_back(motion);
   }
 }
 
@@ -650,7 +645,7 @@ Holding Conditions::holding(std::span<const double> displacement) const {
   }
   for (const Constraints::RigidSet& set : constraints().rigid_sets()) {
     const bool is_here = !set.members.empty() && points_.owns(set.members.front());
-    if (ranks_) holding.ties.push_back(is_here ? set.members.front() : -1);
+    holding.ties.push_back(is_here ? set.members.front() : -1);
     if (set.members.empty()) continue;  // none on this rank
     for (const Index member : set.members) {
       holding.links.push_back({set.members.front(), member});

@@ -18,10 +18,11 @@
 #include "src/conditions/specification.hpp"
 #include "src/conditions/surface_tractions.hpp"
 #include "src/connectivity/holding.hpp"
-#include "src/core/communicator.hpp"
 #include "src/core/expression.hpp"
-#include "src/geometry/numbered_points.hpp"
 #include "src/geometry/points.hpp"
+#include "src/parallel/communicator.hpp"
+#include "src/parallel/index_map.hpp"
+#include "src/parallel/numbered_points.hpp"
 
 namespace peristat {
 
@@ -32,8 +33,7 @@ struct LoadSetting {
   std::vector<double> thermal_expansion = {};  ///< [1/K], for the temperature
   /// Sites at which tractions act on the surface; nothing: tractions are forces on points.
   std::optional<std::vector<SurfaceSite>> surface = std::nullopt;
-  const Communicator* ranks = nullptr;  ///< that have parts of the body; null: the body is whole
-  NumberedPoints numbers{};             ///< of the points of a part
+  const IndexMap& index_map = whole_body();
 };
 
 /// Eigenstrains, given directly or by a change of temperature.
@@ -198,7 +198,7 @@ class Conditions {
                                          double load_factor) const;
 
   const Points& points_;
-  const Communicator* ranks_;  // null: the body is whole
+  const Communicator& ranks_;
   LoadingProgramme programme_;
   std::vector<Prescription> prescriptions_;
   std::vector<Load> loads_;

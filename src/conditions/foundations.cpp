@@ -10,6 +10,7 @@
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/measures/small_algebra.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {
@@ -28,7 +29,7 @@ Coordinates checked(const Coordinates& stiffness, int dimension, const std::stri
 }
 
 std::vector<Spring> on_boundary(const Points& points, const FoundationSpecification& of,
-                                const std::string& table, const Communicator* ranks) {
+                                const std::string& table, const Communicator& ranks) {
   const Coordinates modulus = checked(of.modulus, points.dimension, table + ".modulus");
   LoadSpecification place;
   place.kind = LoadSpecification::Kind::traction;
@@ -44,7 +45,7 @@ std::vector<Spring> on_boundary(const Points& points, const FoundationSpecificat
 }
 
 std::vector<Spring> on_set(const Points& points, const FoundationSpecification& of,
-                           const std::string& table, const Communicator* ranks) {
+                           const std::string& table, const Communicator& ranks) {
   const Coordinates stiffness = checked(of.stiffness, points.dimension, table + ".stiffness");
   std::vector<Index> members = points_of_set(points, of.set, table + ".set");
   if (points.owned) {  // the owner has a ghost's spring
@@ -52,7 +53,7 @@ std::vector<Spring> on_set(const Points& points, const FoundationSpecification& 
   }
   double volume = 0.0;
   for (const Index point : members) volume += points.volume[point];
-  if (ranks) volume = ranks->sum(volume);
+  volume = ranks.sum(volume);
   std::vector<Spring> springs;
   for (const Index point : members) {
     springs.push_back({point, scaled<3>(points.volume[point] / volume, stiffness)});
@@ -64,7 +65,7 @@ std::vector<Spring> on_set(const Points& points, const FoundationSpecification& 
 
 Foundations::Foundations(const Points& points,
                          const std::vector<FoundationSpecification>& specifications,
-                         const std::vector<std::string>& parameters, const Communicator* ranks)
+                         const std::vector<std::string>& parameters, const Communicator& ranks)
     : dimension_(points.dimension) {
   for (std::size_t k = 0; k < specifications.size(); ++k) {
     const FoundationSpecification& of = specifications[k];

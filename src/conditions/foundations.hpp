@@ -8,9 +8,9 @@
 
 #include "src/conditions/environment.hpp"
 #include "src/conditions/specification.hpp"
-#include "src/core/communicator.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/points.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 
@@ -27,12 +27,12 @@ class Foundations {
   Foundations() = default;
 
   /// @param ranks that have parts of the body: collective, each rank has the springs of its own
-  ///        points; null: the body is whole
+  ///        points
   /// @throws InputError ("foundations[k].…", k from 0) for a place that traction_areas or
   ///         points_of_set refuses, a stiffness that is negative, not finite or zero in all
   ///         components, and a bad expression
   Foundations(const Points& points, const std::vector<FoundationSpecification>& specifications,
-              const std::vector<std::string>& parameters, const Communicator* ranks = nullptr);
+              const std::vector<std::string>& parameters, const Communicator& ranks = sole_rank());
 
   [[nodiscard]] bool none() const { return foundations_.empty(); }
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }

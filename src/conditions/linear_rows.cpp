@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "src/core/input_error.hpp"
-#include "src/core/sharing.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -25,28 +26,19 @@ void add_multiple(Row& to, const Row& row, double factor) {
 
 }  // namespace
 
-void LinearRows::note_held_dofs() {
-  first_handle_ = prescribed_.size();
-  for (const LinearRow& row : rows_) {
-    for (const auto& [dof, coefficient] : row.coefficient) {
-      if (prescribed_[dof]) held_.insert(dof);
-    }
-  }
-}
-
 void LinearRows::gather() {
   const auto d = std::size_t(points_.dimension);
   std::vector<double> coefficients;  // row, degree of freedom, coefficient, prescribed
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     for (const auto& [dof, coefficient] : rows_[k].coefficient) {
       const auto point = Index(dof / d);
-      const double of_body = double(numbers_.number_of(point)) * double(d) + double(dof % d);
+      const double of_body = double(index_map_.number_of(point)) * double(d) + double(dof % d);
       coefficients.insert(coefficients.end(),
                           {double(k), of_body, coefficient, double(prescribed_[dof])});
     }
     rows_[k].coefficient.clear();
   }
-  coefficients = all_together(*ranks_, coefficients);
+  coefficients = concatenated(index_map_.ranks(), coefficients);
   const std::size_t handles_here = prescribed_.size();
   first_handle_ = d << 50;  // above those of points
   for (LinearRow& row : rows_) row.value += first_handle_ - handles_here;
@@ -76,7 +68,7 @@ std::size_t LinearRows::pivot_of(const LinearRow& row, double size) const {
 
 void LinearRows::eliminate(Constraints& constraints) {
   if (rows_.empty()) return;
-  ranks_ ? gather() : note_held_dofs();
+  gather();
   follow(solve(), constraints);
 }
 
@@ -122,12 +114,11 @@ std::map<std::size_t, LinearRows::Solved> LinearRows::solve() {
 
 std::optional<Index> LinearRows::own_row(std::size_t dof) const {
   const auto d = std::size_t(points_.dimension);
-  if (!ranks_) return static_cast<Index>(dof / d);
   if (dof < first_handle_) {
-    const std::optional<Index> point = numbers_.find(GlobalIndex(dof / d));
-    return point && numbers_.is_owned(*point) ? point : std::nullopt;
+    const std::optional<Index> point = index_map_.find(GlobalIndex(dof / d));
+    return point && index_map_.owns(*point) ? point : std::nullopt;
   }
-  if (ranks_->rank() > 0) return std::nullopt;
+  if (!index_map_.is_first_rank()) return std::nullopt;
   return points_.count() + static_cast<Index>((dof - first_handle_) / d);
 }
 
@@ -149,11 +140,7 @@ void LinearRows::follow(const std::map<std::size_t, Solved>& solved,
   for (auto& [point, follower] : of_point) {
     std::vector<Dependence> masters;
     for (auto& [master, on] : follower.second) masters.push_back(on);
-    if (ranks_) {
-      constraints.follow({numbers_.find(GlobalIndex(point)), follower.first, std::move(masters)});
-    } else {
-      constraints.follow(static_cast<Index>(point), follower.first, std::move(masters));
-    }
+    constraints.follow({index_map_.find(GlobalIndex(point)), follower.first, std::move(masters)});
   }
 }
 

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "src/constraints/constraints.hpp"
-#include "src/core/communicator.hpp"
-#include "src/geometry/numbered_points.hpp"
+#include "src/parallel/communicator.hpp"
+#include "src/parallel/index_map.hpp"
+#include "src/parallel/numbered_points.hpp"
 
 namespace peristat {
 
@@ -30,11 +31,8 @@ class LinearRows {
  public:
   /// The arguments must outlive the object.
   /// @param prescribed by supports, per degree of freedom: these stay masters
-  /// @param ranks that have parts of the body; null: it is whole
-  /// @param numbers of the points of a part
-  LinearRows(const Points& points, const std::vector<char>& prescribed, const Communicator* ranks,
-             const NumberedPoints& numbers)
-      : points_(points), prescribed_(prescribed), ranks_(ranks), numbers_(numbers) {}
+  LinearRows(const Points& points, const std::vector<char>& prescribed, const IndexMap& index_map)
+      : points_(points), prescribed_(prescribed), index_map_(index_map) {}
 
   void push_back(LinearRow row) { rows_.push_back(std::move(row)); }
 
@@ -48,7 +46,6 @@ class LinearRows {
   /// Row solved for its pivot: the pivot is the sum of coefficient * degree of freedom, handles
   /// included.
   using Solved = std::map<std::size_t, double>;
-  void note_held_dofs();
   /// Renumbers degrees of freedom by the points of the whole body; adds the coefficients of other
   /// ranks.
   void gather();
@@ -60,8 +57,7 @@ class LinearRows {
 
   const Points& points_;
   const std::vector<char>& prescribed_;
-  const Communicator* ranks_;
-  NumberedPoints numbers_;
+  const IndexMap& index_map_;
   std::vector<LinearRow> rows_;
   std::size_t first_handle_ = 0;  ///< degree of freedom
   std::set<std::size_t> held_{};  ///< degrees of freedom in rows that supports prescribe

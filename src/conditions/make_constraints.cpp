@@ -12,8 +12,9 @@
 #include "src/core/coordinates.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
-#include "src/core/sharing.hpp"
 #include "src/measures/small_algebra.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -43,16 +44,16 @@ class Maker {
  public:
   Maker(const Points& points, const ConstraintSpecification& of,
         const std::vector<char>& prescribed, const std::vector<std::string>& parameters,
-        const Communicator* ranks, const NumberedPoints& numbers)
+        const IndexMap& index_map)
       : points_(points),
-        ranks_(ranks),
-        numbers_(numbers),
+        ranks_(index_map.ranks()),
+        index_map_(index_map),
         of_(of),
         prescribed_(prescribed),
         parameters_(parameters),
-        made_{Constraints(points, ranks)},
+        made_{Constraints(points, ranks_)},
         holder_(std::size_t(points.count())),
-        rows_(points, prescribed, ranks, numbers) {}
+        rows_(points, prescribed, index_map) {}
 
   [[nodiscard]] MadeConstraints make() {
     for (std::size_t k = 0; k < of_.symmetries.size(); ++k) {
@@ -146,10 +147,6 @@ class Maker {
     });
   }
 
-  [[nodiscard]] bool is_cut_anywhere(bool is_cut_here) const {
-    return ranks_ ? ranks_->max(double(is_cut_here)) > 0.0 : is_cut_here;
-  }
-
   /// Throws if a plane of symmetry cuts a set and the two halves might move apart.
   void refuse_cut_sets(const RigidSetSpecification& spec, const Constraints::RigidSet& set,
                        const std::string& table) const {
@@ -158,7 +155,7 @@ class Maker {
         const double away = points_.position(member)[std::size_t(plane.axis)] - plane.at;
         return std::abs(away) < points_.spacing.along(plane.axis);
       });
-      if (!is_cut_anywhere(is_cut)) continue;
+      if (!any_of_all(ranks_, is_cut)) continue;
       const std::string by = "the plane of symmetry across " + std::string(1, "xyz"[plane.axis]) +
                              " cuts the rigid set " + spec.set + ": ";
       if (!spec.displacement[std::size_t(plane.axis)]) {
@@ -234,14 +231,14 @@ class Maker {
       const Coordinates arm = minus(points_.position(member), set.centre);
       if (is_own(member) && length(arm) > size) size = length(arm), longest = arm;
     }
-    if (ranks_) longest = longest_of_all(size, longest);
-    if (ranks_) size = length(longest);
+    longest = longest_of_all(size, longest);
+    size = length(longest);
     double across = 0.0;
     for (const Index member : set.members) {
       const Coordinates arm = minus(points_.position(member), set.centre);
       across = std::max(across, length(cross(longest, arm)) / size);
     }
-    if (ranks_) across = ranks_->max(across);
+    across = ranks_.max(across);
     constexpr double on_a_line = 1e-6;
     if (dimension() == 3 && across <= on_a_line * size) {
       throw InputError(key, '"' + name + '"',
@@ -253,7 +250,7 @@ class Maker {
 
   /// Longest arm of all ranks, the first one of equals.
   [[nodiscard]] Coordinates longest_of_all(double size, const Coordinates& longest) const {
-    const std::vector<double> all = ranks_->all_of({size, longest[0], longest[1], longest[2]});
+    const std::vector<double> all = ranks_.all_of({size, longest[0], longest[1], longest[2]});
     std::size_t first = 0;
     for (std::size_t k = 0; k < all.size(); k += 4) {
       if (all[k] > all[first]) first = k;
@@ -271,7 +268,7 @@ class Maker {
     return scaled(1.0 / size, spec.normal);
   }
 
-  [[nodiscard]] double of_all(double mine) const { return ranks_ ? ranks_->sum(mine) : mine; }
+  [[nodiscard]] double of_all(double mine) const { return ranks_.sum(mine); }
 
   /// Number of points of a set of the whole body.
   [[nodiscard]] double count_of(const std::vector<Index>& members) const {
@@ -283,26 +280,20 @@ class Maker {
   /// rank.
   [[nodiscard]] std::vector<Member> members_of_all(const std::vector<Index>& members) const {
     std::vector<Member> all;
-    if (!ranks_) {
-      for (const Index member : members) {
-        all.push_back({points_.position(member), points_.volume[std::size_t(member)], member});
-      }
-      return all;
-    }
     std::vector<double> told;  // numbers, places and volumes
     for (const Index member : members) {
       if (!points_.owns(member)) continue;
       const Coordinates at = points_.position(member);
-      told.push_back(double(numbers_.number_of(member)));
+      told.push_back(double(index_map_.number_of(member)));
       told.insert(told.end(), at.begin(), at.end());
       told.push_back(points_.volume[std::size_t(member)]);
     }
-    told = all_together(*ranks_, told);
+    told = concatenated(ranks_, told);
     std::map<GlobalIndex, Member> by_number;
     for (std::size_t k = 0; k < told.size(); k += 5) {
       const auto number = GlobalIndex(told[k]);
       by_number[number] = {
-          {told[k + 1], told[k + 2], told[k + 3]}, told[k + 4], numbers_.find(number)};
+          {told[k + 1], told[k + 2], told[k + 3]}, told[k + 4], index_map_.find(number)};
     }
     for (const auto& [number, member] : by_number) all.push_back(member);
     return all;
@@ -423,7 +414,7 @@ class Maker {
       depth.push_back(across);
       least = std::min(least, across);
     }
-    if (ranks_) least = ranks_->min(least);
+    least = ranks_.min(least);
     std::vector<std::pair<Index, double>> row;
     for (std::size_t k = 0; k < found.size(); ++k) {
       if (depth[k] > least + 0.5 * reach) continue;
@@ -479,8 +470,8 @@ class Maker {
   }
 
   const Points& points_;
-  const Communicator* ranks_;  // null: the body is whole
-  const NumberedPoints& numbers_;
+  const Communicator& ranks_;
+  const IndexMap& index_map_;
   const ConstraintSpecification& of_;
   const std::vector<char>& prescribed_;
   const std::vector<std::string>& parameters_;
@@ -494,8 +485,8 @@ class Maker {
 MadeConstraints make_constraints(const Points& points, const ConstraintSpecification& of,
                                  const std::vector<char>& prescribed,
                                  const std::vector<std::string>& parameters,
-                                 const Communicator* ranks, const NumberedPoints& numbers) {
-  return Maker(points, of, prescribed, parameters, ranks, numbers).make();
+                                 const IndexMap& index_map) {
+  return Maker(points, of, prescribed, parameters, index_map).make();
 }
 
 }  // namespace peristat

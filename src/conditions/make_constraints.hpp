@@ -7,9 +7,10 @@
 
 #include "src/conditions/constraint_specification.hpp"
 #include "src/constraints/constraints.hpp"
-#include "src/core/communicator.hpp"
 #include "src/core/expression.hpp"
-#include "src/geometry/numbered_points.hpp"
+#include "src/parallel/communicator.hpp"
+#include "src/parallel/index_map.hpp"
+#include "src/parallel/numbered_points.hpp"
 
 namespace peristat {
 
@@ -60,8 +61,7 @@ struct MadeConstraints {
 /// @param points with their images
 /// @param prescribed by supports, per degree of freedom of the points
 /// @param parameters names of the load parameters
-/// @param ranks that have parts of the body (collective); null: the body is whole
-/// @param numbers of the points of a part
+/// Collective.
 /// @throws InputError ("rigid_sets[k].…", "rollers[k].…", "linear[k].…", "periods[k].…") for sets
 ///         that are unknown, points held twice by these or also by a support, a rigid set whose
 ///         points do not determine its rotation, expressions that can't be read, constraints that
@@ -70,7 +70,6 @@ struct MadeConstraints {
                                                const ConstraintSpecification& of,
                                                const std::vector<char>& prescribed,
                                                const std::vector<std::string>& parameters,
-                                               const Communicator* ranks = nullptr,
-                                               const NumberedPoints& numbers = {});
+                                               const IndexMap& index_map = whole_body());
 
 }  // namespace peristat

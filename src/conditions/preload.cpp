@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "src/parallel/communicator.hpp"
+
 namespace peristat {
 namespace {
 
@@ -42,7 +44,7 @@ std::string Preload::description() const {
   return text;
 }
 
-Preload find_preload(const Conditions& conditions, const Communicator* ranks) {
+Preload find_preload(const Conditions& conditions, const Communicator& ranks) {
   const auto d = std::size_t(conditions.dimension());
   const std::size_t dofs = conditions.prescribed().size();
   Preload preload;
@@ -60,12 +62,11 @@ Preload find_preload(const Conditions& conditions, const Communicator* ranks) {
     preload.traction = largest_size(environment->traction);
     preload.ground = largest_size(environment->ground);
   }
-  if (!ranks) return preload;
-  for (double& component : preload.force) component = ranks->sum(component);
-  preload.force_size = ranks->sum(preload.force_size);
+  for (double& component : preload.force) component = ranks.sum(component);
+  preload.force_size = ranks.sum(preload.force_size);
   for (double* const size : {&preload.displacement, &preload.eigenstretch, &preload.pressure,
                              &preload.traction, &preload.ground}) {
-    *size = ranks->max(*size);
+    *size = ranks.max(*size);
   }
   return preload;
 }

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "src/conditions/conditions.hpp"
-#include "src/core/communicator.hpp"
 #include "src/core/types.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 
@@ -25,7 +25,7 @@ struct Preload {
   [[nodiscard]] std::string description() const;
 };
 
-/// @param ranks that have parts of the body (collective); null: the body is whole
-[[nodiscard]] Preload find_preload(const Conditions& conditions, const Communicator* ranks);
+/// @param ranks that have parts of the body; collective
+[[nodiscard]] Preload find_preload(const Conditions& conditions, const Communicator& ranks);
 
 }  // namespace peristat

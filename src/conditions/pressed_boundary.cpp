@@ -8,6 +8,7 @@
 #include "src/core/input_error.hpp"
 #include "src/geometry/body_cells.hpp"
 #include "src/measures/small_algebra.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {
@@ -141,7 +142,7 @@ double reach_of_pressures(const Points& points) {
 }
 
 void add_pressed_faces(const Points& points, const LoadSpecification& load, const std::string& key,
-                       PressedBoundary& boundary, const Communicator* ranks) {
+                       PressedBoundary& boundary, const Communicator& ranks) {
   if (load.side && load.side->axis >= points.dimension) {
     throw InputError(key + ".side", name(*load.side), "the body has no such side");
   }
@@ -168,7 +169,7 @@ void add_pressed_faces(const Points& points, const LoadSpecification& load, cons
     }
   }
   const auto added = double(boundary.face.size() - before);
-  if ((ranks ? ranks->sum(added) : added) == 0.0) {
+  if (ranks.sum(added) == 0.0) {
     throw InputError(
         key + ".set", '"' + load.set + '"',
         "has no point with nothing of the body beside it, so there is no boundary that "

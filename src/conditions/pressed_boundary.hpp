@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "src/conditions/specification.hpp"
-#include "src/core/communicator.hpp"
 #include "src/geometry/points.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 
@@ -34,7 +34,7 @@ struct PressedBoundary {
 /// @throws InputError for points on no lattice, a side that the body does not have, a set without
 ///         exposed faces
 void add_pressed_faces(const Points& points, const LoadSpecification& load, const std::string& key,
-                       PressedBoundary& boundary, const Communicator* ranks = nullptr);
+                       PressedBoundary& boundary, const Communicator& ranks = sole_rank());
 
 /// Distance over which a part needs ghosts for the faces that press on its points: across a face,
 /// to the points that its corners move with, and to the points that cover it [m].

@@ -8,6 +8,7 @@
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/measures/small_algebra.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {
@@ -45,7 +46,7 @@ std::vector<std::string> texts_of(const LoadSpecification& load, int dimension) 
 
 void SurfaceTractions::add(const Points& points, const LoadSpecification& load,
                            const std::vector<std::string>& parameters, const std::string& table,
-                           const std::vector<char>& prescribed, const Communicator* ranks) {
+                           const std::vector<char>& prescribed, const Communicator& ranks) {
   Load made{load.kind, table + key_of(load.kind), {}, {}};
   std::vector<Index> members;
   if (!load.set.empty()) members = points_of_set(points, load.set, table + ".set");
@@ -58,7 +59,7 @@ void SurfaceTractions::add(const Points& points, const LoadSpecification& load,
     if (acts_at(sites_[k])) made.sites.push_back(k);
   }
   const double sites = double(made.sites.size());
-  if ((ranks ? ranks->sum(sites) : sites) == 0.0) {
+  if (ranks.sum(sites) == 0.0) {
     const std::string key = table + (load.side                ? ".side"
                                      : !load.boundary.empty() ? ".boundary"
                                      : !load.set.empty()      ? ".set"

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "src/conditions/specification.hpp"
-#include "src/core/communicator.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/points.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 
@@ -39,13 +39,13 @@ class SurfaceTractions {
   /// Adds a traction, a pressure or a stress.
   /// @param table of the load, for errors
   /// @param prescribed per degree of freedom; faces at fully prescribed points are not checked
-  /// @param ranks that have parts of the body (collective); null: the body is whole
+  /// @param ranks that have parts of the body ; collective
   /// @throws InputError ("TABLE.side", "TABLE.boundary", …) for a part of the boundary without
   ///         points, for expressions that can't be read, and for a traction on one of two faces
   ///         that are less than two horizons apart: a point between them has only one traction
   void add(const Points& points, const LoadSpecification& load,
            const std::vector<std::string>& parameters, const std::string& table,
-           const std::vector<char>& prescribed, const Communicator* ranks = nullptr);
+           const std::vector<char>& prescribed, const Communicator& ranks = sole_rank());
 
   [[nodiscard]] bool none() const { return loads_.empty(); }
   [[nodiscard]] bool changes_with_parameters() const;

@@ -6,6 +6,7 @@
 #include "src/conditions/points_of_set.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/body_cells.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {
@@ -46,7 +47,7 @@ Face face_of(const Points& points, const BodyCells& cells, const LoadSpecificati
 }  // namespace
 
 TractionAreas traction_areas(const Points& points, const LoadSpecification& load, double horizon,
-                             const std::string& key, const Communicator* ranks) {
+                             const std::string& key, const Communicator& ranks) {
   const BodyCells cells(points, ranks);
   const auto [row, side] = face_of(points, cells, load, key);
   const Index owned = points.owned.value_or(points.own());

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "src/conditions/specification.hpp"
-#include "src/core/communicator.hpp"
 #include "src/geometry/points.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 
@@ -21,11 +21,11 @@ struct TractionAreas {
 /// part of each cell that lies within.
 /// @param key of the load, for errors
 /// @param ranks that have parts of the body (collective): each rank gets the areas of the points
-///        that it owns; null: the body is whole
+///        that it owns
 /// @throws InputError for points on no lattice, a side that the body does not have, and a set that
 ///         does not lie in exactly one plane of points on the boundary
 [[nodiscard]] TractionAreas traction_areas(const Points& points, const LoadSpecification& load,
                                            double horizon, const std::string& key,
-                                           const Communicator* ranks = nullptr);
+                                           const Communicator& ranks = sole_rank());
 
 }  // namespace peristat

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "src/connectivity/holding.hpp"
-#include "src/core/sharing.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -63,12 +63,12 @@ inline constexpr double independence_tolerance = 2.5e-7;
 /// @param prescribed per degree of freedom: it has no equation
 /// @param displacement per degree of freedom [m]
 /// @param holding restraints of pieces in this state
-/// @param sharing null: the body is whole. Otherwise collective, with the result of a run on one
+/// Collective, with the result of a run on one
 ///        rank: `loose`, `piece` and `pinned` are those of this rank's own points
 [[nodiscard]] Fragments find_fragments(const Points& points, const Bonds& bonds,
                                        std::span<const char> broken,
                                        const std::vector<char>& prescribed,
                                        std::span<const double> displacement, const Holding& holding,
-                                       const Sharing* sharing = nullptr);
+                                       const IndexMap& index_map = whole_body());
 
 }  // namespace peristat

@@ -7,6 +7,8 @@
 #include "src/connectivity/pieces.hpp"
 #include "src/connectivity/rigid_motions.hpp"
 #include "src/measures/small_algebra.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -111,7 +113,7 @@ std::vector<std::pair<FreeMotion, RigidMotions>> of_all_ranks(
     flat.push_back(double(motions.count));
     flat.insert(flat.end(), motions.basis.begin(), motions.basis.end());
   }
-  flat = all_together(ranks, flat);
+  flat = concatenated(ranks, flat);
   std::vector<std::pair<FreeMotion, RigidMotions>> all;
   for (auto next = flat.begin(); next != flat.end();) {
     auto& [piece, motions] = all.emplace_back();
@@ -130,21 +132,21 @@ std::vector<std::pair<FreeMotion, RigidMotions>> of_all_ranks(
 }  // namespace
 
 std::vector<FreeMotion> free_motions(const Points& points, const Bonds& bonds,
-                                     const Holding& of_body, const Sharing* sharing) {
+                                     const Holding& of_body, const IndexMap& index_map) {
   const Holding holding = with_images(of_body, points, bonds, {}, points.reference);
   const std::vector<Piece> pieces =
-      pieces_of(points, bonds, {}, holding.links, holding.ties, sharing);
+      pieces_of(points, bonds, {}, holding.links, holding.ties, index_map);
   const std::vector<RigidMotions> motions =
-      FreePieces(points, points.reference, holding, sharing).motions(pieces);
+      FreePieces(points, points.reference, holding, index_map).motions(pieces);
   std::vector<std::pair<FreeMotion, RigidMotions>> found;
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const Piece& piece = pieces[k];
     if (motions[k].count == 0 || piece.members.empty()) continue;
     const Index first = piece.members.front();
-    if (sharing != nullptr && sharing->number()[std::size_t(first)] != piece.lowest) continue;
+    if (index_map.number_of(first) != piece.lowest) continue;
     found.push_back({{piece.points, piece.lowest, points.position(first), {}}, motions[k]});
   }
-  if (sharing != nullptr) found = of_all_ranks(found, points.dimension, sharing->ranks());
+  found = of_all_ranks(found, points.dimension, index_map.ranks());
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
     return std::pair(-a.first.points, a.first.example) <
            std::pair(-b.first.points, b.first.example);

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "src/connectivity/holding.hpp"
-#include "src/core/sharing.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -42,9 +42,9 @@ struct FreeMotion {
 
 /// All components that may move as rigid bodies, largest first; empty if everything is held.
 /// Decided by the rank of the prescribed components on the rigid motions of each component.
-/// @param sharing null: the body is whole. Otherwise collective, with the same result on all ranks
+/// Collective, with the same result on all ranks
 [[nodiscard]] std::vector<FreeMotion> free_motions(const Points& points, const Bonds& bonds,
                                                    const Holding& holding,
-                                                   const Sharing* sharing = nullptr);
+                                                   const IndexMap& index_map = whole_body());
 
 }  // namespace peristat

@@ -11,6 +11,8 @@
 
 #include "src/connectivity/fragments.hpp"
 #include "src/dense/symmetric_spectrum.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -154,9 +156,9 @@ std::vector<FreeHandle> own_slides(const std::vector<Index>& loose,
 
 LooseWeb gather_loose_points(const Web& web, const std::vector<Index>& loose,
                              const std::vector<FreeHandle>& slides_of_rank,
-                             const std::vector<Support>& support, const Sharing& sharing) {
+                             const std::vector<Support>& support, const IndexMap& index_map) {
   constexpr std::size_t width = 13;  // number, place, support
-  const std::vector<double> number = whole_numbers(sharing, support.size(), web.dimension());
+  const std::vector<double> number = index_map.numbers(support.size());
   std::vector<double> points, ends;
   for (const Index i : loose) {
     const Coordinates at = web.position(i);
@@ -165,7 +167,7 @@ LooseWeb gather_loose_points(const Web& web, const std::vector<Index>& loose,
     for (const auto& row : support[std::size_t(i)])
       points.insert(points.end(), row.begin(), row.end());
     web.for_each_partner(i, [&](Index j) {
-      if (j >= sharing.first_image()) return;  // images are never loose
+      if (j >= index_map.first_image()) return;  // images are never loose
       ends.push_back(number[std::size_t(i)]);
       ends.push_back(number[std::size_t(j)]);
     });
@@ -175,9 +177,9 @@ LooseWeb gather_loose_points(const Web& web, const std::vector<Index>& loose,
     slides.push_back(number[std::size_t(slide.moved_by.member)]);
     slides.insert(slides.end(), slide.moved_by.along.begin(), slide.moved_by.along.end());
   }
-  points = all_together(sharing.ranks(), points);
-  ends = all_together(sharing.ranks(), ends);
-  slides = all_together(sharing.ranks(), slides);
+  points = concatenated(index_map.ranks(), points);
+  ends = concatenated(index_map.ranks(), ends);
+  slides = concatenated(index_map.ranks(), slides);
   std::vector<const double*> rows;
   for (std::size_t k = 0; k < points.size(); k += width) rows.push_back(&points[k]);
   std::sort(rows.begin(), rows.end(), [](const double* a, const double* b) { return *a < *b; });
@@ -236,8 +238,8 @@ std::vector<Support> supports_of(const Web& web, Index count, const std::vector<
 }
 
 std::vector<char> strip_loose_points(Web& web, std::vector<Support>& support,
-                                     const Sharing* sharing) {
-  const Index own = sharing != nullptr ? sharing->owned() : Index(support.size());
+                                     const IndexMap& index_map) {
+  const Index own = std::min(index_map.owned(), Index(support.size()));
   std::vector<char> is_loose(support.size(), 0);
   std::vector<Index> loose;
   const auto check = [&](Index i) {
@@ -246,7 +248,7 @@ std::vector<char> strip_loose_points(Web& web, std::vector<Support>& support,
     loose.push_back(i);
   };
   for (Index i = 0; i < own; ++i) check(i);
-  if (!loose.empty() || sharing != nullptr) web.find_lower_partners();
+  if (any_of_all(index_map.ranks(), !loose.empty())) web.find_lower_partners();
   std::size_t done = 0;
   for (bool goes_on = true; goes_on;) {
     for (; done < loose.size(); ++done) {  // grows in the loop
@@ -256,26 +258,24 @@ std::vector<char> strip_loose_points(Web& web, std::vector<Support>& support,
         check(j);
       });
     }
-    goes_on = false;
-    if (sharing == nullptr) continue;
     std::vector<double> told(is_loose.begin(), is_loose.end());
-    update_ghost_values(*sharing, web.dimension(), told);
+    index_map.update_ghost_values(told);
     for (std::size_t ghost = std::size_t(own); ghost < told.size(); ++ghost) {
       if (told[ghost] == 0.0 || is_loose[ghost]) continue;
       is_loose[ghost] = 1;
       loose.push_back(Index(ghost));
     }
-    goes_on = sharing->ranks().max(double(done < loose.size())) > 0.0;
+    goes_on = index_map.ranks().max(double(done < loose.size())) > 0.0;
   }
   return is_loose;
 }
 
 void pin_loose_points(const Web& web, const std::vector<Index>& loose,
                       const std::vector<FreeHandle>& handles, std::vector<Support> support,
-                      const Sharing* sharing, std::vector<char>& pinned) {
-  if (sharing == nullptr) return pin_all(web, loose, handles, std::move(support), pinned);
+                      const IndexMap& index_map, std::vector<char>& pinned) {
+  if (index_map.is_whole()) return pin_all(web, loose, handles, std::move(support), pinned);
   const std::vector<FreeHandle> mine = own_slides(loose, handles);
-  const LooseWeb all = gather_loose_points(web, loose, mine, support, *sharing);
+  const LooseWeb all = gather_loose_points(web, loose, mine, support, index_map);
   if (all.number.empty()) return;
   const auto d = std::size_t(web.dimension());
   Web among(all.bonds, {}, web.dimension(), all.positions);
@@ -285,14 +285,14 @@ void pin_loose_points(const Web& web, const std::vector<Index>& loose,
   std::vector<char> pins(all.positions.size() + all.slides.size(), 0);
   pin_all(among, rows, all.slides, all.support, pins);
   for (const Index i : loose) {
-    const auto row = std::size_t(all.row_of(double(sharing->number()[std::size_t(i)])));
+    const auto row = std::size_t(all.row_of(double(index_map.number_of(i))));
     std::copy_n(pins.begin() + std::ptrdiff_t(row * d), d,
                 pinned.begin() + std::ptrdiff_t(std::size_t(i) * d));
   }
   // The slides of a point, which are all of one rank, keep their order.
   std::map<Index, std::size_t> first;  // per row, to be looked at
   for (const FreeHandle& slide : mine) {
-    const Index row = all.row_of(double(sharing->number()[std::size_t(slide.moved_by.member)]));
+    const Index row = all.row_of(double(index_map.number_of(slide.moved_by.member)));
     std::size_t k = first[row];
     while (all.slides[k].moved_by.member != row) ++k;
     pinned[slide.dof] = pins[all.slides[k].dof];

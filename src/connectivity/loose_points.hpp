@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "src/connectivity/holding.hpp"
-#include "src/core/sharing.hpp"
 #include "src/core/types.hpp"
 #include "src/neighbourhood/bonds.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -69,18 +69,18 @@ using Support = Tensor;
 
 /// Strips loose points until none is left (see find_fragments), and subtracts them from the
 /// supports of all points.
-/// @param sharing null: the body is whole. Otherwise collective; supports of ghosts are not used
+/// Collective, supports of ghosts are not used
 /// @return per point, 1 if it is loose
 [[nodiscard]] std::vector<char> strip_loose_points(Web& web, std::vector<Support>& support,
-                                                   const Sharing* sharing);
+                                                   const IndexMap& index_map);
 
 /// Pins loose points one by one, those that need the fewest pins first (then the lowest); each then
-/// supports the others by its bonds. With `sharing`: collective, all ranks get all loose points.
+/// supports the others by its bonds. With `index_map`: collective, all ranks get all loose points.
 /// @param support of each point by points that are not loose
 /// @param pinned per degree of freedom; gets the pins
 /// @param loose this rank's own, ascending
 void pin_loose_points(const Web& web, const std::vector<Index>& loose,
                       const std::vector<FreeHandle>& handles, std::vector<Support> support,
-                      const Sharing* sharing, std::vector<char>& pinned);
+                      const IndexMap& index_map, std::vector<char>& pinned);
 
 }  // namespace peristat

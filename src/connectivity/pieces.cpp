@@ -11,6 +11,8 @@
 
 #include "src/connectivity/free_motion.hpp"
 #include "src/measures/small_algebra.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -21,7 +23,7 @@ std::map<double, double> join(const Communicator& ranks,
                               const std::set<std::pair<double, double>>& mine) {
   std::vector<double> flat;
   for (const auto& [a, b] : mine) flat.insert(flat.end(), {a, b});
-  flat = all_together(ranks, flat);
+  flat = concatenated(ranks, flat);
   std::map<double, double> parent;
   for (const double label : flat) parent.emplace(label, label);
   const auto root = [&](double label) {
@@ -53,23 +55,26 @@ void add_ties(const Communicator& ranks, const std::vector<double>& label,
 
 /// Returns for each component here the number of the shared piece that it is a part of, or -1; and
 /// the number of shared pieces.
-std::pair<std::vector<Index>, std::size_t> shared_pieces(const Components& here, int dimension,
+std::pair<std::vector<Index>, std::size_t> shared_pieces(const Components& here,
                                                          std::span<const Index> tied,
-                                                         const Sharing& sharing) {
-  const auto own = std::size_t(sharing.owned());
-  const double first = double(sharing.ranks().count_all(std::int64_t(here.size.size())).before);
+                                                         const IndexMap& index_map) {
+  const std::size_t own = std::min(std::size_t(index_map.owned()), here.of_point.size());
+  const double first = double(index_map.ranks().count_all(std::int64_t(here.size.size())).before);
   std::vector<double> label(here.of_point.begin(), here.of_point.end());
   for (double& of_point : label) of_point += first;
   std::vector<double> of_owner = label;
-  update_ghost_values(sharing, dimension, of_owner);
+  index_map.update_ghost_values(of_owner);
   std::vector<char> has_own(here.size.size(), 0);
   for (std::size_t i = 0; i < own; ++i) has_own[std::size_t(here.of_point[i])] = 1;
   std::set<std::pair<double, double>> ties;
   for (std::size_t ghost = own; ghost < label.size(); ++ghost) {
-    if (has_own[std::size_t(here.of_point[ghost])]) ties.emplace(label[ghost], of_owner[ghost]);
+    const bool is_elsewhere = label[ghost] != of_owner[ghost];  // no image
+    if (is_elsewhere && has_own[std::size_t(here.of_point[ghost])]) {
+      ties.emplace(label[ghost], of_owner[ghost]);
+    }
   }
-  add_ties(sharing.ranks(), label, tied, ties);
-  const std::map<double, double> joined = join(sharing.ranks(), ties);
+  add_ties(index_map.ranks(), label, tied, ties);
+  const std::map<double, double> joined = join(index_map.ranks(), ties);
   std::map<double, Index> number;  // by the lowest label
   for (const auto& [of, lowest] : joined) {
     if (of == lowest) number.emplace(lowest, Index(number.size()));
@@ -109,19 +114,15 @@ std::span<const Piece> shared_of(const std::vector<Piece>& pieces) {
 
 std::vector<Piece> pieces_of(const Points& points, const Bonds& bonds, std::span<const char> broken,
                              std::span<const BondEnds> links, std::span<const Index> ties,
-                             const Sharing* sharing) {
+                             const IndexMap& index_map) {
   const Components here = connected_components(bonds, broken, links);
   std::vector<std::vector<Index>> members = here.members();
-  std::vector<Index> shared(members.size(), -1);
-  std::size_t count = 0;
-  if (sharing != nullptr) {
-    std::tie(shared, count) = shared_pieces(here, points.dimension, ties, *sharing);
-  }
+  const auto [shared, count] = shared_pieces(here, ties, index_map);
   std::vector<Piece> pieces(count);
   for (Piece& piece : pieces) piece.is_shared = true;
   for (std::size_t k = 0; k < members.size(); ++k) {
-    if (sharing != nullptr) {
-      const auto ghosts = std::lower_bound(members[k].begin(), members[k].end(), sharing->owned());
+    if (!index_map.is_whole()) {
+      const auto ghosts = std::lower_bound(members[k].begin(), members[k].end(), index_map.owned());
       members[k].erase(ghosts, members[k].end());
     }
     const bool is_here = !members[k].empty() && !points.is_image(members[k].front());
@@ -135,9 +136,9 @@ std::vector<Piece> pieces_of(const Points& points, const Bonds& bonds, std::span
     piece.points = GlobalIndex(images - piece.members.begin());
     if (piece.members.empty()) continue;
     const Index first = piece.members.front();
-    piece.lowest = sharing != nullptr ? sharing->number()[std::size_t(first)] : first;
+    piece.lowest = index_map.number_of(first);
   }
-  if (sharing != nullptr) count_shared(std::span(pieces).first(count), sharing->ranks());
+  count_shared(std::span(pieces).first(count), index_map.ranks());
   return pieces;
 }
 
@@ -160,7 +161,7 @@ std::vector<RigidMotions> FreePieces::motions(const std::vector<Piece>& pieces) 
 
 std::vector<RigidMotions> FreePieces::shared_motions(std::span<const Piece> pieces) const {
   if (pieces.empty()) return {};
-  const Communicator& ranks = sharing_->ranks();
+  const Communicator& ranks = index_map_.ranks();
   const auto d = std::size_t(points_.dimension);
   std::vector<double> centres, sizes;
   for (const Piece& piece : pieces) {
@@ -223,13 +224,14 @@ void FreePieces::pin(const std::vector<Piece>& pieces, const std::vector<RigidMo
       pinned[dof] = 1;
     }
   }
-  if (sharing_ != nullptr) tell_pinned_handles(pinned);
+  tell_pinned_handles(pinned);
 }
 
 void FreePieces::tell_pinned_handles(std::vector<char>& pinned) const {
   const auto handles = pinned.begin() + std::ptrdiff_t(points_.reference.size());
   if (handles == pinned.end()) return;
-  const std::vector<double> all = sharing_->ranks().max(std::vector<double>(handles, pinned.end()));
+  const std::vector<double> all =
+      index_map_.ranks().max(std::vector<double>(handles, pinned.end()));
   std::ranges::transform(all, handles, [](double pin) { return char(pin != 0.0); });
 }
 
@@ -278,7 +280,7 @@ void FreePieces::pin_shared(std::span<const Piece> pieces, std::span<const Rigid
   const auto d = std::size_t(points_.dimension);
   const std::size_t modes = d * (d + 1) / 2;
   const double first_handle =  // handles come after all points
-      sharing_->ranks().sum(double(sharing_->owned())) - double(sharing_->count());
+      index_map_.ranks().sum(double(index_map_.owned())) - double(index_map_.count());
   int rounds = 0;
   std::vector<MovedDofs> moved(pieces.size());
   for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -289,8 +291,7 @@ void FreePieces::pin_shared(std::span<const Piece> pieces, std::span<const Rigid
         const std::size_t dof = std::size_t(i) * d + c;
         if (held[dof]) continue;
         moved[k].dof.push_back(dof);
-        moved[k].number.push_back(double(sharing_->number()[std::size_t(i)]) * double(d) +
-                                  double(c));
+        moved[k].number.push_back(double(index_map_.number_of(i)) * double(d) + double(c));
         moved[k].row.push_back(moved_by(motions[k], place(i), int(c)));
       }
     }
@@ -305,7 +306,7 @@ void FreePieces::pin_shared(std::span<const Piece> pieces, std::span<const Rigid
   for (int round = 0; round < rounds; ++round) {
     std::vector<double> most, lowest, rows(pieces.size() * modes, 0.0);
     for (const MovedDofs& of : moved) most.push_back(of.most());
-    most = sharing_->ranks().max(most);
+    most = index_map_.ranks().max(most);
     std::vector<std::size_t> mine;
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       mine.push_back(moved[k].lowest_alike(most[k]));
@@ -313,14 +314,14 @@ void FreePieces::pin_shared(std::span<const Piece> pieces, std::span<const Rigid
                        mine[k] < moved[k].row.size();
       lowest.push_back(has ? moved[k].number[mine[k]] : nobody);
     }
-    const std::vector<double> chosen = sharing_->ranks().min(lowest);
+    const std::vector<double> chosen = index_map_.ranks().min(lowest);
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       if (lowest[k] != chosen[k] || lowest[k] == nobody) continue;
       pinned[moved[k].dof[mine[k]]] = 1;
       const std::vector<double>& row = moved[k].row[mine[k]];
       std::copy(row.begin(), row.end(), rows.begin() + std::ptrdiff_t(k * modes));
     }
-    rows = sharing_->ranks().sum(rows);
+    rows = index_map_.ranks().sum(rows);
     for (std::size_t k = 0; k < pieces.size(); ++k) {
       if (chosen[k] == nobody) continue;
       const auto first = rows.begin() + std::ptrdiff_t(k * modes);

@@ -5,9 +5,9 @@
 
 #include "src/connectivity/holding.hpp"
 #include "src/connectivity/rigid_motions.hpp"
-#include "src/core/sharing.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -28,11 +28,11 @@ struct Piece {
 /// @param broken one flag per bond; empty: none is
 /// @param links pairs of points here that are joined, too
 /// @param ties points of several ranks that are joined, see Holding
-/// @param sharing null: the body is whole. Otherwise collective
+/// Collective.
 [[nodiscard]] std::vector<Piece> pieces_of(const Points& points, const Bonds& bonds,
                                            std::span<const char> broken,
                                            std::span<const BondEnds> links,
-                                           std::span<const Index> ties, const Sharing* sharing);
+                                           std::span<const Index> ties, const IndexMap& index_map);
 
 /// Free rigid motions of pieces, and pins that suppress them. Collective if ranks share the body.
 class FreePieces {
@@ -40,8 +40,8 @@ class FreePieces {
   /// All must outlive it.
   /// @param positions points x dimension [m]
   FreePieces(const Points& points, std::span<const double> positions, const Holding& holding,
-             const Sharing* sharing)
-      : points_(points), positions_(positions), holding_(holding), sharing_(sharing) {}
+             const IndexMap& index_map)
+      : points_(points), positions_(positions), holding_(holding), index_map_(index_map) {}
 
   /// Returns the free rigid motions of each piece, see free_rigid_motions.
   [[nodiscard]] std::vector<RigidMotions> motions(const std::vector<Piece>& pieces) const;
@@ -64,7 +64,7 @@ class FreePieces {
   const Points& points_;
   std::span<const double> positions_;
   const Holding& holding_;
-  const Sharing* sharing_;
+  const IndexMap& index_map_;
 };
 
 }  // namespace peristat

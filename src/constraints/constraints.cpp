@@ -3,8 +3,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "src/core/sharing.hpp"
 #include "src/measures/small_algebra.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -19,9 +20,9 @@ Tensor scaled_unit(double factor) {
 
 }  // namespace
 
-Constraints::Constraints(const Points& points, const Communicator* ranks)
+Constraints::Constraints(const Points& points, const Communicator& ranks)
     : body_(&points),
-      ranks_(ranks),
+      ranks_(&ranks),
       dimension_(points.dimension),
       points_(points.count()),
       dependent_(points.reference.size(), 0),
@@ -58,6 +59,9 @@ void Constraints::follow(Index point, const std::array<bool, 3>& follows,
 }
 
 void Constraints::follow(SharedFollower follower) {
+  if (ranks_->count() == 1) {
+    return follow(follower.point.value(), follower.follows, std::move(follower.masters));
+  }
   if (follower.point) {
     give_role(*follower.point, {Role::Kind::shared, static_cast<Index>(shared_.size())},
               follower.follows);

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "src/constraints/rotation.hpp"
-#include "src/core/communicator.hpp"
 #include "src/core/types.hpp"
 #include "src/geometry/points.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 
@@ -38,8 +38,8 @@ class Constraints {
  public:
   /// Constraints of the points' images alone. Each period has a handle, the jump of the
   /// displacement across it [m].
-  /// @param ranks that have parts of the body; they outlive it. Null: the body is whole
-  explicit Constraints(const Points& points, const Communicator* ranks = nullptr);
+  /// @param ranks that have parts of the body; they outlive it
+  explicit Constraints(const Points& points, const Communicator& ranks = sole_rank());
 
   /// True without constraints. The same on all ranks, which have all handles and kinds of images.
   [[nodiscard]] bool none() const {

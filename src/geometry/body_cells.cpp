@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "src/core/input_error.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 
@@ -20,7 +21,7 @@ bool has_cut_cell(const Points& points) {
 
 }  // namespace
 
-BodyCells::BodyCells(const Points& points, const Communicator* ranks) : of_(points), ranks_(ranks) {
+BodyCells::BodyCells(const Points& points, const Communicator& ranks) : of_(points), ranks_(ranks) {
   if (!points.lattice) {
     throw InputError("", "",
                      "needs points on a lattice: those of a file and of blue noise have no sides");
@@ -63,13 +64,13 @@ std::vector<Index> BodyCells::outermost(const Side& side) const {
   const auto along = [&](const auto& entry) { return side.sign * entry.first[side.axis]; };
   double last = -std::numeric_limits<double>::infinity();
   for (const auto& entry : cells_) last = std::max(last, double(along(entry)));
-  if (ranks_) last = ranks_->max(last);
+  last = ranks_.max(last);
   std::vector<Index> row;
   for (const auto& entry : cells_) {
     if (double(along(entry)) == last && !of_.is_image(entry.second)) row.push_back(entry.second);
   }
   double count = double(row.size());
-  if (ranks_) count = ranks_->sum(count);
+  count = ranks_.sum(count);
   if (count == 0.0) {
     throw InputError("", name(side), "on this side the body goes on beyond a plane or period");
   }
@@ -93,10 +94,8 @@ std::vector<Side> BodyCells::exposed_sides(std::span<const Index> points) const 
       }
     }
   }
-  if (ranks_) {
-    least = ranks_->min(least);
-    is_exposed_there = ranks_->min(is_exposed_there);
-  }
+  least = ranks_.min(least);
+  is_exposed_there = ranks_.min(is_exposed_there);
   std::vector<Side> sides;
   for (int axis = 0; axis < of_.dimension; ++axis) {
     const auto lower = std::size_t(2 * axis), upper = lower + 1;

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "src/core/communicator.hpp"
 #include "src/geometry/points.hpp"
 #include "src/geometry/side.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 
@@ -19,11 +19,10 @@ using LatticeCell = std::array<std::int64_t, 3>;
 /// boundary is found. Points of layers are not in the body.
 class BodyCells {
  public:
-  /// @param ranks that have parts of the body, with ghosts a spacing around their points; null: it
-  ///        is whole
+  /// @param ranks that have parts of the body, with ghosts a spacing around their points
   /// @throws InputError (without a key) for points that stand on no lattice, and for cells that are
   ///         not whole
-  explicit BodyCells(const Points& points, const Communicator* ranks = nullptr);
+  explicit BodyCells(const Points& points, const Communicator& ranks = sole_rank());
 
   [[nodiscard]] LatticeCell cell(Index point) const;
   /// The body's point there, or -1.
@@ -42,7 +41,7 @@ class BodyCells {
 
  private:
   const Points& of_;
-  const Communicator* ranks_;
+  const Communicator& ranks_;
   std::vector<std::pair<LatticeCell, Index>> cells_;  // ascending
 };
 

@@ -8,6 +8,7 @@
 #include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/outermost_face.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

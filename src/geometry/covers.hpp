@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "src/core/communicator.hpp"
 #include "src/geometry/collared_body.hpp"
 #include "src/geometry/lattice.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

@@ -9,6 +9,7 @@
 
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

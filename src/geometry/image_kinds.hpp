@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "src/core/communicator.hpp"
 #include "src/geometry/points.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

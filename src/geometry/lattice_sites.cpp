@@ -14,6 +14,7 @@
 #include "src/core/number_text.hpp"
 #include "src/geometry/cell_piece.hpp"
 #include "src/geometry/outermost_face.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "src/core/communicator.hpp"
 #include "src/geometry/lattice.hpp"
 #include "src/geometry/lattice_frame.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

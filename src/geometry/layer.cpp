@@ -6,6 +6,7 @@
 
 #include "src/geometry/lattice_frame.hpp"
 #include "src/geometry/outermost_face.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

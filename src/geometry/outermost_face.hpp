@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "src/core/communicator.hpp"
 #include "src/geometry/layer.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

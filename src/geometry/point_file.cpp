@@ -16,6 +16,7 @@
 #include "src/core/number_text.hpp"
 #include "src/geometry/numbering.hpp"
 #include "src/geometry/table_text.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "src/core/communicator.hpp"
 #include "src/geometry/neighbour_file.hpp"
 #include "src/geometry/part.hpp"
 #include "src/geometry/points.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

@@ -16,6 +16,7 @@
 #include "src/geometry/perturbed_cells.hpp"
 #include "src/geometry/perturbed_points.hpp"
 #include "src/geometry/solid.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

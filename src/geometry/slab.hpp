@@ -1,8 +1,8 @@
 #pragma once
 
-#include "src/core/communicator.hpp"
 #include "src/geometry/lattice.hpp"
 #include "src/geometry/part.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

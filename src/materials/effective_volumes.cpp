@@ -11,7 +11,7 @@ constexpr double orders = Measure::arms == 2 ? 2.0 : 6.0;
 
 /// The count n that effective volumes are divided by: n itself from n = 1 on, so that they add up
 /// to the neighbourhood's volume. Below, where the last interactions of a point are nearly flat, it
-/// is (1 + n^2)/2: their weights vanish with them instead of sharing the whole volume.
+/// is (1 + n^2)/2: their weights vanish with them instead of index_map the whole volume.
 double divisor(double count) { return count >= 1.0 ? count : 0.5 * (1.0 + count * count); }
 
 /// Volume with which a point contributes; 0 beyond a plane of symmetry, where it belongs to the

@@ -1,4 +1,4 @@
-#include "src/core/communicator.hpp"
+#include "src/parallel/communicator.hpp"
 
 #include <cmath>
 #include <cstring>

@@ -15,11 +15,13 @@
 
 #include "assembly/assembler.hpp"
 #include "solvers/ranks/distribute.hpp"
+#include "solvers/ranks/make_index_map.hpp"
 #include "solvers/ranks/part_bonds.hpp"
-#include "solvers/ranks/part_of_body.hpp"
 #include "src/connectivity/fragments.hpp"
 #include "src/connectivity/free_motion.hpp"
 #include "src/geometry/slab.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 #include "tests/bodies.hpp"
 #include "tests/ranks/bodies_on_ranks.hpp"
 #include "tests/ranks/on_ranks.hpp"
@@ -43,7 +45,7 @@ struct Both {
     Bonds here = make_bonds(part, surface, setting, all_ranks(), 1);
     of_whole = Model(std::move(all), softening(setting));
     of_part = Model(std::move(here), softening(setting));
-    sharing = std::make_unique<PartOfBody>(part, all_ranks());
+    index_map = std::make_unique<IndexMap>(make_index_map(part, all_ranks()));
   }
 
   static Part make_part(const RanksBody& body, SurfaceCorrection surface) {
@@ -70,7 +72,7 @@ struct Both {
   Points whole;
   Part part;
   Model of_whole, of_part;
-  std::unique_ptr<PartOfBody> sharing;
+  std::unique_ptr<IndexMap> index_map;
 };
 
 /// What ranks know of bonds between two of them.
@@ -83,7 +85,7 @@ std::map<Ends, std::vector<double>> of_shared_bonds(
     mine.insert(mine.end(), {double(low), double(high), value(i, j, bond)});
   });
   std::map<Ends, std::vector<double>> told;
-  const std::vector<double> all = all_together(all_ranks(), mine);
+  const std::vector<double> all = concatenated(all_ranks(), mine);
   for (std::size_t k = 0; k < all.size(); k += 3) {
     told[{GlobalIndex(all[k]), GlobalIndex(all[k + 1])}].push_back(all[k + 2]);
   }
@@ -106,7 +108,7 @@ TEST(DamageOfParts, grows_as_that_of_the_whole_body) {
     SCOPED_TRACE(body.name);
     const Both both(body, SurfaceCorrection::volume);
     Assembler all(both.whole, both.of_whole, 1);
-    Assembler here(both.part.points, both.of_part, 1, both.sharing.get());
+    Assembler here(both.part.points, both.of_part, 1, *both.index_map);
     History of_all = all.initial_history(), of_part = here.initial_history();
     Index breaking = 0;
     for (int pass = 0; pass < 4; ++pass) {
@@ -210,7 +212,7 @@ void expect_same_fragments(const Both& both, const Broken& broken, std::vector<c
       find_fragments(both.whole, both.of_whole.bonds(), broken.of_whole, prescribed, u, holding);
   const Fragments found =
       find_fragments(both.part.points, both.of_part.bonds(), broken.of_part, prescribed_here,
-                     both.of_points_here(u), holding_here, both.sharing.get());
+                     both.of_points_here(u), holding_here, *both.index_map);
   EXPECT_EQ(found.count, expected.count);
   for (const FreeHandle& slide : holding_here.handles) {
     if (slide.moved_by.member >= both.part.owned) continue;
@@ -297,7 +299,7 @@ TEST(FragmentsOnRanks, tell_all_ranks_what_may_move) {
   const std::vector<char> held_here(both.part.points.reference.size(), 0);
   const std::vector<FreeMotion> expected = free_motions(both.whole, both.of_whole.bonds(), {held});
   const std::vector<FreeMotion> found =
-      free_motions(both.part.points, both.of_part.bonds(), {held_here}, both.sharing.get());
+      free_motions(both.part.points, both.of_part.bonds(), {held_here}, *both.index_map);
   EXPECT_EQ(found.size(), expected.size());
   EXPECT_EQ(expected.size(), 1u);
   for (std::size_t k = 0; k < std::min(found.size(), expected.size()); ++k) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "solvers/ranks/ranks.hpp"
+#include "src/parallel/communicator.hpp"
 #include "tests/ranks/on_ranks.hpp"
 
 namespace peristat::tests {

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -82,7 +83,7 @@ Moved move(const Body& body) {
 void expect_near(const Body& part, const std::vector<double>& mine,
                  const std::vector<double>& whole) {
   const auto d = std::size_t(part.points.dimension);
-  const std::vector<GlobalIndex>& number = part.part->number();
+  const std::span<const GlobalIndex> number = part.index_map->numbered().owned;
   double scale = 0.0;
   for (const double value : whole) scale = std::max(scale, std::abs(value));
   EXPECT_GT(scale, 0.0);
@@ -137,13 +138,14 @@ void expect_agreement(const Body& part, const History& history) {
   std::vector<double> mine;
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const auto [low, high] = std::minmax(
-          {part.part->number_of(i), part.part->number_of(bonds.partner[std::size_t(bond)])});
+      const auto [low, high] =
+          std::minmax({part.index_map->number_of(i),
+                       part.index_map->number_of(bonds.partner[std::size_t(bond)])});
       mine.insert(mine.end(), {double(low), double(high), stretches[std::size_t(bond)]});
     }
   }
   std::map<std::pair<double, double>, double> known;
-  const std::vector<double> all = all_together(all_ranks(), mine);
+  const std::vector<double> all = concatenated(all_ranks(), mine);
   std::size_t different = 0;
   for (std::size_t k = 0; k < all.size(); k += 3) {
     const auto [at, is_new] = known.try_emplace({all[k], all[k + 1]}, all[k + 2]);
@@ -204,10 +206,10 @@ TEST(MotionOnRanks, exchanges_once_a_step) {
   options.loading.dynamics.steps_per_row = 1000;
   Study study(*part, options);
   static_cast<void>(study.find_initial_stiffness());
-  const auto before = part->part->traffic().exchanges;
+  const auto before = part->index_map->traffic().exchanges;
   EXPECT_EQ(study.follow({}).outcome, Outcome::converged);
   constexpr int steps = 500, others = 10;
-  const auto exchanges = part->part->traffic().exchanges - before;
+  const auto exchanges = part->index_map->traffic().exchanges - before;
   EXPECT_GE(exchanges, steps);
   EXPECT_LE(exchanges, steps + others);
 }

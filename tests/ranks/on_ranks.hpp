@@ -1,6 +1,6 @@
 #pragma once
 
-#include "src/core/communicator.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat::tests {
 

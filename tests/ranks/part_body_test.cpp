@@ -24,9 +24,10 @@
 #include "solvers/study/without_equation.hpp"
 #include "src/conditions/pressed_boundary.hpp"
 #include "src/core/input_error.hpp"
-#include "src/core/sharing.hpp"
 #include "src/geometry/image_number.hpp"
 #include "src/geometry/slab.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 #include "tests/bodies.hpp"
 #include "tests/ranks/bodies_on_ranks.hpp"
 #include "tests/ranks/on_ranks.hpp"
@@ -253,7 +254,7 @@ struct NumberedBody {
         values[std::size_t(i) * d + c] = of_points[std::size_t(number(i)) * d + c];
       }
     }
-    const bool owns_handles = !body.part || body.part->ranks().rank() == 0;
+    const bool owns_handles = body.index_map->is_first_rank();
     const std::size_t first = points.reference.size();
     for (std::size_t k = first; owns_handles && k < values.size(); ++k) {
       values[k] = handles[k - first];
@@ -265,7 +266,7 @@ struct NumberedBody {
   [[nodiscard]] std::vector<double> displacement(unsigned seed, double share_of_spacing) const {
     std::vector<double> u = random(seed, share_of_spacing * body.points.spacing);
     body.conditions->prescribe(1.0, u);
-    if (body.part) body.part->update_ghosts(u);
+    body.index_map->update_ghosts(u);
     body.conditions->constraints().move(u);
     return u;
   }
@@ -304,7 +305,7 @@ Evaluated evaluate(const NumberedBody& of) {
   const Conditions& conditions = *body.conditions;
   const Constraints& constraints = conditions.constraints();
   const std::vector<double> u = of.displacement(5, 0.05);
-  Assembler assembler(body.points, body.model, 1, body.part.get());
+  Assembler assembler(body.points, body.model, 1, *body.index_map);
   Evaluated found;
   found.forces.resize(u.size());
   found.loads.resize(u.size());
@@ -355,7 +356,7 @@ bool slides(const BodySpecification& of) {
 struct InEquations {
   explicit InEquations(const NumberedBody& of)
       : free(without_equation(of.body), of.body.points.dimension),
-        assembler(of.body.points, of.body.model, 1, of.body.part.get()) {
+        assembler(of.body.points, of.body.model, 1, *of.body.index_map) {
     const Body& body = of.body;
     const Constraints& constraints = body.conditions->constraints();
     trial.displacement = of.random(5, 0.05 * body.points.spacing);
@@ -367,29 +368,29 @@ struct InEquations {
     const EquilibriumProblem problem{assembler, *body.conditions, free};
     evaluate(problem, loads, trial);
     scale = load_norm(problem, loads, trial, Damage::grows);
-    const Sharing* const sharing = body.part.get();
+    const IndexMap& index_map = *body.index_map;
     std::vector<double> factor = of.random(9, 1.0);
     for (std::size_t dof = 0; dof < factor.size(); ++dof) {
       if (constraints.dependent()[dof]) factor[dof] = 0.0;
     }
     ConstrainedProduct of_products(std::make_unique<Tangent>(assembler), body.points, constraints,
-                                   sharing);
+                                   index_map);
     of_products.linearise(assembler, trial.at(), 0.0);
     product_alone.resize(factor.size());
     of_products.multiply(factor, product_alone);
     diagonal_of_product = of_products.diagonal;
-    if (sharing && slides(body.specification)) {
+    if (!index_map.is_whole() && slides(body.specification)) {
       product = product_alone;
       diagonal = diagonal_of_product;
     } else {
-      ConstrainedTangent tangent(assembler, constraints, sharing);
+      ConstrainedTangent tangent(assembler, constraints, index_map);
       tangent.linearise(assembler, trial.at(), 0.0);
       product.resize(factor.size());
       tangent.multiply(factor, product);
       diagonal = tangent.diagonal;
       row_sums.resize(factor.size());
       tangent.absolute_row_sums(row_sums);
-      solve(tangent, sharing);
+      solve(tangent, index_map);
     }
     reactions =
         body.conditions->reactions(trial.gradient, loads, trial.displacement, trial.environment);
@@ -397,10 +398,10 @@ struct InEquations {
   }
 
   /// For what has that product, preconditioned by rigid pieces.
-  void solve(const TangentOperator& tangent, const Sharing* sharing) {
+  void solve(const TangentOperator& tangent, const IndexMap& index_map) {
     IterativeSolver solver(KrylovMethod::conjugate_gradients,
-                           std::make_unique<RigidPieces>(sharing), 1000, KrylovOptions{}.restart,
-                           sharing ? &sharing->ranks() : nullptr);
+                           std::make_unique<RigidPieces>(index_map), 1000, KrylovOptions{}.restart,
+                           index_map.ranks());
     EXPECT_EQ(solver.analyze(tangent.pattern, free), LinearOutcome::solved);
     EXPECT_EQ(solver.factorize(tangent, FactorUse::factorize_now), LinearOutcome::solved);
     std::vector<double> b(std::size_t(free.count())), x(b.size());
@@ -500,7 +501,7 @@ std::map<std::array<GlobalIndex, 3>, std::vector<std::array<double, 3>>> told_of
     flat.insert(flat.end(), ends.begin(), ends.end());
     flat.insert(flat.end(), known.begin(), known.end());
   }
-  flat = all_together(all_ranks(), flat);
+  flat = concatenated(all_ranks(), flat);
   std::map<std::array<GlobalIndex, 3>, std::vector<std::array<double, 3>>> told;
   for (auto next = flat.begin(); next != flat.end(); next += 6) {
     told[{GlobalIndex(next[0]), GlobalIndex(next[1]), GlobalIndex(next[2])}].push_back(
@@ -548,7 +549,7 @@ TEST(PartBody, breaks_as_the_whole_body_does) {
     const Both both(of);
     const auto& [whole, part, mine, d] = both;
     Assembler all(whole->points, whole->model, 1),
-        here(mine->points, mine->model, 1, mine->part.get());
+        here(mine->points, mine->model, 1, *mine->index_map);
     History of_all = all.initial_history(), of_part = here.initial_history();
     Index breaking = 0;
     for (unsigned pass = 0; pass < 3; ++pass) {

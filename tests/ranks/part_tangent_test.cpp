@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "solvers/linear/block_jacobi.hpp"
+#include "src/parallel/communicator.hpp"
 #include "tests/ranks/parts_on_ranks.hpp"
 
 namespace peristat::tests {
@@ -37,7 +38,7 @@ TEST(AssemblerOfPart, is_that_of_the_whole_body) {
       here.resize(ranks.part.points.reference.size());
       const auto owned = std::ptrdiff_t(ranks.without_ghosts(here).size());
       std::fill(here.begin() + owned, here.end(), 1e3);  // to be overwritten
-      ranks.sharing.update_ghosts(here);
+      ranks.index_map.update_ghosts(here);
       EXPECT_EQ(here, ranks.of_part(u));
       std::vector<double> mine(here.size());
       const Evaluation found = ranks.energy.gradient(here, mine);
@@ -96,7 +97,8 @@ TEST(PartTangent, solves_for_the_displacements_of_the_whole_body) {
     const Pulled pulled(whole.points, low, high);
     MatrixFreeTangent stiffness(whole.assembler);
     stiffness.linearise(whole.assembler, std::vector<double>(d * whole.points.volume.size()), 0.0);
-    const Solved expected = solve(stiffness, pulled.flags, pulled.displacement, blocks(), nullptr);
+    const Solved expected =
+        solve(stiffness, pulled.flags, pulled.displacement, blocks(), sole_rank());
     EXPECT_EQ(expected.outcome, LinearOutcome::solved);
 
     OnRanks ranks(body, SurfaceCorrection::none);
@@ -104,8 +106,8 @@ TEST(PartTangent, solves_for_the_displacements_of_the_whole_body) {
     PartTangent<MatrixFreeTangent>& tangent = ranks.matrix_free;
     tangent.linearise(ranks.energy, std::vector<double>(ranks.part.points.reference.size()), 0.0);
     const Solved found =
-        solve(tangent, without_ghosts(ranks.sharing, mine.flags, ranks.part.points.dimension),
-              mine.displacement, blocks(), &communicator);
+        solve(tangent, without_ghosts(ranks.index_map, mine.flags, ranks.part.points.dimension),
+              mine.displacement, blocks(), communicator);
     EXPECT_EQ(found.outcome, LinearOutcome::solved);
     EXPECT_NEAR(found.iterations, expected.iterations, 1);
     EXPECT_EQ(communicator.min(double(found.iterations)),
@@ -113,7 +115,7 @@ TEST(PartTangent, solves_for_the_displacements_of_the_whole_body) {
     expect_near(ranks, found.displacement, expected.displacement, 1e-9);
 
     // Traffic is of one solve: the others come after it.
-    const Traffic traffic = ranks.sharing.traffic();
+    const Traffic traffic = ranks.index_map.traffic();
     const double messages = communicator.sum(double(traffic.messages));
     const double bytes = communicator.sum(double(traffic.bytes));
     const double most = communicator.max(double(ranks.part.owned));
@@ -121,8 +123,8 @@ TEST(PartTangent, solves_for_the_displacements_of_the_whole_body) {
     for (const auto method : {KrylovMethod::conjugate_gradients, KrylovMethod::minres,
                               KrylovMethod::gmres, KrylovMethod::bicgstab}) {
       const Solved again =
-          solve(tangent, without_ghosts(ranks.sharing, mine.flags, ranks.part.points.dimension),
-                mine.displacement, blocks(), &communicator, method);
+          solve(tangent, without_ghosts(ranks.index_map, mine.flags, ranks.part.points.dimension),
+                mine.displacement, blocks(), communicator, method);
       EXPECT_EQ(again.outcome, LinearOutcome::solved);
       expect_near(ranks, again.displacement, expected.displacement, 1e-9);
       if (method == KrylovMethod::conjugate_gradients) {

@@ -7,12 +7,13 @@
 #include <gtest/gtest.h>
 
 #include "solvers/ranks/distribute.hpp"
-#include "solvers/ranks/ghost_exchange.hpp"
 #include "solvers/ranks/ranks.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/slab.hpp"
 #include "src/geometry/squared_distance.hpp"
 #include "src/neighbourhood/horizon.hpp"
+#include "src/parallel/communicator.hpp"
+#include "src/parallel/ghost_exchange.hpp"
 #include "tests/ranks/bodies_on_ranks.hpp"
 #include "tests/ranks/on_ranks.hpp"
 

@@ -11,10 +11,11 @@
 #include "assembly/operators/matrix_free_tangent.hpp"
 #include "solvers/linear/iterative_solver.hpp"
 #include "solvers/ranks/distribute.hpp"
+#include "solvers/ranks/make_index_map.hpp"
 #include "solvers/ranks/part_bonds.hpp"
-#include "solvers/ranks/part_of_body.hpp"
 #include "solvers/ranks/part_tangent.hpp"
 #include "src/geometry/slab.hpp"
+#include "src/parallel/index_map.hpp"
 #include "tests/bodies.hpp"
 #include "tests/ranks/bodies_on_ranks.hpp"
 #include "tests/ranks/on_ranks.hpp"
@@ -44,8 +45,8 @@ struct OnRanks {
   OnRanks(const RanksBody& body, SurfaceCorrection surface)
       : part(make_part(body, surface)),
         model(make_bonds(part, surface, body.setting(), all_ranks(), 1), law_of(body.setting())),
-        sharing(part, all_ranks()),
-        energy(part.points, model, 1, &sharing),
+        index_map(make_index_map(part, all_ranks())),
+        energy(part.points, model, 1, index_map),
         matrix_free(energy),
         stored(energy) {}
 
@@ -75,7 +76,7 @@ struct OnRanks {
 
   Part part;
   Model model;
-  PartOfBody sharing;
+  IndexMap index_map;
   Assembler energy;
   PartTangent<MatrixFreeTangent> matrix_free;
   PartTangent<Tangent> stored;
@@ -121,7 +122,7 @@ struct Solved {
 /// Solves K d = -K u for prescribed displacements u, and returns u + d.
 inline Solved solve(const TangentOperator& tangent, const std::vector<char>& no_equation,
                     const std::vector<double>& prescribed,
-                    std::unique_ptr<Preconditioner> preconditioner, const Communicator* ranks,
+                    std::unique_ptr<Preconditioner> preconditioner, const Communicator& ranks,
                     KrylovMethod method = KrylovMethod::conjugate_gradients) {
   const FreeDofs free(no_equation, tangent.dimension);
   IterativeSolver solver(method, std::move(preconditioner), 2000, KrylovOptions{}.restart, ranks);

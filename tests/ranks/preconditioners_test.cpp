@@ -11,6 +11,7 @@
 #include "solvers/linear/gathered_pieces.hpp"
 #include "solvers/linear/rigid_pieces.hpp"
 #include "solvers/linear/surrogate.hpp"
+#include "src/parallel/index_map.hpp"
 #include "tests/ranks/parts_on_ranks.hpp"
 
 namespace peristat::tests {
@@ -38,7 +39,7 @@ RanksBody two_plates() {
 
 struct Kind {
   std::string name;
-  std::function<std::unique_ptr<Preconditioner>(const Sharing*)> make;
+  std::function<std::unique_ptr<Preconditioner>(const IndexMap&)> make;
   /// Iterations on several ranks beyond those on one: what is added, and the factor.
   int added;
   double factor;
@@ -46,17 +47,17 @@ struct Kind {
 
 std::vector<Kind> all_kinds() {
   const auto assembled = [](MatrixPreconditionerKind kind) {
-    return [kind](const Sharing* sharing) {
-      return std::make_unique<AssembledPreconditioner>(kind, sharing);
+    return [kind](const IndexMap& index_map) {
+      return std::make_unique<AssembledPreconditioner>(kind, index_map);
     };
   };
   return {
       // The same pieces on any number of ranks.
       {"rigid pieces",
-       [](const Sharing* sharing) { return std::make_unique<RigidPieces>(sharing); }, 1, 1.0},
+       [](const IndexMap& index_map) { return std::make_unique<RigidPieces>(index_map); }, 1, 1.0},
       // A cycle for the springs where one rank has their factor.
-      {"surrogate", [](const Sharing* sharing) { return std::make_unique<Surrogate>(sharing); }, 6,
-       1.2},
+      {"surrogate",
+       [](const IndexMap& index_map) { return std::make_unique<Surrogate>(index_map); }, 6, 1.2},
       // The same polynomial.
       {"chebyshev", assembled(MatrixPreconditionerKind::chebyshev), 2, 1.0},
       // Factors within the rows of a rank tell nothing of what is beyond: it is no two-level
@@ -88,16 +89,16 @@ void expect_same_solution(const RanksBody& body, const Kind& kind, double depth)
   const std::vector<double> rest(whole.points.reference.size(), 0.0);
   stiffness.linearise(whole.assembler, rest, 0.0);
   const Solved expected =
-      solve(stiffness, pulled.flags, pulled.displacement, kind.make(nullptr), nullptr);
+      solve(stiffness, pulled.flags, pulled.displacement, kind.make(whole_body()), sole_rank());
   EXPECT_EQ(expected.outcome, LinearOutcome::solved);
 
   OnRanks ranks(body, SurfaceCorrection::none);
   const Pulled mine(ranks.part.points, low, high, depth);
   const std::vector<double> rest_here(ranks.part.points.reference.size(), 0.0);
   ranks.stored.linearise(ranks.energy, rest_here, 0.0);
-  const auto no_equation = without_ghosts(ranks.sharing, mine.flags, ranks.part.points.dimension);
+  const auto no_equation = without_ghosts(ranks.index_map, mine.flags, ranks.part.points.dimension);
   const Solved found =
-      solve(ranks.stored, no_equation, mine.displacement, kind.make(&ranks.sharing), &communicator);
+      solve(ranks.stored, no_equation, mine.displacement, kind.make(ranks.index_map), communicator);
   EXPECT_EQ(found.outcome, LinearOutcome::solved);
   EXPECT_LE(found.iterations, kind.factor * expected.iterations + kind.added);
   EXPECT_EQ(communicator.min(double(found.iterations)), double(found.iterations));
@@ -131,19 +132,19 @@ TEST(PreconditionersOnRanks, need_no_stored_tangent_where_they_look_at_rows_alon
   OnRanks ranks(plate_with_hole(), SurfaceCorrection::volume);  // with ghosts that no bond reaches
   const Pulled mine(ranks.part.points, 0.35, 2.85);
   const std::vector<double> rest(ranks.part.points.reference.size(), 0.0);
-  const auto no_equation = without_ghosts(ranks.sharing, mine.flags, 2);
+  const auto no_equation = without_ghosts(ranks.index_map, mine.flags, 2);
   for (const bool is_surrogate : {false, true}) {
     std::vector<Solved> solved;
     for (TangentOperator* const tangent : ranks.tangents()) {
       tangent->linearise(ranks.energy, rest, 0.0);
       std::unique_ptr<Preconditioner> preconditioner;
       if (is_surrogate) {
-        preconditioner = std::make_unique<Surrogate>(&ranks.sharing);
+        preconditioner = std::make_unique<Surrogate>(ranks.index_map);
       } else {
-        preconditioner = std::make_unique<RigidPieces>(&ranks.sharing);
+        preconditioner = std::make_unique<RigidPieces>(ranks.index_map);
       }
-      solved.push_back(solve(*tangent, no_equation, mine.displacement, std::move(preconditioner),
-                             &communicator));
+      solved.push_back(
+          solve(*tangent, no_equation, mine.displacement, std::move(preconditioner), communicator));
       EXPECT_EQ(solved.back().outcome, LinearOutcome::solved);
     }
     EXPECT_NEAR(solved[0].iterations, solved[1].iterations, 1);
@@ -161,11 +162,11 @@ TEST(PreconditionersOnRanks, tell_all_ranks_of_a_diagonal_that_is_not_positive) 
   if (all_ranks().rank() == all_ranks().count() - 1 && ranks.part.owned > 0) {
     for (double& entry : ranks.stored.diagonal) entry = -entry;
   }
-  const FreeDofs free(without_ghosts(ranks.sharing, std::vector<char>(rest.size(), 0), 2), 2);
+  const FreeDofs free(without_ghosts(ranks.index_map, std::vector<char>(rest.size(), 0), 2), 2);
   for (const Kind& kind : all_kinds()) {
     SCOPED_TRACE(kind.name);
-    IterativeSolver solver(KrylovMethod::conjugate_gradients, kind.make(&ranks.sharing), 100,
-                           KrylovOptions{}.restart, &all_ranks());
+    IterativeSolver solver(KrylovMethod::conjugate_gradients, kind.make(ranks.index_map), 100,
+                           KrylovOptions{}.restart, all_ranks());
     EXPECT_EQ(solver.analyze(ranks.stored.pattern, free), LinearOutcome::solved);
     EXPECT_NE(solver.factorize(ranks.stored, FactorUse::factorize_now), LinearOutcome::solved);
   }

@@ -6,7 +6,9 @@
 
 #include "cases/runner/results/point_rows.hpp"
 #include "solvers/ranks/distribute.hpp"
+#include "solvers/ranks/make_index_map.hpp"
 #include "src/geometry/slab.hpp"
+#include "src/parallel/index_map.hpp"
 #include "tests/ranks/bodies_on_ranks.hpp"
 #include "tests/ranks/on_ranks.hpp"
 
@@ -18,12 +20,12 @@ TEST(RowGathering, brings_the_values_of_all_points_in_their_order_and_in_parts) 
   for (const RanksBody& body : all_bodies()) {
     SCOPED_TRACE(body.name);
     const double horizon = body.setting().horizon;
-    const PartOfBody part(distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1),
-                          ranks);
+    const IndexMap part = make_index_map(
+        distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1), ranks);
     for (const std::int64_t most_rows : {std::int64_t(1), std::int64_t(5), std::int64_t(1) << 20}) {
       const RowGathering gathering(part, most_rows);
       std::vector<std::int32_t> mine;
-      for (const GlobalIndex number : part.number()) {
+      for (const GlobalIndex number : part.numbered().owned) {
         mine.insert(mine.end(), {std::int32_t(2 * number), std::int32_t(2 * number + 1)});
       }
       std::vector<std::int32_t> all;
@@ -44,8 +46,8 @@ TEST(RowGathering, gives_back_the_values_of_owned_points_and_counts_before_them)
   for (const RanksBody& body : all_bodies()) {
     SCOPED_TRACE(body.name);
     const double horizon = body.setting().horizon;
-    const PartOfBody part(distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1),
-                          ranks);
+    const IndexMap part = make_index_map(
+        distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1), ranks);
     for (const std::int64_t most_rows : {std::int64_t(1), std::int64_t(5), std::int64_t(1) << 20}) {
       const RowGathering gathering(part, most_rows);
       const std::vector<double> mine =
@@ -56,12 +58,12 @@ TEST(RowGathering, gives_back_the_values_of_owned_points_and_counts_before_them)
             }
             return rows;
           });
-      ASSERT_EQ(mine.size(), 2 * part.number().size());
+      ASSERT_EQ(mine.size(), 2 * part.numbered().owned.size());
       std::vector<std::int64_t> counts;
-      for (std::size_t i = 0; i < part.number().size(); ++i) {
-        EXPECT_EQ(mine[2 * i], 0.5 * double(part.number()[i]));
-        EXPECT_EQ(mine[2 * i + 1], -double(part.number()[i]));
-        counts.push_back(part.number()[i] % 3);
+      for (std::size_t i = 0; i < part.numbered().owned.size(); ++i) {
+        EXPECT_EQ(mine[2 * i], 0.5 * double(part.numbered().owned[i]));
+        EXPECT_EQ(mine[2 * i + 1], -double(part.numbered().owned[i]));
+        counts.push_back(part.numbered().owned[i] % 3);
       }
       const auto [before, all] = gathering.counted_before(counts);
       const auto sum_to = [](GlobalIndex end) {  // of k % 3 for k < end
@@ -69,7 +71,7 @@ TEST(RowGathering, gives_back_the_values_of_owned_points_and_counts_before_them)
       };
       EXPECT_EQ(all, sum_to(part.whole()));
       for (std::size_t i = 0; i < before.size(); ++i) {
-        EXPECT_EQ(before[i], sum_to(part.number()[i]));
+        EXPECT_EQ(before[i], sum_to(part.numbered().owned[i]));
       }
     }
   }
@@ -83,11 +85,11 @@ TEST(RowGathering, brings_what_is_told_of_bonds_in_their_order_and_in_parts) {
   const Communicator& ranks = all_ranks();
   const RanksBody body = plate_with_hole();
   const double horizon = body.setting().horizon;
-  const PartOfBody part(distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1),
-                        ranks);
+  const IndexMap part =
+      make_index_map(distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1), ranks);
   for (const std::int64_t most_rows : {std::int64_t(7), std::int64_t(1) << 20}) {
     std::vector<Item> mine;  // up to three of each point, the largest one first
-    for (const GlobalIndex number : part.number()) {
+    for (const GlobalIndex number : part.numbered().owned) {
       for (Index k = Index(number % 4); k-- > 0;) {
         mine.push_back({Index(number), Index(number) + k, 0, double(number) + 0.25 * k});
       }
@@ -113,15 +115,15 @@ TEST(RowSink, writes_parts_of_rows_one_after_the_other) {
   const Communicator& ranks = all_ranks();
   const RanksBody body = plate_with_hole();
   const double horizon = body.setting().horizon;
-  const PartOfBody part(distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1),
-                        ranks);
+  const IndexMap part =
+      make_index_map(distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1), ranks);
   const RowGathering gathering(part, 100);
   std::optional<Hdf5File> file;
   if (ranks.rank() == 0) file.emplace(Hdf5File::in_memory("rows (in memory)", 1 << 16));
   const RowSink sink(file ? &*file : nullptr, gathering);
   std::vector<double> vectors;
   std::vector<std::uint8_t> flags;
-  for (const GlobalIndex number : part.number()) {
+  for (const GlobalIndex number : part.numbered().owned) {
     vectors.insert(vectors.end(), {0.5 * double(number), -double(number)});
     flags.push_back(number % 3 == 0);
   }

@@ -1,4 +1,4 @@
-#include "solvers/linear/sums.hpp"
+#include "src/parallel/sums.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "solvers/ranks/distribute.hpp"
-#include "solvers/ranks/part_of_body.hpp"
+#include "solvers/ranks/make_index_map.hpp"
 #include "src/geometry/slab.hpp"
+#include "src/parallel/index_map.hpp"
 #include "tests/ranks/bodies_on_ranks.hpp"
 #include "tests/ranks/on_ranks.hpp"
 
@@ -20,8 +21,8 @@ TEST(Sums, count_each_point_once_whatever_ghosts_have) {
   const RanksBody body = plate_with_hole();
   const double horizon = body.setting().horizon;
   const Part part = distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1);
-  const PartOfBody sharing(part, ranks);
-  const Sums sums(&sharing, 2);
+  const IndexMap index_map = make_index_map(part, ranks);
+  const Sums sums(index_map, 2);
   std::vector<double> ones(part.points.reference.size(), std::nan(""));
   std::fill_n(ones.begin(), sums.own(ones.size()), 1.0);
   const double dofs = 2.0 * double(part.whole);
@@ -35,15 +36,15 @@ TEST(Sums, keep_norms_whose_squares_vanish) {
   const RanksBody body = bar();
   const double horizon = body.setting().horizon;
   const Part part = distribute(make_slab(body.lattice, ranks), horizon, horizon, ranks, 1);
-  const PartOfBody sharing(part, ranks);
+  const IndexMap index_map = make_index_map(part, ranks);
   const std::vector<double> small(part.points.reference.size(), 1e-200);
   const double expected = 1e-200 * std::sqrt(double(part.whole));
-  EXPECT_NEAR(Sums(&sharing, 1).norm(small), expected, 1e-13 * expected);
+  EXPECT_NEAR(Sums(index_map, 1).norm(small), expected, 1e-13 * expected);
 }
 
 TEST(Sums, are_plain_sums_of_a_whole_body) {
   const std::vector<double> v{3.0, 4.0};
-  const Sums sums(nullptr, 2);
+  const Sums sums(whole_body(), 2);
   EXPECT_EQ(sums.norm(v), 5.0);
   EXPECT_EQ(sums.dot(v, v), 25.0);
   EXPECT_EQ(sums.own(2), 2u);

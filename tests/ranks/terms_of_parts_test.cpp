@@ -18,6 +18,7 @@
 #include "src/core/input_error.hpp"
 #include "src/geometry/slab.hpp"
 #include "src/neighbourhood/ghost_sites.hpp"
+#include "src/parallel/communicator.hpp"
 #include "tests/bodies.hpp"
 #include "tests/ranks/bodies_on_ranks.hpp"
 #include "tests/ranks/on_ranks.hpp"
@@ -98,14 +99,14 @@ struct Both {
       : whole(std::move(all)),
         part(std::move(here)),
         energy(whole->points, whole->model, 1),
-        mine(part->points, part->model, 1, part->part.get()) {}
+        mine(part->points, part->model, 1, *part->index_map) {}
 
   /// What the whole body has, of owned points; ghosts have what has to be overwritten.
   [[nodiscard]] std::vector<double> of_part(const std::vector<double>& field) const {
     const std::size_t width = field.size() / whole->points.volume.size();
     std::vector<double> result(part->points.volume.size() * width, 1e3);
-    for (std::size_t i = 0; i < part->part->number().size(); ++i) {
-      const auto number = std::size_t(part->part->number()[i]);
+    for (std::size_t i = 0; i < part->index_map->numbered().owned.size(); ++i) {
+      const auto number = std::size_t(part->index_map->numbered().owned[i]);
       std::copy_n(field.begin() + std::ptrdiff_t(number * width), width,
                   result.begin() + std::ptrdiff_t(i * width));
     }
@@ -119,7 +120,7 @@ struct Both {
     const double scale = largest(field);
     EXPECT_GT(scale, 0.0) << what;
     double difference = 0.0;
-    for (std::size_t k = 0; k < width * part->part->number().size(); ++k) {
+    for (std::size_t k = 0; k < width * part->index_map->numbered().owned.size(); ++k) {
       difference = std::max(difference, std::abs(found[k] - expected[k]));
     }
     EXPECT_LE(difference, tolerance * scale) << what;
@@ -151,8 +152,8 @@ void expect_same_energies(Both& both, double scale) {
   const std::vector<double> u = Random(3).vector(dofs, scale * both.whole->points.spacing);
   const std::vector<double> v = Random(4).vector(dofs);
   std::vector<double> here = both.of_part(u), direction = both.of_part(v);
-  both.part->part->update_ghosts(here);
-  both.part->part->update_ghosts(direction);
+  both.part->index_map->update_ghosts(here);
+  both.part->index_map->update_ghosts(direction);
 
   std::vector<double> forces(dofs), mine(here.size());
   const Evaluation expected = both.energy.gradient(u, forces);
@@ -185,7 +186,7 @@ void expect_same_energies(Both& both, double scale) {
 
 void expect_same_counts(const Both& both) {
   const Communicator& ranks = all_ranks();
-  const Index owned = both.part->part->owned();
+  const Index owned = both.part->index_map->owned();
   EXPECT_EQ(count_bonds(both.part->points, both.part->model.bonds(), ranks),
             both.whole->model.bonds().count());
   const auto& terms = both.whole->model.terms();
@@ -199,7 +200,7 @@ void expect_same_counts(const Both& both) {
           << mine[kind].name;
       for (std::size_t i = 0; i < std::size_t(owned); ++i) {
         EXPECT_EQ(mine[kind].per_point[i],
-                  counts[kind].per_point[std::size_t(both.part->part->number()[i])]);
+                  counts[kind].per_point[std::size_t(both.part->index_map->numbered().owned[i])]);
       }
     }
   }
@@ -297,7 +298,7 @@ Index expect_same_damage(Both& both) {
     const std::vector<double> u =
         Random(unsigned(5 + pass)).vector(dofs, (0.02 + 0.02 * pass) * both.whole->points.spacing);
     std::vector<double> here = both.of_part(u);
-    both.part->part->update_ghosts(here);
+    both.part->index_map->update_ghosts(here);
     const DamageGrowth expected = both.energy.growth({u, of_whole});
     const DamageGrowth growth = both.mine.growth({here, of_part});
     EXPECT_EQ(growth.degrading, expected.degrading);
@@ -408,7 +409,7 @@ TEST(TermsOfPart, collocation_is_that_of_the_whole_body) {
     const std::size_t points = both.whole->points.volume.size();
     const std::vector<double> u = Random(3).vector(dofs, 0.05 * both.whole->points.spacing);
     std::vector<double> here = both.of_part(u);
-    both.part->part->update_ghosts(here);
+    both.part->index_map->update_ghosts(here);
 
     std::vector<double> forces(dofs), mine(here.size());
     const Evaluation expected = both.energy.gradient(u, forces);

@@ -12,7 +12,8 @@
 #include "assembly/convolutions/linear_bonds.hpp"
 #include "assembly/terms/linear/linear_bond_sums.hpp"
 #include "assembly/terms/model.hpp"
-#include "src/core/sharing.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -26,10 +27,11 @@ class PointPasses : public TermPasses {
         places_(setting.pattern.places_of(term.couplings())),
         volume_(setting.points.volume),
         points_(setting.points),
-        sharing_(setting.sharing),
+        index_map_(setting.index_map),
         dimension_(std::size_t(setting.points.dimension)),
         force_(setting.points.reference.size()),
-        has_half_work_(!sharing_ && term.balances().linear && term.balances().potential) {
+        has_half_work_(index_map_.is_whole() && term.balances().linear &&
+                       term.balances().potential) {
     forces_ = term.forces(setting.points, setting.workspace);
     bonds_ = dynamic_cast<LinearBondSums*>(forces_.get());
   }
@@ -150,7 +152,7 @@ class PointPasses : public TermPasses {
     bool any_has_failed = false;
     do {
       const DamageGrowth more = judge();
-      if (!any_of_all(sharing_, more.degrading > 0)) break;
+      if (!any_of_all(index_map_.ranks(), more.degrading > 0)) break;
       any_has_failed = true;
       grown.degrading += more.degrading;
       grown.breaking += more.breaking;
@@ -159,7 +161,7 @@ class PointPasses : public TermPasses {
     } while (failing == Failing::until_none_does);
     Evaluation found = evaluation(displacement, gradient, how);
     if (!any_has_failed) return found;
-    history.change(slot_).back() += sum_of_all(sharing_, before - found.energy);
+    history.change(slot_).back() += index_map_.ranks().sum(before - found.energy);
     found.growth = grown;
     found.moves_equilibrium = true;
     return found;
@@ -178,7 +180,7 @@ class PointPasses : public TermPasses {
     for (std::size_t i = 0; i < judged(); ++i) {
       if (fails(i, energy)) remembered[i] = 0.0;
     }
-    if (sharing_) update_ghost_values(*sharing_, int(dimension_), remembered);
+    index_map_.update_ghost_values(remembered);
     for (Index image = points_.own(); image < points_.count(); ++image) {
       remembered[std::size_t(image)] = remembered[std::size_t(points_.source(image))];
     }
@@ -267,8 +269,7 @@ class PointPasses : public TermPasses {
   /// Stored energy. Linear forces with a potential have -u.f/2, with u without its mean, since
   /// forces add up to zero only to round-off.
   [[nodiscard]] double stored(std::span<const double> displacement) const {
-    if (sharing_) return energy_of_part();
-    if (!has_half_work_) return std::accumulate(energy_.begin(), energy_.end(), 0.0);
+    if (!has_half_work_) return sum_of_energies();
     const Coordinates mean = mean_of(displacement);
     double work = 0.0;
     for (std::size_t k = 0; k < force_.size(); ++k) {
@@ -277,7 +278,7 @@ class PointPasses : public TermPasses {
     return -0.5 * work;
   }
 
-  [[nodiscard]] double energy_of_part() const {
+  [[nodiscard]] double sum_of_energies() const {
     double sum = 0.0;
     for (Index i = 0; i < points_.count(); ++i) {
       if (points_.owns(i)) sum += energy_[std::size_t(i)];
@@ -321,7 +322,7 @@ class PointPasses : public TermPasses {
   std::vector<Offset> places_;
   std::span<const double> volume_;
   const Points& points_;
-  const Sharing* sharing_;
+  const IndexMap& index_map_;
   std::size_t dimension_;
   std::unique_ptr<LatticeForces> forces_;
   LinearBondSums* bonds_ = nullptr;  // forces_, if it has rows

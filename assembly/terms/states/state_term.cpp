@@ -10,8 +10,9 @@
 #include "assembly/terms/model.hpp"
 #include "assembly/terms/states/state_kernels.hpp"
 #include "assembly/terms/workspace.hpp"
-#include "src/core/sharing.hpp"
 #include "src/geometry/counts_bond.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 namespace {
@@ -24,7 +25,7 @@ class StatePasses : public TermPasses {
         slot_(setting.model.slot_of(term)),
         stretches_(make_bond_passes(term, setting)),
         points_(setting.points),
-        sharing_(setting.sharing),
+        index_map_(setting.index_map),
         pattern_(setting.pattern),
         kernels_(setting.points, term.bonds(), term.shares(), term.network(),
                  setting.workspace.threads()) {}
@@ -43,7 +44,7 @@ class StatePasses : public TermPasses {
                     History& history, std::span<double> gradient, Write how) override {
     const StateView now{displacement, history, Damage::grows, environment};
     // On all ranks: a bond that is damaged here may be counted by another rank.
-    if (!term_.can_fail() || !any_of_all(sharing_, growth(now).degrading > 0)) {
+    if (!term_.can_fail() || !any_of_all(index_map_.ranks(), growth(now).degrading > 0)) {
       return this->gradient(now, gradient, how);
     }
     const History before = history;
@@ -58,7 +59,7 @@ class StatePasses : public TermPasses {
     // Where a bond was stretched against the dilatation the energy may rise as it breaks. That is
     // no dissipation; the energy has to be supplied from elsewhere.
     const double mine = dissipated_of(displacement, remembered, before);
-    const double dissipated = sum_of_all(sharing_, mine) < 0.0 ? 0.0 : mine;  // keeps NaN
+    const double dissipated = index_map_.ranks().sum(mine) < 0.0 ? 0.0 : mine;  // keeps NaN
     found.released = dissipated - (dissipated_by_law(history) - dissipated_by_law(before));
     return found;
   }
@@ -151,7 +152,7 @@ class StatePasses : public TermPasses {
   std::size_t slot_;
   std::unique_ptr<TermPasses> stretches_;  // damage of its bonds; their forces are unused
   const Points& points_;
-  const Sharing* sharing_;
+  const IndexMap& index_map_;
   const BlockPattern& pattern_;
   StateKernels<D> kernels_;
 };

@@ -182,7 +182,7 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
                        "must not exceed horizon_ratio where there are planes of symmetry or "
                        "periods: the body's images reach no farther");
     }
-    if (body.part && from.solver.elastic_horizon_ratio > from.horizon_ratio) {
+    if (!body.index_map->is_whole() && from.solver.elastic_horizon_ratio > from.horizon_ratio) {
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "must not exceed horizon_ratio on more than one rank: ghosts reach no "
                        "farther");
@@ -190,16 +190,16 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     BondSetting setting = body.setting;
     setting.horizon = from.solver.elastic_horizon_ratio * body.points.spacing;
     Bonds bonds = make_bonds(body.points, from.surface_correction, setting, threads);
-    if (body.part) {
+    if (!body.index_map->is_whole()) {
       bonds.remove_if([&](Index i, Offset bond) {  // between ghosts
         return !body.points.owns(i) && !body.points.owns(bonds.partner[std::size_t(bond)]);
       });
-      agree_on_kinds(bonds, body.points, body.part->numbered(), body.part->ranks());
+      agree_on_kinds(bonds, body.points, body.index_map->numbered(), body.index_map->ranks());
     }
     static_cast<void>(cut_bonds(bonds, body.points, body.specification.cracks));
     const Holding holding =
         body.conditions->holding(std::vector<double>(body.conditions->constraints().dofs(), 0.0));
-    if (!free_motions(body.points, bonds, holding, body.part.get()).empty())
+    if (!free_motions(body.points, bonds, holding, *body.index_map).empty())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "leaves points that may move freely");
     Model stand_in = make_elastic_bonds(body, std::move(bonds), setting);

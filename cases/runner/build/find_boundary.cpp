@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "src/geometry/covers.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cases/runner/input/case.hpp"
-#include "src/core/communicator.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

@@ -22,6 +22,7 @@
 #include "src/geometry/points_on_line.hpp"
 #include "src/geometry/slab.hpp"
 #include "src/neighbourhood/ghost_sites.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {
@@ -215,7 +216,7 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
     find_boundary(from, part.points, ranks, of);
     if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
     std::unique_ptr<const Body> body = make_body(std::move(part), of, ranks, threads);
-    require_places_of_probes(from, {body->points, body->part.get()});
+    require_places_of_probes(from, {body->points, *body->index_map});
     return body;
   });
 }

@@ -4,6 +4,7 @@
 
 #include "cases/runner/input/case.hpp"
 #include "solvers/study/body.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

@@ -19,6 +19,7 @@
 #include "src/core/input_error.hpp"
 #include "src/geometry/counts_bond.hpp"
 #include "src/geometry/solid.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

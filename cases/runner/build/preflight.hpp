@@ -10,7 +10,7 @@
 #include "cases/runner/build/feature_lengths.hpp"
 #include "cases/runner/input/given_values.hpp"
 #include "solvers/study/body.hpp"
-#include "src/core/communicator.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

@@ -11,11 +11,6 @@
 
 namespace peristat {
 
-const Communicator& RecordedPoints::ranks() const {
-  static const SoleRank sole;
-  return part_ ? part_->ranks() : sole;
-}
-
 std::span<const Index> RecordedPoints::members(const std::string& set) const {
   const std::vector<Index>& members = points_.sets.at(set);
   return {members.begin(), std::lower_bound(members.begin(), members.end(), count())};
@@ -35,7 +30,6 @@ NearestRecorded nearest_recorded(const RecordedPoints& points, const Coordinates
 
 Points only_recorded(const RecordedPoints& points) {
   Points kept = without_images(points.points());
-  if (!points.part()) return kept;
   const auto count = std::size_t(points.count());
   kept.reference.resize(count * std::size_t(kept.dimension));
   kept.volume.resize(count);

@@ -4,9 +4,9 @@
 #include <span>
 #include <string>
 
-#include "solvers/ranks/part_of_body.hpp"
-#include "src/core/communicator.hpp"
 #include "src/geometry/points.hpp"
+#include "src/parallel/communicator.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -15,29 +15,25 @@ namespace peristat {
 class RecordedPoints {
  public:
   /// Both arguments must outlive this object.
-  /// @param part null: the body is whole
-  RecordedPoints(const Points& points, const PartOfBody* part = nullptr)
-      : points_(points), part_(part) {}
+  RecordedPoints(const Points& points, const IndexMap& index_map = whole_body())
+      : points_(points), index_map_(index_map) {}
 
   [[nodiscard]] const Points& points() const { return points_; }
-  [[nodiscard]] const PartOfBody* part() const { return part_; }
-  [[nodiscard]] Index count() const { return part_ ? part_->owned() : points_.own(); }
+  [[nodiscard]] const IndexMap& index_map() const { return index_map_; }
+  [[nodiscard]] Index count() const { return index_map_.own_rows(points_.own()); }
   [[nodiscard]] int dimension() const { return points_.dimension; }
-  /// Communicator of the parts; a sole rank for a whole body.
-  [[nodiscard]] const Communicator& ranks() const;
+  [[nodiscard]] const Communicator& ranks() const { return index_map_.ranks(); }
 
   /// Number of a local point in the results; of an image, that of its source.
   [[nodiscard]] Index number(Index point) const {
-    const Index source = points_.source(point);
-    return part_ ? static_cast<Index>(part_->number_of(source)) : source;
+    return static_cast<Index>(index_map_.number_of(points_.source(point)));
   }
   /// True if this rank reports a bond. If several ranks have the bond, the owner of its point with
   /// the lower number in the whole body reports it. A bond to an image is reported by the owner of
   /// its other point.
   [[nodiscard]] bool tells(Index lower, Index upper) const {
-    if (!part_) return true;
     const bool comes_first = points_.is_image(upper) || number(lower) < number(upper);
-    return lower < part_->owned() && comes_first;
+    return index_map_.owns(lower) && comes_first;
   }
 
   /// The points of a set that are recorded here, ascending.
@@ -45,7 +41,7 @@ class RecordedPoints {
 
  private:
   const Points& points_;
-  const PartOfBody* part_;
+  const IndexMap& index_map_;
 };
 
 /// The recorded point nearest to a place among all ranks; of points equally near up to round-off,

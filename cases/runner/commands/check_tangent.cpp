@@ -14,12 +14,12 @@
 #include "assembly/operators/constrained_tangent.hpp"
 #include "assembly/operators/rows_of_energy.hpp"
 #include "cases/runner/build/body.hpp"
-#include "solvers/linear/vector_verbs.hpp"
 #include "solvers/motion/newmark.hpp"
 #include "solvers/study/motion.hpp"
 #include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {

@@ -18,6 +18,7 @@
 #include "cases/runner/results/earlier_run.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/core/input_error.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "cases/runner/commands/run.hpp"
 #include "cases/runner/input/settings.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

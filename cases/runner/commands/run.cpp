@@ -34,6 +34,7 @@
 #include "solvers/study/study.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/stopwatch.hpp"
+#include "src/parallel/communicator.hpp"
 #include "src/potentials/make_saw_tooth.hpp"
 
 namespace peristat {
@@ -51,15 +52,16 @@ std::vector<LineTable> lines_of(const Case& from, const Points& points) {
 /// Fills in the summary's counts before the first step.
 void count(const Body& body, const FreeDofs& free, const RunOptions& options,
            const Communicator& ranks, Summary& summary) {
-  summary.points = body.part ? Index(body.part->whole()) : body.points.own();
+  summary.points = Index(body.index_map->whole());
   summary.free_dofs = ranks.count_all(free.count()).all;
+  const bool is_whole = body.index_map->is_whole();
   for (const auto& term : body.model.terms()) {
     for (const InteractionCount& kind : term->counts()) {
       summary.count(kind.name,
-                    body.part ? count_interactions(body.points, kind, ranks) : kind.count);
+                    is_whole ? kind.count : count_interactions(body.points, kind, ranks));
     }
   }
-  if (body.part) {
+  if (!is_whole) {
     summary.count("bonds", count_bonds(body.points, body.model.bonds(), ranks));
   }
   summary.costs.seconds.neighbourhood += body.seconds_neighbourhood;
@@ -77,12 +79,13 @@ std::unique_ptr<SolvedModel> solved_stand_in(const Case& from, const Study& stud
   size.free_dofs = double(study.free().count());
   const Body& body = study.body();
   LinearSystems systems =
-      body.part ? choose_linear_systems(study.options(), body, {})
-                : choose_linear_systems(study.options(), stand_in, estimate_memory(size),
-                                        box_for_sines(study.options(), body), {});
+      body.index_map->is_whole()
+          ? choose_linear_systems(study.options(), stand_in, estimate_memory(size),
+                                  box_for_sines(study.options(), body), {})
+          : choose_linear_systems(study.options(), body, {});
   return std::make_unique<SolvedModel>(points, stand_in, body.conditions->constraints(),
                                        study.free(), std::move(systems), study.options().threads,
-                                       body.part.get());
+                                       *body.index_map);
 }
 
 LoadSteppingResult out_of_memory() {
@@ -147,12 +150,12 @@ class CaseRun {
   void make() {
     body_ = ranks_.count() > 1 ? make_part_body(from_, ranks_, options_.threads)
                                : make_body(from_, options_.threads);
-    if (body_->part) gathering_.emplace(*body_->part);
+    if (!body_->index_map->is_whole()) gathering_.emplace(*body_->index_map);
     further_ = {from_.output.stress, lines_of(from_, body_->points)};
     study_.emplace(*body_, study_options(from_, options_.threads),
                    [this](const std::string& reason) { recorder_->changed_solver(reason); });
     if (gathering_) {
-      recorded_.emplace(body_->points, body_->part.get());
+      recorded_.emplace(body_->points, *body_->index_map);
       numbering_.emplace(*recorded_, *gathering_, body_->model, body_->conditions->prescribed());
     }
     if (earlier_) {
@@ -176,15 +179,15 @@ class CaseRun {
 
   void tell_size() {
     const std::int64_t bonds =
-        body_->part ? summary_.counted("bonds") : body_->model.count_of_bonds();
+        gathering_ ? summary_.counted("bonds") : body_->model.count_of_bonds();
     const std::string of_ranks =
-        body_->part ? fmt::format("{} ranks with {} threads each", ranks_.count(), options_.threads)
-                    : fmt::format("{} threads", options_.threads);
+        gathering_ ? fmt::format("{} ranks with {} threads each", ranks_.count(), options_.threads)
+                   : fmt::format("{} threads", options_.threads);
     progress_.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {}",
                               summary_.points, bonds, summary_.free_dofs, of_ranks));
-    if (body_->part) {
-      const double most = ranks_.max(double(body_->part->owned()));
-      const double ghosts = ranks_.sum(double(body_->points.count() - body_->part->owned()));
+    if (gathering_) {
+      const double most = ranks_.max(double(body_->index_map->owned()));
+      const double ghosts = ranks_.sum(double(body_->points.count() - body_->index_map->owned()));
       progress_.say(fmt::format("at most {:.0f} points on a rank, {:.0f} ghosts", most, ghosts));
     } else {
       for (const std::string& line : describe_interactions(*body_)) progress_.say(line);
@@ -207,7 +210,7 @@ class CaseRun {
     };
     const auto all_say = [&](bool holds) { return ranks_.min(double(holds)) > 0.0; };
     if (!all_say(
-            earlier.has_points(only_recorded({body_->points, body_->part.get()}), gathering()))) {
+            earlier.has_points(only_recorded({body_->points, *body_->index_map}), gathering()))) {
       refuse("its points are not those of the run that the case makes now");
     }
     if (!all_say(is_of_body(earlier.checkpoint().path, study_->equations().assembler(),
@@ -220,7 +223,7 @@ class CaseRun {
     Assembler& assembler = study_->equations().assembler();
     const CaseText text{from_.as_read, from_.as_resolved,    from_.title,
                         versions(),    identity(from_.file), from_.settings};
-    const Points points = only_recorded({body_->points, body_->part.get()});
+    const Points points = only_recorded({body_->points, *body_->index_map});
     if (earlier_) {
       results_.emplace(*earlier_, earlier_results_, points, text, support_sets_, probes_, further_,
                        numbering());
@@ -332,7 +335,7 @@ class CaseRun {
     summary_.max_displacement = largest_of_all(result.state.displacement);
     recorder_->finish();
     summary_.costs = costs(result.relaxation_seconds);
-    if (body_->part) tell_traffic();
+    if (gathering_) tell_traffic();
     if (result.outcome == Outcome::converged || result.outcome == Outcome::interrupted) return;
     const Dossier dossier =
         make_dossier(from_, *body_, result, recorder_->last(), recorder_->decisions());
@@ -341,7 +344,7 @@ class CaseRun {
 
   /// Prints the traffic between ranks, in counts that do not depend on the machine.
   void tell_traffic() {
-    const Traffic mine = body_->part->traffic();
+    const Traffic mine = body_->index_map->traffic();
     const double exchanges = std::max(1.0, double(mine.exchanges));
     const double messages = ranks_.sum(double(mine.messages)) / exchanges;
     const double bytes = ranks_.sum(double(mine.bytes)) / exchanges;

@@ -14,6 +14,7 @@
 #include "solvers/linear/memory_estimate.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/machine_error.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "cases/runner/process/exit.hpp"
-#include "src/core/communicator.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "src/parallel/communicator.hpp"
+
 namespace peristat {
 namespace {
 

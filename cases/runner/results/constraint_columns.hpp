@@ -8,7 +8,7 @@
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/results/probe_columns.hpp"
 #include "solvers/problem/equilibrium.hpp"
-#include "src/core/communicator.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

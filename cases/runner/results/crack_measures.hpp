@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "src/core/concatenated.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 
@@ -20,15 +21,15 @@ struct CrackGrowth {
 struct CrackState {
   /// Separated bonds that this rank reports: those cut by pre-cracks, then broken ones.
   std::span<const BondEnds> separated;
-  std::size_t cut = 0;                  ///< number of them that pre-cracks have cut
-  double taken_up = 0.0;                ///< work that is not stored any more [J]
-  double dissipated = 0.0;              ///< by damage [J]
-  CrackGrowth before{};                 ///< when the area through the set last grew
-  const Communicator* ranks = nullptr;  ///< with other separated bonds; null: these are all
+  std::size_t cut = 0;                      ///< number of them that pre-cracks have cut
+  double taken_up = 0.0;                    ///< work that is not stored any more [J]
+  double dissipated = 0.0;                  ///< by damage [J]
+  CrackGrowth before{};                     ///< when the area through the set last grew
+  const Communicator& ranks = sole_rank();  ///< with other separated bonds
 
   /// Values of all ranks. Collective.
   [[nodiscard]] std::vector<double> of_all(std::vector<double> mine) const {
-    return ranks ? concatenated(mine, *ranks) : mine;
+    return concatenated(ranks, mine);
   }
 };
 

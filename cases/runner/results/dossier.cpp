@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "cases/runner/build/recorded_points.hpp"
-#include "src/core/concatenated.hpp"
+#include "src/parallel/collectives.hpp"
 
 namespace peristat {
 namespace {
@@ -136,7 +136,7 @@ std::vector<WorstPoint> worst_points(const RecordedPoints& recorded,
     mine.insert(mine.end(), {point.residual, double(point.number)});
     mine.insert(mine.end(), point.place.begin(), point.place.end());
   }
-  const std::vector<double> all = concatenated(mine, recorded.ranks());
+  const std::vector<double> all = concatenated(recorded.ranks(), mine);
   worst.clear();
   for (auto at = all.begin(); at != all.end(); at += 5) {
     worst.push_back({at[0], std::int64_t(at[1]), {at[2], at[3], at[4]}});
@@ -150,7 +150,7 @@ std::vector<WorstPoint> worst_points(const RecordedPoints& recorded,
 Dossier make_dossier(const Case& from, const Body& body, const LoadSteppingResult& result,
                      const std::optional<StepRecord>& last,
                      const std::vector<DecisionRecord>& decisions) {
-  const RecordedPoints recorded(body.points, body.part.get());
+  const RecordedPoints recorded(body.points, *body.index_map);
   const auto dofs = std::size_t(recorded.count()) * std::size_t(recorded.dimension());
   const Attempt& attempt = result.last_attempt;
   Dossier dossier;

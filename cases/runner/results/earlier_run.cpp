@@ -14,6 +14,7 @@
 #include "cases/runner/results/points_part.hpp"
 #include "cases/runner/results/record_tables.hpp"
 #include "cases/runner/results/settings_table.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

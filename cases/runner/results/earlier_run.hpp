@@ -13,9 +13,9 @@
 #include "cases/runner/results/results_folder.hpp"
 #include "cases/runner/results/step_part.hpp"
 #include "cases/runner/results/table.hpp"
-#include "src/core/communicator.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/points.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 

@@ -6,7 +6,7 @@
 
 #include "cases/runner/input/probe_fields.hpp"
 #include "cases/runner/results/probe.hpp"
-#include "src/core/concatenated.hpp"
+#include "src/parallel/collectives.hpp"
 
 namespace peristat {
 namespace {
@@ -57,7 +57,7 @@ std::vector<Row> LineProbe::rows(const StepRecord& record, const StepFields& fie
     const std::vector<double> values = values_at(probe_, points_.dimension(), fields, point);
     mine.insert(mine.end(), values.begin(), values.end());
   }
-  const std::vector<double> all = concatenated(mine, points_.ranks());
+  const std::vector<double> all = concatenated(points_.ranks(), mine);
   std::vector<Row> rows;
   for (const std::size_t first : in_order(all, width)) {
     const auto of_point = all.begin() + std::ptrdiff_t(first);

@@ -5,12 +5,13 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cases/runner/results/hdf5_file.hpp"
-#include "solvers/ranks/part_of_body.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -19,10 +20,10 @@ namespace peristat {
 class RowGathering {
  public:
   /// @param most_rows largest number of rows of a part
-  explicit RowGathering(const PartOfBody& part, std::int64_t most_rows = std::int64_t(1) << 20)
+  explicit RowGathering(const IndexMap& part, std::int64_t most_rows = std::int64_t(1) << 20)
       : part_(part), most_rows_(most_rows) {}
 
-  [[nodiscard]] const PartOfBody& part() const { return part_; }
+  [[nodiscard]] const IndexMap& part() const { return part_; }
   [[nodiscard]] std::uint64_t rows() const { return std::uint64_t(part_.whole()); }
 
   /// Gathers values of the owned points on rank 0. Collective.
@@ -31,7 +32,7 @@ class RowGathering {
   template <class Value>
   void gather(const std::vector<Value>& mine, std::size_t values_per_row,
               const Hdf5File::PutRows<Value>& put) const {
-    const std::vector<GlobalIndex>& number = part_.number();
+    const std::span<const GlobalIndex> number = numbers();
     auto next = number.begin();
     for (std::int64_t first = 0; first < part_.whole(); first += most_rows_) {
       const std::int64_t count = std::min(most_rows_, std::int64_t(part_.whole()) - first);
@@ -52,7 +53,8 @@ class RowGathering {
   template <class Value, class Take>
   [[nodiscard]] std::vector<Value> scatter(std::size_t values_per_row, const Take& take) const {
     std::vector<Value> mine;
-    auto next = part_.number().begin();
+    const std::span<const GlobalIndex> number = numbers();
+    auto next = number.begin();
     for (std::int64_t first = 0; first < part_.whole(); first += most_rows_) {
       const std::int64_t count = std::min(most_rows_, std::int64_t(part_.whole()) - first);
       std::vector<Value> rows;
@@ -61,7 +63,7 @@ class RowGathering {
       part_.ranks().broadcast(bytes);
       rows.resize(bytes.size() / sizeof(Value));
       std::memcpy(rows.data(), bytes.data(), bytes.size());
-      for (; next != part_.number().end() && *next < first + count; ++next) {
+      for (; next != number.end() && *next < first + count; ++next) {
         const auto row = rows.begin() + std::ptrdiff_t(std::size_t(*next - first) * values_per_row);
         mine.insert(mine.end(), row, row + std::ptrdiff_t(values_per_row));
       }
@@ -113,7 +115,7 @@ class RowGathering {
   /// @return the sum before each owned point, and the total
   [[nodiscard]] std::pair<std::vector<std::int64_t>, std::int64_t> counted_before(
       const std::vector<std::int64_t>& counts) const {
-    const std::vector<GlobalIndex>& number = part_.number();
+    const std::span<const GlobalIndex> number = numbers();
     std::vector<std::int64_t> before(counts.size());
     std::int64_t sum = 0;
     auto next = number.begin();
@@ -129,16 +131,19 @@ class RowGathering {
   }
 
  private:
-  using Number = std::vector<GlobalIndex>::const_iterator;
+  using Number = std::span<const GlobalIndex>::iterator;
+
+  /// Numbers in the whole body of the points that this rank owns.
+  [[nodiscard]] std::span<const GlobalIndex> numbers() const { return part_.numbered().owned; }
 
   /// Sums before each point of a part, and behind the last one; on all ranks.
   [[nodiscard]] std::vector<std::int64_t> sums_before(const std::vector<std::int64_t>& counts,
                                                       std::int64_t first, Number next, Number end,
                                                       std::int64_t sum) const {
     const auto rows = std::size_t(std::min(most_rows_, std::int64_t(part_.whole()) - first));
-    const Number begin = part_.number().begin();
+    const Number begin = numbers().begin();
     const Packed<std::int64_t> packed{first, 1};
-    const std::string mine = packed.pack(part_.number().data(), std::size_t(next - begin),
+    const std::string mine = packed.pack(numbers().data(), std::size_t(next - begin),
                                          std::size_t(end - begin), counts.data());
     std::vector<std::int64_t> sums(rows + 1, 0);
     part_.ranks().gather(mine,
@@ -193,7 +198,7 @@ class RowGathering {
     }
   };
 
-  const PartOfBody& part_;
+  const IndexMap& part_;
   std::int64_t most_rows_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 namespace peristat {
 namespace {
@@ -87,7 +88,7 @@ namespace {
 
 /// Writes all arrays with a row per point.
 void write_rows_of(const Points& points, const std::vector<PointCounts>& counts,
-                   const std::vector<GlobalIndex>& number, const RowSink& sink) {
+                   std::span<const GlobalIndex> number, const RowSink& sink) {
   const auto dimension = static_cast<std::uint64_t>(points.dimension);
   sink.write("/points/reference", points.reference, {dimension},
              {"m", "reference position of each point"});
@@ -131,7 +132,7 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
   if (points.angle != 0.0) file.set_attribute("/points", "angle", points.angle);
   file.make_group("/points/sets");
   if (gathering) {
-    write_rows_of(points, counts, gathering->part().number(), RowSink(&file, *gathering));
+    write_rows_of(points, counts, gathering->part().numbered().owned, RowSink(&file, *gathering));
   } else {
     write_rows_of(points, counts, {}, RowSink(file, points.volume.size()));
   }
@@ -152,7 +153,7 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
 
 void send_points(const Points& points, const std::vector<PointCounts>& counts,
                  const RowGathering& gathering) {
-  write_rows_of(points, counts, gathering.part().number(), RowSink(nullptr, gathering));
+  write_rows_of(points, counts, gathering.part().numbered().owned, RowSink(nullptr, gathering));
 }
 
 std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts,

@@ -11,9 +11,10 @@
 
 #include "cases/runner/input/probe_fields.hpp"
 #include "cases/runner/results/crack_measures.hpp"
-#include "src/core/concatenated.hpp"
 #include "src/core/expression.hpp"
 #include "src/dense/least_squares.hpp"
+#include "src/parallel/collectives.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {
@@ -58,7 +59,7 @@ std::vector<double> rows_of_all(std::vector<double> mine, std::size_t columns,
     // Columns of the transpose are rows.
     mine = by_columns(condensed_rows(by_columns(mine, columns), int(rows)), columns);
   }
-  return concatenated(mine, ranks);
+  return concatenated(ranks, mine);
 }
 
 /// Poisson's ratio of the homogeneous deformation that fits the displacements of a set best (least
@@ -192,7 +193,7 @@ std::vector<double> at_place(const ProbeSpecification& probe, const RecordedPoin
   const std::optional<Index> nearest = nearest_recorded(points, *probe.at).here;
   std::vector<double> values;
   if (nearest) values = values_at(probe, points.dimension(), fields, *nearest);
-  return concatenated(values, points.ranks());
+  return concatenated(points.ranks(), values);
 }
 
 }  // namespace

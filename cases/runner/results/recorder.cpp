@@ -142,7 +142,7 @@ CrackState Recorder::crack_state(const StepRecord& record, const std::string& pr
               (record.motion ? record.motion->kinetic_energy : 0.0),
           record.dissipated_energy,
           before == growth_.end() ? CrackGrowth{} : before->second,
-          recorded_.part() ? &recorded_.ranks() : nullptr};
+          recorded_.ranks()};
 }
 
 void Recorder::note_growth(const StepRecord& record) {

@@ -29,7 +29,7 @@ class Recorder {
            Progress& progress, const std::vector<CrackTip>& crack_tips)
       : case_(from),
         points_(body.points),
-        recorded_(body.points, body.part.get()),
+        recorded_(body.points, *body.index_map),
         own_(std::size_t(recorded_.count())),
         assembler_(assembler),
         results_(results),

@@ -25,6 +25,7 @@
 #include "cases/runner/results/xdmf_series.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/stopwatch.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "solvers/ranks/heard_of_bonds.hpp"
-#include "src/core/concatenated.hpp"
 #include "src/geometry/image_number.hpp"
+#include "src/parallel/collectives.hpp"
 
 namespace peristat {
 
@@ -117,9 +117,9 @@ void StateNumbering::visit_rows(Rows rows,
     return;
   }
   const auto width = std::size_t(extent(rows).width);
-  for (std::size_t point = 0; point < part_.number().size(); ++point) {
+  for (std::size_t point = 0; point < std::size_t(part_.owned()); ++point) {
     for (std::size_t c = 0; c < width; ++c) {
-      visit(std::int64_t(part_.number()[point]) * std::int64_t(width) + std::int64_t(c),
+      visit(std::int64_t(part_.number_of(Index(point))) * std::int64_t(width) + std::int64_t(c),
             point * width + c);
     }
   }
@@ -154,8 +154,8 @@ void StateNumbering::give_to_others(Rows rows, std::vector<double>& values) cons
   const Extent of = extent(rows);
   const auto first = values.begin() + std::ptrdiff_t(of.here * of.width);
   const bool tells = part_.ranks().rank() == 0;
-  const std::vector<double> beyond = concatenated(
-      tells ? std::vector<double>(first, values.end()) : std::vector<double>(), part_.ranks());
+  const std::vector<double> mine(tells ? first : values.end(), values.end());
+  const std::vector<double> beyond = concatenated(part_.ranks(), mine);
   std::copy(beyond.begin(), beyond.end(), first);
 }
 
@@ -189,7 +189,7 @@ std::vector<Index> StateNumbering::numbers_of_all(const std::vector<Index>& poin
   for (const Index point : points) {
     if (point < part_.owned()) mine.push_back(double(points_.number(point)));
   }
-  std::vector<double> all = concatenated(mine, part_.ranks());
+  std::vector<double> all = concatenated(part_.ranks(), mine);
   std::ranges::sort(all);
   return {all.begin(), all.end()};
 }

@@ -9,6 +9,7 @@
 #include "cases/runner/build/recorded_points.hpp"
 #include "cases/runner/results/point_rows.hpp"
 #include "solvers/drivers/state_archive.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
@@ -71,7 +72,7 @@ class StateNumbering {
   void give_bonds(std::vector<double>& values) const;
 
   const RecordedPoints& points_;
-  const PartOfBody& part_;
+  const IndexMap& part_;
   const RowGathering& gathering_;
   const Bonds& bonds_;
   Rows rows_of_histories_;

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "src/parallel/communicator.hpp"
+
 namespace peristat {
 namespace {
 

@@ -9,6 +9,8 @@
 
 #include <Teuchos_LAPACK.hpp>
 
+#include "src/parallel/communicator.hpp"
+
 namespace peristat::trilinos {
 namespace {
 

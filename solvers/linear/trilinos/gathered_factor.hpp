@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "src/core/communicator.hpp"
+#include "src/parallel/communicator.hpp"
 
 // Also compiled as C++17.
 

@@ -25,6 +25,7 @@
 
 #include "solvers/linear/trilinos/module.hpp"
 #include "solvers/linear/trilinos/teuchos_communicator.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat::trilinos {
 namespace {

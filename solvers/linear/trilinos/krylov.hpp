@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "src/core/communicator.hpp"
+#include "src/parallel/communicator.hpp"
 
 // Interface between C++20 and Trilinos, which is compiled as C++17: both include this header.
 

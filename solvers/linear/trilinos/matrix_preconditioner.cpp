@@ -29,6 +29,7 @@
 #include "solvers/linear/trilinos/gathered_factor.hpp"
 #include "solvers/linear/trilinos/module.hpp"
 #include "solvers/linear/trilinos/teuchos_communicator.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat::trilinos {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "src/core/communicator.hpp"
+#include "src/parallel/communicator.hpp"
 
 // Interface between C++20 and Trilinos, which is compiled as C++17: both include this header.
 

@@ -5,6 +5,8 @@
 #include <Teuchos_RCP.hpp>
 #include <mpi.h>
 
+#include "src/parallel/communicator.hpp"
+
 namespace peristat::trilinos {
 
 Teuchos::RCP<const Teuchos::Comm<int>> teuchos_communicator(const Communicator& ranks) {

@@ -10,6 +10,7 @@
 
 #include "solvers/linear/trilinos/teuchos_communicator.hpp"
 #include "solvers/ranks/trilinos/module.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat::ranks {
 namespace {

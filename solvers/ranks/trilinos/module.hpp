@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "solvers/ranks/ghost_exchange.hpp"
 #include "solvers/ranks/records.hpp"
-#include "src/core/communicator.hpp"
+#include "src/parallel/communicator.hpp"
+#include "src/parallel/ghost_exchange.hpp"
 
 // Code that needs MPI is a separate module (load_ranks.cpp), so that runs of a sole rank never
 // start it; this header is the whole interface between the two.

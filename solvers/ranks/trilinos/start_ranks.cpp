@@ -8,6 +8,7 @@
 #include <mpi.h>
 
 #include "solvers/ranks/trilinos/module.hpp"
+#include "src/parallel/communicator.hpp"
 
 namespace peristat::ranks {
 namespace {

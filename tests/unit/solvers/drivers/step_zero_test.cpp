@@ -10,6 +10,7 @@
 
 #include "solvers/drivers/load_stepping.hpp"
 #include "src/conditions/preload.hpp"
+#include "src/parallel/communicator.hpp"
 #include "tests/softening_strip.hpp"
 
 namespace peristat {
@@ -69,7 +70,7 @@ TEST(Preload, IsWhatActsAtLoadZero) {
   const auto preload = [&](const std::string& displacement, const std::string& force) {
     const Problem problem(box, {support("left", "0", "0"), support("right", displacement)},
                           {body_force("all", force, "0")});
-    return find_preload(problem.conditions, nullptr);
+    return find_preload(problem.conditions, sole_rank());
   };
   EXPECT_FALSE(preload("0.01*load", "5*load").acts());
   EXPECT_EQ(preload("0.01*load", "5*load").description(), "");

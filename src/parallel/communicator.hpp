@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <iostream>
 #include <string>
 #include <vector>
 
@@ -98,10 +98,16 @@ class SoleRank : public Communicator {
   void gather(const std::string& mine, const Visit& visit) const override { visit(0, mine); }
   void broadcast(std::string&) const override {}
   [[noreturn]] void abort(const std::string& message, int exit_code) const override {
-    std::cerr << message << std::endl;
+    std::fputs((message + '\n').c_str(), stderr);
     std::_Exit(exit_code);
   }
   [[nodiscard]] const void* handle() const override { return nullptr; }
 };
+
+/// The communicator of whatever one rank holds alone.
+[[nodiscard]] inline const Communicator& sole_rank() {
+  static const SoleRank sole;
+  return sole;
+}
 
 }  // namespace peristat

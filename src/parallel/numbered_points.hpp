@@ -4,7 +4,6 @@
 #include <span>
 
 #include "src/core/types.hpp"
-#include "src/geometry/part.hpp"
 
 namespace peristat {
 
@@ -27,8 +26,5 @@ struct NumberedPoints {
   /// The point that has a number, if it is here.
   [[nodiscard]] std::optional<Index> find(GlobalIndex number) const;
 };
-
-/// Numbered points of a part, which must outlive them.
-[[nodiscard]] NumberedPoints numbered_points(const Part& part);
 
 }  // namespace peristat

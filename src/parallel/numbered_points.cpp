@@ -1,4 +1,4 @@
-#include "src/geometry/numbered_points.hpp"
+#include "src/parallel/numbered_points.hpp"
 
 #include <algorithm>
 
@@ -14,12 +14,6 @@ std::optional<Index> NumberedPoints::find(GlobalIndex number) const {
     before += Index(numbers.size());
   }
   return std::nullopt;
-}
-
-NumberedPoints numbered_points(const Part& part) {
-  const std::span<const GlobalIndex> numbers = part.number;
-  const auto owned = std::size_t(part.owned);
-  return {numbers.first(owned), numbers.subspan(owned), part.owner};
 }
 
 }  // namespace peristat

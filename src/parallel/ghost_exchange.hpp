@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "src/core/communicator.hpp"
+#include "src/parallel/communicator.hpp"
 
 // Also compiled as C++17.
 
@@ -29,13 +29,5 @@ class GhostExchange {
   /// Data that this rank has sent so far.
   [[nodiscard]] virtual Traffic traffic() const = 0;
 };
-
-/// @param owned, ghosts numbers in the whole body of the points that this rank owns, and of those
-///        whose values it needs; each is owned by one rank
-/// @param width values per point
-/// @throws std::logic_error for a ghost that no other rank owns
-[[nodiscard]] std::unique_ptr<GhostExchange> make_ghost_exchange(
-    const Communicator& ranks, const std::vector<std::int64_t>& owned,
-    const std::vector<std::int64_t>& ghosts, int width);
 
 }  // namespace peristat
