@@ -106,6 +106,7 @@ Evaluation Assembler::of_part(TermPasses& term, const StateView& at, Evaluation 
 }
 
 Evaluation Assembler::of_all(const Evaluation& mine, std::span<double> gradient) const {
+  if (index_map_.is_whole()) return mine;
   clear_ghosts(index_map_, points_.dimension, gradient);
   return sum_of(index_map_.ranks(), mine);
 }
@@ -147,6 +148,7 @@ DamageGrowth Assembler::growth(const StateView& at) {
 }
 
 DamageGrowth Assembler::of_all(const DamageGrowth& mine) const {
+  if (index_map_.is_whole()) return mine;
   const Communicator& ranks = index_map_.ranks();
   const std::vector<double> counts = ranks.sum({double(mine.degrading), double(mine.breaking)});
   return {Index(counts[0]), Index(counts[1]), ranks.max(mine.utilisation)};

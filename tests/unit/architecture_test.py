@@ -14,6 +14,7 @@ FLOORS = ["src", "assembly", "solvers", "cases"]
 # Rooms of the floors, each of which may include itself and those before it.
 ROOMS = [
     "src/core",
+    "src/parallel",
     "src/dense",
     "src/transforms",
     "src/measures",
