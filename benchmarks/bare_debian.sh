@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Does a fresh Debian 12 run peristat? Makes a minimal system in a temporary folder, copies this tree
-# into it, and there types what an analyst types first. Prints the seconds of each. As root, with
-# debootstrap installed; takes 3 GB of TMPDIR and cleans up behind itself.
+# Checks that a fresh Debian 12 runs peristat. Makes a minimal system in a temporary folder, copies this
+# tree into it, and runs a user's first commands there. Prints the seconds of each command. Needs root,
+# debootstrap and 3 GB in TMPDIR; removes its files at the end.
 #   benchmarks/bare_debian.sh              run a case, then the tests
 #   benchmarks/bare_debian.sh COMMAND...   each argument is one command line for ./peristat
 #   benchmarks/bare_debian.sh --package FILE.deb [COMMAND...]
@@ -24,7 +24,7 @@ if ! (($#)); then
   [[ $package ]] || set -- "$@" test
 fi
 
-# The mirror that this machine uses itself.
+# The mirror that this machine uses.
 mirror=$(apt-get indextargets --format '$(ORIGIN) $(CODENAME) $(REPO_URI)' |
   sed -n "s/^Debian $release //p" | sort -u | head -n 1)
 [[ $mirror ]] || { echo "bare_debian.sh: no mirror of $release here; apt-get update?" >&2; exit 2; }
@@ -57,7 +57,7 @@ timed "debootstrap --variant=minbase $release" \
   { tail "$system.log"; rm -f "$system.log"; exit 1; }
 rm -f "$system.log"
 
-# How packages are reached is the machine's business, not the test's: same sources, same proxy.
+# The same package sources and proxy as on this machine.
 rm -f "$system/etc/apt/sources.list"
 for file in /etc/apt/sources.list /etc/apt/sources.list.d/*; do
   [[ -f $file ]] && grep -qF "${mirror%/}" "$file" && cp "$file" "$system${file}"

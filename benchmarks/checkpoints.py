@@ -1,6 +1,6 @@
-"""What checkpoints cost: ./peristat build && /usr/bin/python3 benchmarks/checkpoints.py [CASE [key=value]...]
+"""Cost of checkpoints: ./peristat build && /usr/bin/python3 benchmarks/checkpoints.py [CASE [key=value]...]
 
-Runs each case and tells the share of its wall time that went into checkpoints, and their bytes.
+Runs each case and prints the share of its wall time spent on checkpoints, and their bytes.
 """
 
 import json

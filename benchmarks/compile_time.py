@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What the compiler takes: seconds of processor time of each object of a release build in a temporary folder.
+"""Compile time: seconds of processor time of each object of a release build in a temporary folder.
 
     benchmarks/compile_time.py [CMAKE OPTION]...     e.g. -DPERISTAT_TOGETHER=OFF
 
 Prints the sum, the minutes that passed on all processors, and the longest objects. Compare builds on a
-quiet machine alone: processor time grows by half where other work runs beside.
+quiet machine: processor time grows by half if other work runs at the same time.
 """
 
 import os
@@ -19,7 +19,7 @@ LOG = "PERISTAT_COMPILE_LOG"
 
 
 def compile_one(command):
-    """Runs a compiler and notes its time: this file is the launcher that CMake puts before each."""
+    """Runs a compiler and records its time; CMake puts this file as the launcher before each compiler call."""
     child = os.spawnvp(os.P_NOWAIT, command[0], command)
     _, status, used = os.wait4(child, 0)
     if "-o" in command:
@@ -36,7 +36,7 @@ def build(options):
         configure = ["cmake", "-G", "Ninja", "-S", ROOT, "-B", folder, "-DCMAKE_BUILD_TYPE=Release", "-DPERISTAT_TESTS=OFF"]
         configure += [f"-DCMAKE_CXX_COMPILER_LAUNCHER={launcher}", *options]
         subprocess.run(configure, env=environment, check=True, stdout=subprocess.DEVNULL)
-        log.write_text("")  # the configuration compiles, too
+        log.write_text("")  # drops the entries of the configuration, which compiles, too
         began = time.monotonic()
         subprocess.run(["cmake", "--build", folder], env=environment, check=True, stdout=subprocess.DEVNULL)
         passed = time.monotonic() - began

@@ -2,7 +2,7 @@
 
   ./peristat build && /usr/bin/python3 -m benchmarks.fracture_quantities [SPECIMEN ...]
 
-E399, Tada, Paris and Irwin, and Isida in Murakami's handbook; NAFEMS R0020 test 1.1.
+References: E399; Tada, Paris and Irwin; Isida in Murakami's handbook; NAFEMS R0020 test 1.1.
 """
 
 import csv
@@ -93,7 +93,7 @@ def tension(spacing, length=A, cut=""):
 
 
 def centre(spacing, length=A, cut=""):
-    """Centre crack 2 a, W = 2 a either way, a quarter; Tada's formula, 0.1 %."""
+    """Centre crack 2 a in a square of half width and half height W = 2 a, a quarter; Tada's formula, 0.1 %."""
     width, stress = 0.02, 1e6
     text = head(spacing) + box((0, 0), (width, 0.06)) + plane("x") + plane("y") + crack((-0.001, 0), (length, 0)) + pulled(stress)
     a = length / width
@@ -103,7 +103,7 @@ def centre(spacing, length=A, cut=""):
 
 def nafems(spacing, length=A, cut=""):
     """NAFEMS R0020 test 1.1: 40 x 40 mm, 2 a = 20 mm, 100 MPa, plane strain, J = 2.425 N/mm with E = 207 GPa and
-    nu = 0.3. Bonds have nu = 1/4, and E such that E/(1 - nu2) is the same."""
+    nu = 0.3. The bonds have nu = 1/4, and E is chosen for the same E/(1 - nu2)."""
     stress, plane_modulus = 100e6, 207e9 / (1 - 0.09)
     text = head(spacing, plane_modulus * (1 - 1 / 16), "strain") + box((0, 0), (0.02, 0.02)) + plane("x") + plane("y")
     text += crack((-0.001, 0), (length, 0)) + pulled(stress)
@@ -142,10 +142,11 @@ SPECIMENS = {"three-point bend": bend, "compact tension": tension, "centre crack
 
 
 def release(specimen, spacing, length):
-    """G by a cut of one and a half horizons, of the kind that the specimen's supports or loads keep, over J in its middle."""
+    """G from a cut of one and a half horizons over J at the middle of the cut; fixed supports or fixed loads, as the
+    specimen has."""
     cut = 1.5 * 3.015 * spacing
     row, *_ = specimen(spacing, length, f"cut = {cut}\n")
-    # The middle of the cut; the inclined crack has two tips that grow with its length, and is cut at one.
+    # The middle of the cut. The inclined crack has two tips that move with its length, and is cut at one of them.
     middle, *_ = specimen(spacing, length + cut / (4 if specimen is inclined else 2))
     kind = "displacement" if specimen is bend else "load"
     return row[f"tip_G_{kind}"] / middle["tip_J"]

@@ -1,10 +1,10 @@
-"""Stairs against fractional volumes at a hole: ./peristat build && /usr/bin/python3 benchmarks/hole_rim.py
+"""Stairs and fractional volumes at a hole: ./peristat build && /usr/bin/python3 benchmarks/hole_rim.py
 
-A square cut out of an infinite plate under tension, its frame moved as Kirsch's solution says, around a circular
-hole. The rim strain is the hoop strain at the two places where it is highest, by a linear fit to the displacements
-within 0.4 radii of the place; its error is told against the same fit to Kirsch's displacements of the same points, so that
-only the error of the displacements counts. Lattices at a fixed horizon ratio, in four places under the hole each.
-Then the volumes of a body under a lattice that turns.
+A square cut out of an infinite plate under tension surrounds a circular hole, and its frame moves by Kirsch's
+solution. The rim strain is the hoop strain at the two places where it is highest, by a linear fit to the
+displacements within 0.4 radii of the place. Its error is relative to the same fit to Kirsch's displacements of the
+same points, so that only the error of the displacements counts. Lattices have a fixed horizon ratio and four
+positions under the hole. A second table shows the volume of a body under a lattice that turns.
 """
 
 import argparse
@@ -21,7 +21,7 @@ import numpy
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = os.environ.get("PERISTAT_PROGRAM", str(ROOT / "build/release/peristat"))
 RADIUS, HALF = 1.0, 4.0  # m; of the hole, and of the square
-KAPPA, STRAIN = 2.0, 1e-6  # (3 - nu) / (1 + nu) at nu = 1/3; strain of the plate far away
+KAPPA, STRAIN = 2.0, 1e-6  # (3 - nu) / (1 + nu) at nu = 1/3; far-field strain
 SHIFTS = [(0.0, 0.0), (0.31, 0.17), (0.43, 0.38), (0.12, 0.47)]  # of the hole's centre, in spacings
 
 # Kirsch's displacements over 2 STRAIN (1 + nu) / 8 = STRAIN / 3 at nu = 1/3, with RADIUS = 1 and R = r^2
@@ -31,7 +31,7 @@ AMPLITUDE = STRAIN / 3
 
 
 def kirsch(component: str) -> str:
-    """Displacement along x or y as an expression of place."""
+    """Displacement along x or y as an expression of the position."""
     radial, hoop = (text.replace("C", "((x^2-y^2)/R)").replace("S", "(2*x*y/R)").replace("R", "(x^2+y^2)")
                     for text in (RADIAL, HOOP))  # fmt: skip
     along, across = ("x", "-y") if component == "x" else ("y", "x")
@@ -65,7 +65,7 @@ displacement = ["{kirsch('x')}*load", "{kirsch('y')}*load"]
 
 
 def run(folder: Path, text: str):
-    """Places, volumes and displacements of a case."""
+    """Positions, volumes and displacements of a case."""
     path = folder / "case.toml"
     path.write_text(text)
     subprocess.run([PROGRAM, "run", path, "--output", folder / "out", "--overwrite", "--quiet", "--no-plots"], check=True)
@@ -80,7 +80,7 @@ def exact(places):
 
 
 def rim_strain(places, displacement):
-    """Mean of both places."""
+    """Mean over both places."""
     found = []
     for side in (-1, 1):
         near = numpy.hypot(places[:, 0], places[:, 1] - side * RADIUS) < 0.4 * RADIUS
@@ -92,7 +92,7 @@ def rim_strain(places, displacement):
 
 
 def rim_errors(folder: Path, spacing: float, volumes: str, surface: str, angle: float):
-    """Relative errors of the rim strain, one for each place of the lattice."""
+    """Relative errors of the rim strain, one for each position of the lattice."""
     errors = []
     for shift in SHIFTS:
         places, _, displacement = run(folder, case(spacing, shift, volumes, surface, angle))
@@ -120,7 +120,7 @@ def tell_rim(folder: Path, levels: int, surface: str, angle: float) -> None:
 
 
 def tell_volumes(folder: Path) -> None:
-    """Of a plate with a hole, 4 x 2 with a hole of radius 0.6."""
+    """Volume of a plate with a hole, 4 x 2 with a hole of radius 0.6."""
     print("| angle | stairs | fractional |\n|---|---|---|")
     exactly = 8 - math.pi * 0.36
     for angle in (0, 10, 30, 45, 77, 90):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How good the choice of solver.linear = "auto" is: ten problems, the solvers side by side.
+"""Quality of the choice of solver.linear = "auto": ten problems with each solver.
 
     benchmarks/linear_choice.py [--repeat N] [PROBLEM]...
 
@@ -41,7 +41,7 @@ CHOICES = {
 
 
 def run(case, settings, folder):
-    """CPU seconds of a run, or infinity where it does not end well."""
+    """CPU seconds of a run, or infinity if it fails."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     words = [word for setting in settings for word in ("--set", setting)]
     ended = subprocess.run([PROGRAM, "run", ROOT / f"cases/{case}.toml", "--output", folder, "--quiet", *words],

@@ -55,7 +55,7 @@ def run(folder: Path, text: str, *settings: str) -> Results:
 
 
 def strains(results: Results, spacing: float) -> tuple[list[float], float]:
-    """Strain between rows next to the loaded end on the middle line, from the end inwards, and the elongation of all
+    """Strain between neighbouring rows on the middle line, from the loaded end inwards, and the elongation of all
     but the held row, both over those of the stress E e."""
     x, y = results.reference.T
     moved = results.steps[-1].displacement[:, 0]
@@ -79,7 +79,7 @@ def tractions(folder: Path) -> None:
 
 
 def growth(results: Results, exact) -> float:
-    """Mean displacement along the radius at the points of the inner half over the exact one."""
+    """Mean radial displacement at the points of the inner half over the exact one."""
     radius = numpy.sqrt((results.reference**2).sum(axis=1))
     middle = numpy.abs(radius - 0.75) < 0.05
     along = (results.steps[-1].displacement * results.reference).sum(axis=1) / radius

@@ -1,4 +1,4 @@
-"""Several materials beside closed forms, and a crack before a tougher region:
+"""Several materials compared with closed forms, and a crack in front of a tougher region:
 ./peristat build && /usr/bin/python3 benchmarks/materials.py"""
 
 import os
@@ -16,7 +16,7 @@ from tests.reference.results import Results  # noqa: E402
 
 RULES = ("harmonic", "arithmetic", "weaker")
 BAR = ROOT / "cases/regions/bimaterial.toml"
-BAR_END = 100.0 / 1e-4 * (0.5 / 70e9 + 0.497 / 210e9)  # m, of the joined bars: its header
+BAR_END = 100.0 / 1e-4 * (0.5 / 70e9 + 0.497 / 210e9)  # m, of the joined bars; see the case's header
 INCLUSION_STRAIN = 1e-3 * 3 / 7  # regions_test.py has the derivation
 
 

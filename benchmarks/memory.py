@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Memory: what `check` estimates beside the peak of the run, and bytes per point in 3D.
+"""Memory: the estimate of `check` and the measured peak of the run, and bytes per point in 3D.
 
     benchmarks/memory.py [--large]
 

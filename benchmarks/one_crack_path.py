@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""One crack path: what mode path must not depend on, and what it does.
+"""One crack path: settings that mode path must not depend on, and settings that it depends on.
 
-The square plate with a hole and the notched plate in three-point bending, brittle and along a
-saw-tooth, by one setting after the other: threads, steps of the load, event_tolerance, linear solver,
-teeth. A row per run: rows of the path, peak and load factor of the response under the given loads,
-first snap, bonds broken, CPU seconds; and whether the ordered list of broken bonds is that of the
+The square plate with a hole and the notched plate in three-point bending, brittle and with a
+saw-tooth law, with one setting varied after the other: threads, steps of the load, event_tolerance, linear
+solver, teeth. Prints one row per run: rows of the path, peak and load factor of the response under the given
+loads, first snap, bonds broken, CPU seconds; and whether the ordered list of broken bonds is that of the
 case's first run, with the largest difference of their load factors.
 
     /usr/bin/python3 -BEs benchmarks/one_crack_path.py [--cases square,...] [--vary threads,steps,...]
 
-Seconds are CPU seconds of the whole run, which bear a busy machine better than those of the clock.
+Seconds are CPU seconds of the whole run, which depend less on other load of the machine than wall time.
 """
 
 import argparse
@@ -48,7 +48,7 @@ mode = "path"
 [output]
 every = 100000
 """
-# What the path must be the same with, and what it may depend on.
+# Settings that must not change the path, and settings that may.
 SAME = {
     "threads": [["--threads", "1"], ["--threads", "2"], ["--threads", "3"]],
     "steps": [["--set", f"loading.steps={n}"] for n in (1, 10, 1000)],

@@ -1,5 +1,5 @@
-"""The package's two libraries beside a native build, in turns: CPU seconds of whole runs on one thread,
-and the median of their ratios pair by pair.
+"""The package's two libraries compared with a native build, in turns: CPU seconds of whole runs on one thread,
+and the median of their pairwise ratios.
 
     benchmarks/package.py PACKAGE.deb [--native PROGRAM] [--repetitions N]
 """
@@ -13,7 +13,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 JACOBI = ["solver.linear=pcg", "solver.preconditioner=jacobi"]
-# What most of the time goes into: case, settings.
+# Dominant parts of the run time: case, settings.
 RUNS = {
     "products with bonds, 3D": ("cantilever/beam.toml", [*JACOBI, "solver.tangent=matrix_free", "loading.steps=1"]),
     "products with a stored tangent, 3D": ("cantilever/beam.toml", [*JACOBI, "solver.tangent=stored", "loading.steps=2"]),
@@ -42,7 +42,7 @@ def main():
         folder = pathlib.Path(name)
         subprocess.run(["dpkg", "-x", options.package, folder], check=True)
         packaged = folder / "usr/libexec/peristat/peristat"
-        any_processor = ["env", "GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2", packaged]  # as the loader then takes it
+        any_processor = ["env", "GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2", packaged]  # hides AVX2 from the loader
         commands = {"native": [options.native], "AVX2": [packaged], "any": any_processor}
         print("| run | native, s | package, AVX2 | package, any processor | AVX2 / native | any / native |")
         print("|---|---|---|---|---|---|")

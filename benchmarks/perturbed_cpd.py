@@ -2,9 +2,9 @@
 
 Pulls the square and the cube of cases/cpd by 1e-3 of their length, with every point of the body shifted at
 random by up to the perturbation (in spacings), and prints Markdown tables: a row per perturbation, a column
-per Poisson's ratio; once with the cases' horizons, which are just beyond a shell of neighbours, and once with
-horizons in the middle between two shells. A column starts with the reaction of the regular lattice [N], and "unstable" stands for
-a body that is refused because it is unstable at rest.
+per Poisson's ratio. The first has the cases' horizons, which are just beyond a shell of neighbours, and the second
+horizons in the middle between two shells. A column starts with the reaction of the regular lattice [N]; "unstable"
+marks a body that is refused because it is unstable at rest.
 
     /usr/bin/python3 -BEs benchmarks/perturbed_cpd.py [PROGRAM]
 """

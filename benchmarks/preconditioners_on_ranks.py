@@ -4,10 +4,10 @@
     benchmarks/preconditioners_on_ranks.py [--side N] [--ranks 1,2,3,4,8] [--kinds NAME,...] [--program FILE]
     benchmarks/preconditioners_on_ranks.py --shipped
 
-A cube of N x N x N points (24), a bar of 8 x 8 x 240 points and a plate of 120 x 120 with a slot half
-through that no bond crosses; each with three layers that are held at one end and three that are drawn
-away at the other, one static step to 1e-8. Or shipped cases, some of them coarser or shorter: triangles,
-tetrahedra, pressures, planes of symmetry, periods and rigid sets.
+Bodies: a cube of N x N x N points (24), a bar of 8 x 8 x 240 points, and a plate of 120 x 120 with a slot half
+through that no bond crosses. Each has three layers that are held at one end and three that are pulled at the
+other, and is solved for one static step to 1e-8. With --shipped: shipped cases, some of them coarser or shorter,
+with triangles, tetrahedra, pressures, planes of symmetry, periods and rigid sets.
 """
 
 import argparse
@@ -47,7 +47,7 @@ def box(action, low, high):
 
 
 def bodies(side):
-    """Shapes and the axis along which each is drawn."""
+    """Shapes and the axis along which each is pulled."""
     yield f"cube of {side}³", 3, [box("add", (0, 0, 0), (side,) * 3)]
     yield "bar of 8 × 8 × 240", 3, [box("add", (0, 0, 0), (8, 8, 240))]
     slot = box("subtract", (-1, 58), (60, 62))
@@ -65,7 +65,7 @@ SHIPPED = {
 
 
 def iterations(program, case, kind, ranks, folder, settings=()):
-    """What a run takes; its message, if it fails."""
+    """Linear iterations of a run, or its message if it fails."""
     command = [program, "run", case, "--threads", "1", "--no-plots", "--overwrite", "--quiet",
                "--output", folder / "results"]
     for setting in ('solver.linear="pcg"', f'solver.preconditioner="{kind}"', *settings):

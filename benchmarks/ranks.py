@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Bodies on MPI ranks: seconds, memory, messages and bytes beside the model of docs/cluster.md.
+"""Bodies on MPI ranks: seconds, memory, messages and bytes compared with the model of docs/cluster.md.
 
     benchmarks/ranks.py [--side N] [--rounds N] [--preconditioner NAME] [--most N] [--program FILE]
 
 A cube of N x N x N points (50) with layers of three that are held and moved, one static step. Each
-round takes all numbers of ranks, up to --most (8), in turns; seconds are the least of the rounds (3).
+round takes all numbers of ranks, up to --most (8), in turn; seconds are the minimum over the rounds (3).
 """
 
 import argparse
@@ -45,12 +45,12 @@ linear = "pcg"
 preconditioner = "{preconditioner}"
 tangent = "matrix_free"
 """
-# (ranks, threads of each); the first is what the model's constants come from.
+# (ranks, threads of each); the first gives the model's constants.
 RUNS = [(1, 1), (1, 2), (2, 1), (3, 1), (4, 1), (8, 1)]
 
 
 def proportional_bytes(program):
-    """Of all processes of a program: pages that they share, as libraries, count once."""
+    """Memory of all processes of a program; shared pages, as of libraries, count once."""
     held = 0
     for process in pathlib.Path("/proc").glob("[0-9]*"):
         try:
@@ -77,7 +77,7 @@ ENVIRONMENT = os.environ | {"OMP_WAIT_POLICY": "passive"}
 
 
 def most_memory(wanted, side, ranks, threads, folder):
-    """Of all processes of a run at one time, looked at ten times a second [bytes]."""
+    """Peak of the total memory of a run's processes, sampled ten times a second [bytes]."""
     program = wanted.program.resolve()
     most = 0
     with subprocess.Popen(command_of(wanted, side, ranks, threads, folder), env=ENVIRONMENT,
@@ -91,7 +91,7 @@ def most_memory(wanted, side, ranks, threads, folder):
 
 
 def run(wanted, side, ranks, threads, folder):
-    """What a run tells of itself; every message of it, if it fails."""
+    """The figures that a run prints; all of its output if it fails."""
     done = subprocess.run(command_of(wanted, side, ranks, threads, folder), capture_output=True,
                           text=True, check=False, env=ENVIRONMENT)
     if done.returncode != 0:
@@ -106,14 +106,14 @@ def run(wanted, side, ranks, threads, folder):
 
 
 def least(runs):
-    """One of the runs, with the least seconds of all for each of its parts."""
+    """One of the runs, with the least time over all runs for each part."""
     for part in runs[0]["seconds"]:
         runs[0]["seconds"][part] = min(one["seconds"][part] for one in runs)
     return runs[0]
 
 
 def bisected(low, high, parts):
-    """The boxes of a box that is halved across its longest side, over and over."""
+    """The boxes from halving a box across its longest side recursively."""
     if parts == 1:
         return [(low, high)]
     axis = int(np.argmax(np.subtract(high, low)))
@@ -125,7 +125,7 @@ def bisected(low, high, parts):
 
 
 def within_horizon(box, other):
-    """How many points of the other box are within the horizon of the box's points."""
+    """Number of points of the other box within the horizon of this box's points."""
     squares = []
     for (low, high), (first, end) in zip(zip(*box), zip(*other)):
         at = np.arange(first, end)
@@ -136,7 +136,7 @@ def within_horizon(box, other):
 
 
 def predicted(side, ranks):
-    """Most own points of a rank, ghosts of all, and messages of an exchange."""
+    """Largest numbers over the ranks: own points, ghosts, and messages of an exchange."""
     boxes = bisected((0, 0, 0), (side + 2 * LAYER, side, side), ranks)
     seen = [within_horizon(one, other) for one, other in itertools.permutations(boxes, 2)]
     own = max(int(np.prod(np.subtract(high, low))) for low, high in boxes)
@@ -175,7 +175,7 @@ def table_of_counts(told, side, memory):
 
 
 def forecast(points, ranks, side, iterations, growth, seconds_per_bond, memory):
-    """A cube shared out in cubes, of a rank inside it."""
+    """Estimate for an interior rank of a cube that is partitioned into cubes."""
     across = points ** (1 / 3)
     own = round(across / ranks ** (1 / 3))
     reach = int(HORIZON_RATIO)

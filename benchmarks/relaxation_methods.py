@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Relaxation with kinetic damping against the flow without inertia: which is unique, which is faster.
+"""Relaxation with kinetic damping and the flow without inertia: uniqueness and speed.
 
-The four problems of fracture, both manners of breaking, on one, two and three threads; kinetic
-damping with three ramps, the flow with three tolerances. A row per run, then a line per case,
-method and manner: whether all its runs took one path up to the first snap, and over all.
+The four problems of fracture, both ways of breaking bonds, on one, two and three threads; kinetic
+damping with three ramps, the flow with three tolerances. Prints a row per run, then a line per case,
+method and way of breaking: whether all its runs took one path up to the first snap, and in total.
 
     /usr/bin/python3 -BEs benchmarks/relaxation_methods.py [--first-snap] [--coarse] [--limit SECONDS]
         [--threads 1,2,3] [--cases square,rectangle] [--methods kinetic,flow] [--breaking transient]
 
 --first-snap ends a run as soon as bonds have broken; --coarse doubles the spacing; a run that takes
-longer than --limit is ended and told as not finished. Seconds are CPU seconds of the whole run: they
-bear a busy machine better than those of the clock, and compare side by side only.
+longer than --limit is ended and listed as not finished. Seconds are CPU seconds of the whole run, which
+depend less on other load of the machine than wall time; compare only runs made at the same time.
 """
 
 import argparse
@@ -32,7 +32,7 @@ CASES = {
     "notched": ("three_point_bending/notched", "2.4e-3"),
     "four_holes": ("four_holes/tension", "2e-3"),
 }
-# What a method's runs must not depend on.
+# Settings that a method's path must not depend on.
 METHODS = {
     "kinetic": [[f"relaxation.ramp={ramp}"] for ramp in (50, 100, 200)],
     "flow": [["relaxation.method=flow", f"relaxation.flow_tolerance={t}"] for t in (0.05, 0.1, 0.2)],
@@ -51,7 +51,7 @@ def snaps(history):
     """(bonds broken so far, load factor) of the steps in which bonds broke"""
     found, before = [], 0
     for row in history:
-        # A file that is being written may end within a row.
+        # The last row of a file that is being written may be incomplete.
         if not row.get("broken_bonds") or None in row.values():
             continue
         count = int(row["broken_bonds"])
@@ -62,7 +62,7 @@ def snaps(history):
 
 
 def run(command, folder, limit, first_snap):
-    """@return CPU seconds, and whether the run came to where it should"""
+    """@return CPU seconds, and whether the run reached its goal"""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     started = time.monotonic()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -1,8 +1,8 @@
 """Runs the benchmark program on one and on all threads and prints the table of RESULTS.md.
 
-Every figure stands beside the DGEMM and STREAM triad of the same run. Targets are for one thread of a
-machine with 55 GF/s and 35 GB/s and are scaled by what this run measures: those of passes over bonds by
-the slower of the two ratios, those of the factorisation are shares of DGEMM already, and those of relaxation
+The table lists every figure with the DGEMM and STREAM triad of the same run. Targets are for one thread of a
+machine with 55 GF/s and 35 GB/s and are scaled by the measured rates: targets of passes over bonds by
+the slower of the two ratios. Targets of the factorisation are shares of DGEMM already, and those of relaxation
 are matrix-free products of the same bonds in the same state.
 
     benchmarks/run.py [OPTION of Google Benchmark]...
@@ -57,7 +57,7 @@ def measure(program, threads, options):
 
 
 def print_relaxation(name, one, many):
-    """A row of iterations of relaxation, counted in products."""
+    """A table row of relaxation's iterations, counted in products."""
     case = name.partition("/")[2]
     dimension, law, transient = (part.split(":")[-1] for part in case.split("/"))
     product = f"relaxation_product/{case}"

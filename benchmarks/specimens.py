@@ -1,4 +1,4 @@
-"""Compliance of notched specimens beside ASTM E399: on ideal rollers, on clamped platens, on pins that turn.
+"""Compliance of notched specimens compared with ASTM E399: on ideal rollers, on clamped platens, on rotating pins.
 
   ./peristat build && /usr/bin/python3 benchmarks/specimens.py
 """
@@ -38,7 +38,7 @@ def run(text, **settings):
 
 
 def on_platens(text):
-    """Rows of 4 mm under the body that are clamped, in the place of its rollers."""
+    """Clamped rows of 4 mm under the body, in place of its rollers."""
     platens = {"left": "y-|abs(x+0.04) < 0.002", "right": "y-|abs(x-0.04) < 0.002", "load": "y+|abs(x) < 0.002"}
     layers = "".join(f'[[lattice.layer]]\nname = "{name}"\nside = "{place.split("|")[0]}"\nwhere = "{place.split("|")[1]}"\n'
                      for name, place in platens.items())  # fmt: skip

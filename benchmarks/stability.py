@@ -1,6 +1,7 @@
-"""Critical loads beside theory, and what finding loads costs: ./peristat build && /usr/bin/python3 benchmarks/stability.py
+"""Critical loads compared with theory, and the cost of finding loads: ./peristat build && /usr/bin/python3
+benchmarks/stability.py
 
-Runs the cases of cases/buckling and cases/three_point_bending/mouth_opening.toml as they are shipped.
+Runs the cases of cases/buckling and cases/three_point_bending/mouth_opening.toml as shipped.
 """
 
 import csv

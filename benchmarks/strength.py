@@ -1,4 +1,5 @@
-"""What a bar and a notched plate of concrete bear beside `strength`: ./peristat build && /usr/bin/python3 benchmarks/strength.py"""
+"""Strength of a bar and a notched plate of concrete over `strength`: ./peristat build && /usr/bin/python3
+benchmarks/strength.py"""
 
 import os
 import re
@@ -100,15 +101,15 @@ steps = 20
 mode = "adaptive"
 """
 STRENGTH, THICKNESS = 3e6, 0.05
-LIGAMENT, MOST = 0.15 * THICKNESS, 1.03  # of the plate [m2], and of the strength over it
+LIGAMENT, MOST = 0.15 * THICKNESS, 1.03  # of the plate [m2], and largest stress over the strength
 MODULUS, ACROSS = 30e9, uniaxial([1, 0])
-# Rows of points at 18.43 degrees to the lattice are nearly along the bar: with 5 mm one of them ends on a free face each
-# 0.21 m at 18, each 0.39 m at 18.2.
+# Rows of points at 18.43 degrees to the lattice are nearly parallel to the bar. With 5 mm, the distance between rows
+# that end on a free face is 0.21 m at 18 degrees and 0.39 m at 18.2.
 BARS = [(angle, energy, 5e-3) for angle in (0, 18, 18.2, 45) for energy in (30, 110, 440)] + [(18, 110, 2.5e-3), (18.2, 110, 2.5e-3)]
 
 
 def run(text, reaction):
-    """The largest reaction [N], the points of the body, and the stretches and the strengths [Pa] that `check` tells."""
+    """The largest reaction [N], the points of the body, and the stretches and strengths [Pa] printed by `check`."""
     with tempfile.TemporaryDirectory() as folder:
         case, output = Path(folder, "case.toml"), Path(folder, "out")
         case.write_text(text)
@@ -123,7 +124,7 @@ def run(text, reaction):
 
 
 def bulk(text, onset, critical):
-    """What bonds deep inside a lattice bear under a pull along x, by other means [Pa]."""
+    """Largest stress of bonds deep inside a lattice under uniaxial tension along x, by independent means [Pa]."""
     inside = Bulk(Case(text))
     return MODULUS * inside.of_modulus * Pull.of_bulk(inside).peak(Law("linear", onset, critical, 3.0), ACROSS)
 

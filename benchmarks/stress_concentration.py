@@ -1,10 +1,11 @@
 """Stress concentration at a hole: ./peristat build && /usr/bin/python3 benchmarks/stress_concentration.py
 
-A plate of 40 x 80 mm with a hole of radius R = 8 mm under tension, a quarter of it with planes of symmetry. The stress along
-the pull over the gross stress, in the row of points beside the ligament's middle line, extrapolated to the rim from where no
-point lacks a neighbour, a horizon off it: by the three terms of Kirsch's solution, 1, (R/r)^2 and (R/r)^4, up to 1.75 R, and
-by a cubic polynomial in r, up to half a radius farther; and as the points of the row have it. Finite elements give 3.75 for
-this length, Peterson's chart 3.73 for a long plate.
+A quarter of a plate of 40 x 80 mm with a hole of radius R = 8 mm under tension, with planes of symmetry. The
+quantity is the stress along the load over the gross stress, in the row of points beside the ligament's middle line.
+It is extrapolated to the rim from the points with complete neighbourhoods, at least a horizon away from it: by the
+three terms of Kirsch's solution, 1, (R/r)^2 and (R/r)^4, up to 1.75 R, and by a cubic polynomial in r, up to half a
+radius farther. The unextrapolated values of the points are printed, too. Finite elements give 3.75 for this length,
+Peterson's chart 3.73 for a long plate.
 """
 
 import argparse
@@ -60,7 +61,7 @@ field = "missing_neighbourhood"
 
 
 def table(path: Path, *columns: str):
-    """Columns as arrays."""
+    """Columns of a file as arrays."""
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
     return [numpy.array([float(row[name]) for row in rows]) for name in columns]
@@ -77,12 +78,13 @@ def cubic(r):
 
 
 def at_rim(terms, r, factor):
-    """Value of the best fit there."""
+    """Value of the least-squares fit at a position."""
     return terms(RADIUS) @ numpy.linalg.lstsq(terms(r), factor, rcond=None)[0]
 
 
 def row_of_points(folder: Path, spacing: float, surface: str):
-    """Distance from the hole's centre, stress over the gross stress, and what the points lack of their neighbourhoods."""
+    """Distance from the hole's centre, stress over the gross stress, and the missing share of the points'
+    neighbourhoods."""
     path = folder / "case.toml"
     path.write_text(case(spacing, surface))
     subprocess.run([PROGRAM, "run", path, "--output", folder / "out", "--overwrite", "--quiet", "--no-plots"], check=True)

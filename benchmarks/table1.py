@@ -1,4 +1,4 @@
-"""Seconds of the adaptive mode beside those of dynamic relaxation alone, as in Table 1 of [ADAPT].
+"""Seconds of the adaptive mode and of dynamic relaxation alone, as in Table 1 of [ADAPT].
 
     ./peristat bench --table1 [--problems 1,2] [--threads N] [--output FILE.md]
 
@@ -9,8 +9,8 @@ Each of the four problems is run three times, one run after the other:
                  state need be in equilibrium (problem 1: load at once, until ||du||/||u|| < 1e-9)
     equilibrium  relaxation alone in the case's steps, each of them relaxed to equilibrium
 
-The table is printed and written to FILE.md (results/table1.md). Ratios are of CPU seconds, which other
-programs on the machine change little; [ADAPT] used one core. Ends with 1 if a run failed, with 2 if
+The table is printed and written to FILE.md (results/table1.md). Ratios are of CPU seconds, which depend
+little on other programs on the machine; [ADAPT] used one core. Exits with 1 if a run failed, with 2 if
 FILE.md is not an earlier table.
 """
 
@@ -31,8 +31,8 @@ sys.path.insert(0, str(ROOT / "cases/runner/sweep"))
 from own_files import ForeignFile, require_own, write_own  # noqa: E402
 
 PROGRAM = ROOT / "build/release/peristat"
-TOLD_STATES = 100  # of the published mode; divides every number of iterations
-SIGN = b"Seconds (of CPU)"  # of the file with the table
+TOLD_STATES = 100  # recorded states of the published mode; divides every number of iterations
+SIGN = b"Seconds (of CPU)"  # signature of the file with the table
 MODES = ("adaptive", "published", "equilibrium")
 
 
@@ -40,8 +40,8 @@ MODES = ("adaptive", "published", "equilibrium")
 class Problem:
     title: str
     case: str
-    reaction: str  # set whose reaction along y is told
-    iterations: int | None  # of the published mode; None: until displacements stand still
+    reaction: str  # set whose reaction along y is reported
+    iterations: int | None  # of the published mode; None: until displacements no longer change
     published: tuple[float, float]  # seconds of relaxation and of the adaptive method
 
 
@@ -70,11 +70,11 @@ def settings_of(mode, problem):
 @dataclasses.dataclass
 class Measured:
     code: int
-    message: str  # what the program said on its error stream
+    message: str  # text of the error stream
     cpu_seconds: float
     summary: dict | None
-    peak: float  # largest reaction along y of the told states [N]
-    residual: float  # of the last state, relative
+    peak: float  # largest reaction along y of the recorded states [N]
+    residual: float  # relative, of the last state
 
 
 def measure(problem, mode, threads):
@@ -97,7 +97,7 @@ def measure(problem, mode, threads):
 
 
 def cpu_seconds():
-    """Of all runs that have ended."""
+    """CPU seconds of all runs that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -108,7 +108,7 @@ def column(file, name):
 
 
 def cells(run):
-    """What is told of one run."""
+    """The cells of one run."""
     if not run.summary:
         return f"**failed** (exit code {run.code})"
     summary = run.summary

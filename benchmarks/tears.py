@@ -1,9 +1,9 @@
-"""What straight tears take, beside the fracture energy of the material and what is foretold by direction.
+"""Energy of straight tears compared with the material's fracture energy and with predictions by direction.
 
   ./peristat build && /usr/bin/python3 -m benchmarks.tears [bonds] [cpd]
 
-Two halves of a strip are pulled apart along a plane through the lattice at 0, 26.6 and 45 degrees. Foretold is by sums of
-the reference (tests/reference) and, along an axis, by `calibrate`.
+Two halves of a strip are pulled apart along a plane through the lattice at 0, 26.6 and 45 degrees. Predictions come
+from sums of the reference (tests/reference) and, along an axis, from `calibrate`.
 """
 
 import json
@@ -29,7 +29,7 @@ HEAD = "| ratio | laws | 0° | 26.6° | 45° | mean | spread | laws differ by | 
 
 
 def told(strip, folder):
-    """By `calibrate`, of the law of damage."""
+    """Prediction of `calibrate` for the damage law."""
     case = folder / "asked.toml"
     width = (strip.ratio + 2) * SPACING
     case.write_text(toml(TornStrip(strip.material, strip.ratio, 0.0, 1.0, strip.dimension, strip.quadrature).tables(width, width)))
@@ -40,7 +40,7 @@ def told(strip, folder):
 
 
 def bonds(dimension, ratio, folder):
-    """A row: all laws of bonds."""
+    """A row: all damage laws of bonds."""
     took, errors = {}, []
     for law, damage in LAWS.items():
         material = {"youngs_modulus": 70e9, "damage": damage | {"fracture_energy": G}}
@@ -56,7 +56,7 @@ def bonds(dimension, ratio, folder):
 
 
 def cpd(ratio, law, steps, folder):
-    """A row: a law of cpd, torn in small steps."""
+    """A row: a damage law of cpd, torn in small steps."""
     constants = {"c1": 5e19, "c2": 3e27 * (2.015 / ratio) ** 4}
     material = {"model": "cpd", **constants, "damage": LAWS[law] | {"fracture_energy": G}}
     tear = Tear(2, ratio, SPACING, THICKNESS, {1: constants["c1"], 2: constants["c2"]})
@@ -73,7 +73,7 @@ def cpd(ratio, law, steps, folder):
 
 
 def last_opening(ratio, normal, critical):
-    """At which the last bond across a tear breaks [m]."""
+    """Opening at which the last bond across a tear breaks [m]."""
     arm = lattice_ball(2, ratio)
     rise, length = abs(arm @ normal), numpy.hypot(*arm.T)
     across = rise > 1e-9
@@ -85,7 +85,7 @@ def tell(ratio, laws, took, errors):
     by_angle = {angle: [took[key] / G for key in took if key[1] == angle] for angle, _ in ANGLES}
     differ = f"{max(max(values) - min(values) for values in by_angle.values()):.0e}" if len(took) > len(ANGLES) else ""
     first, between, last = (sum(values) / len(values) for values in by_angle.values())
-    mean = (first + 2 * between + last) / 4  # the middle one stands for both halves of the range
+    mean = (first + 2 * between + last) / 4  # the middle value belongs to both halves of the range
     spread = max(first, between, last) - min(first, between, last)
     print(f"| {ratio} | {laws} | {first:.4f} | {between:.4f} | {last:.4f} | {mean:.4f} | {spread:.4f} | {differ} | {max(errors):.0e} |",
           flush=True)  # fmt: skip

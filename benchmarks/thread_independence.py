@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """Fracture on one, two and three threads: the same bonds break in the same steps, after the same
-counts of relaxation's iterations.
+numbers of relaxation iterations.
 
-Newton's iterations, which finish relaxed steps, are told but not compared: their linear systems are
-solved iteratively, and where the residual comes close to the tolerance round-off decides about one
-more.
+The Newton iterations that finish relaxed steps are printed but not compared: their linear systems are
+solved iteratively, and if the residual comes close to the tolerance, round-off decides on one more
+iteration.
 
     /usr/bin/python3 benchmarks/thread_independence.py [--threads 1,2,3] [CASE[:key=value...]...]
 
-Prints a row per case and number of threads; ends with 1 if they differ. Without cases the four
-problems of fracture as they are shipped.
+Prints a row per case and number of threads; exits with 1 if they differ. Without cases, the four
+problems of fracture are run as shipped.
 """
 
 import argparse
@@ -34,7 +34,7 @@ def rows(file):
 
 
 def run(case, settings, threads, folder):
-    """@return counts of each step, the bonds that break in each, and what is printed of them"""
+    """@return counts of each step, the bonds that break in each, and the text to print"""
     command = [PROGRAM, "run", str(ROOT / "cases" / f"{case}.toml"), "--quiet", "--output", folder]
     for setting in settings:
         command += ["--set", setting]
@@ -52,7 +52,7 @@ def run(case, settings, threads, folder):
 
 
 def compare(case, settings, threads):
-    """@return whether runs on all numbers of threads are the same"""
+    """@return whether the runs on all numbers of threads agree"""
     found = []
     for count in threads:
         with tempfile.TemporaryDirectory(prefix="peristat_threads_") as folder:

@@ -1,9 +1,10 @@
-"""Seconds of an explicit time step, per bond seen from each of its points: crack_branching as shipped.
+"""Seconds of an explicit time step per directed bond: crack_branching as shipped.
 
     PERISTAT_PROGRAM=build/release/peristat /usr/bin/python3 -BEs benchmarks/time_steps.py [--threads 1 2] [--runs 5]
 
 Prints for each number of threads the least time in the passes over the bonds over steps and directed bonds, and the
-least time of the whole run, by the clock and of the processor, which bears a busy machine better. Passes that are no steps (fields, the stable step) are counted among the steps' time.
+least time of the whole run, both as wall time and as CPU time, which depends less on other load of the machine. The
+time of the steps includes passes outside the steps (fields, the stable step).
 """
 
 import argparse

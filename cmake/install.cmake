@@ -1,10 +1,10 @@
-# The library libperistat.so of all floors below the cases, and what is installed: the library with
-# its headers and its CMake package, the modules, the program, the launcher with its pictures and
-# sweeps, cases and pages.
+# The library libperistat.so of all floors below the cases, and the installation: the library with its
+# headers and its CMake package, the modules, the program, the launcher with its Python scripts, cases
+# and documentation.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# What uses it is linked with nothing else: other libraries are private to it.
+# Users of the library link nothing else: other libraries are private to it.
 add_library(peristat_library SHARED
   $<TARGET_OBJECTS:peristat_mechanics>
   $<TARGET_OBJECTS:peristat_assembly>
@@ -20,13 +20,13 @@ target_link_libraries(peristat_library
   PRIVATE peristat_cholmod peristat_muparser peristat_voropp peristat_fftw fmt::fmt ${CMAKE_DL_LIBS}
   PUBLIC OpenMP::OpenMP_CXX)
 
-# Calls stay in the library where a program has a weak function of the same name, which it may have
-# compiled for another level of processors.
+# The library calls its own functions even if a program has a weak function of the same name, possibly
+# compiled for another processor level.
 target_link_options(peristat_library PRIVATE LINKER:-Bsymbolic-functions)
 
-# Where each finds the library and the modules; and OpenBLAS in the folder of its flavour.
+# Paths to the library, the modules, and the OpenMP variant of OpenBLAS.
 set(module_folder ${CMAKE_INSTALL_LIBDIR}/peristat)
-set(program_folder libexec/peristat)  # which the launcher knows
+set(program_folder libexec/peristat)  # known to the launcher
 file(RELATIVE_PATH libraries_from_program /${program_folder} /${CMAKE_INSTALL_LIBDIR})
 set_target_properties(peristat_library PROPERTIES
   INSTALL_RPATH "$ORIGIN/peristat" INSTALL_RPATH_USE_LINK_PATH ON)
@@ -35,7 +35,7 @@ set_target_properties(peristat PROPERTIES
   INSTALL_RPATH_USE_LINK_PATH ON)
 
 if(PERISTAT_LEVEL)
-  # The library alone, where glibc's loader looks first on such processors.
+  # Only the library, in the folder that glibc's loader searches first on such processors.
   set_property(TARGET peristat_library PROPERTY INSTALL_RPATH "$ORIGIN/../../peristat")
   install(TARGETS peristat_library
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${PERISTAT_LEVEL} NAMELINK_SKIP)

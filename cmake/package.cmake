@@ -1,6 +1,6 @@
-# A Debian package by CPack, in build/: ./peristat package. It is made of two trees, the presets
-# package and package-v3: the first for every processor, the second with libperistat.so once more for
-# those with AVX2. glibc's loader chooses between them (glibc-hwcaps, from 2.33 on).
+# A Debian package by CPack, in build/: ./peristat package. It is made from two trees, the presets
+# package and package-v3: the first for every processor, the second with another libperistat.so for
+# processors with AVX2. glibc's loader chooses between them (glibc-hwcaps, from 2.33 on).
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_SOURCE_DIR}/build)
 set(CPACK_PACKAGE_CONTACT "The peristat developers <peristat@localhost>")
@@ -18,13 +18,13 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
-# Beside what the libraries ask for: OpenBLAS in its OpenMP flavour, where they take any; mpirun for
-# --ranks; and munkres, with which matplotlib's fonttools are content: otherwise they bring SciPy, its
-# pythran and with that a compiler.
+# In addition to the libraries' dependencies: OpenBLAS with OpenMP, because they accept any variant;
+# mpirun for --ranks; and munkres, which satisfies matplotlib's fonttools: otherwise apt installs SciPy,
+# its pythran and with that a compiler.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
     "libopenblas0-openmp, openmpi-bin, python3, python3-munkres, python3-numpy, python3-h5py, python3-matplotlib")
 
-# Debian's form of it: paragraphs are indented.
+# Debian's format of the licence, with indented paragraphs.
 file(READ LICENSE BSD_3_CLAUSE)
 string(STRIP "${BSD_3_CLAUSE}" BSD_3_CLAUSE)
 string(REPLACE "\n\n" "\n.\n" BSD_3_CLAUSE "${BSD_3_CLAUSE}")

@@ -1,6 +1,6 @@
 # Copies the headers of SOURCE to STAGE, from where they are installed as include/peristat. Includes
-# that start at the root of the sources ("src/geometry/points.hpp") start at that folder there
-# ("peristat/src/geometry/points.hpp"): a program that has a src/ of its own gets ours.
+# relative to the root of the sources ("src/geometry/points.hpp") get that folder as a prefix
+# ("peristat/src/geometry/points.hpp"), so that a program with its own src/ still includes ours.
 file(REMOVE_RECURSE "${STAGE}")
 file(GLOB_RECURSE headers RELATIVE "${SOURCE}"
      "${SOURCE}/src/*.hpp" "${SOURCE}/assembly/*.hpp" "${SOURCE}/solvers/*.hpp")

@@ -1,4 +1,4 @@
-"""Whether two results folders tell the same, to the last bit."""
+"""Whether two results folders are equal to the last bit."""
 
 import json
 import pathlib
@@ -8,7 +8,7 @@ import numpy
 
 TABLES = ["history.csv", "iterations.csv", "decisions.csv", "broken_bonds.csv", "convergence.csv",
           "results.xdmf"]  # fmt: skip
-# How long it took, and what an interruption makes again, are not results.
+# Durations, and files that an interruption rewrites, are no results.
 COSTS = ["seconds", "peak_memory_bytes", "factorisations", "linear_iterations"]
 
 
@@ -22,7 +22,7 @@ def _datasets(file):
 
 
 def differences(folder, other):
-    """Names of files and datasets that are not the same."""
+    """Names of files and datasets that differ."""
     folder, other = pathlib.Path(folder), pathlib.Path(other)
     different = [name for name in TABLES if (folder / name).read_bytes() != (other / name).read_bytes()]
     with h5py.File(folder / "results.h5") as one, h5py.File(other / "results.h5") as two:

@@ -1,6 +1,6 @@
-"""Runs of shipped cases that several tests look at: a build of the program runs each command once.
+"""Runs of shipped cases that several tests use: each command runs once per build of the program.
 
-They stand beside the program, in shipped_runs/, and go with the next build.
+They are stored beside the program, in shipped_runs/, and removed with the next build.
 """
 
 import fcntl
@@ -17,13 +17,13 @@ RUNS = pathlib.Path(PROGRAM).parent / "shipped_runs"
 
 class ShippedRun(typing.NamedTuple):
     folder: pathlib.Path
-    code: int | None  # none: it ran out of time
+    code: int | None  # none: out of time
     output: str
     errors: str
 
 
 def _build():
-    """What tells this build of the program from another one."""
+    """Identifies this build of the program."""
     return "".join(f"{path.name}{path.stat().st_mtime_ns}" for path in sorted(pathlib.Path(PROGRAM).parent.glob("*peristat*"))
                    if path.is_file())  # fmt: skip
 
@@ -42,7 +42,7 @@ def _remove_runs_of_other_builds(build):
 
 
 def shipped_run(case, *changes, threads=1, seconds=900):
-    """How cases/CASE.toml with overrides `key=value` ended."""
+    """The end of a run of cases/CASE.toml with overrides `key=value`."""
     build = _build()
     _remove_runs_of_other_builds(build)
     path = ROOT / "cases" / f"{case}.toml"
@@ -50,13 +50,13 @@ def shipped_run(case, *changes, threads=1, seconds=900):
     key = hashlib.sha256("\0".join([path.read_text(), *words, str(threads)]).encode()).hexdigest()[:16]
     folder = RUNS / f"{path.stem}_{key}"
     with open(RUNS / f".{folder.name}.lock", "w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # who comes second waits for the first
+        fcntl.flock(lock, fcntl.LOCK_EX)  # others wait for the first
         if not (folder / "ended.json").exists():
             shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir()
             ended = peristat("run", path, "--output", folder / "out", "--threads", threads, *words,
                              seconds=seconds, limited=False)  # fmt: skip
-            if ended.code is None:  # out of time, or killed: whoever comes next tries again
+            if ended.code is None:  # out of time, or killed: the next caller tries again
                 return ShippedRun(folder / "out", None, ended.output, ended.errors)
             (folder / "ended.json").write_text(json.dumps([ended.code, ended.output, ended.errors]))
     return ShippedRun(folder / "out", *json.loads((folder / "ended.json").read_text()))

@@ -1,4 +1,4 @@
-"""Layers that absorb waves: what they take, what they send back, and the reference's own decay."""
+"""Absorbing layers: energy that they take, reflection, and the decay of the reference's own integration."""
 
 import numpy
 
@@ -6,7 +6,7 @@ from tests.acceptance.folder import Folder
 from tests.acceptance.motions import BAR, SQUARE, columns, fields
 from tests.reference.motion import Motion
 
-# A pulse that travels to the right at sqrt(4 / 2) m/s, over a layer from x = 6 m to the end.
+# A pulse travels to the right at sqrt(4 / 2) m/s, over a layer from x = 6 m to the end.
 PULSE = BAR.replace("max = [3]", "max = [9]").replace("end_time = 4.0", "end_time = 8.0")
 PULSE = PULSE.replace('"1e-3*exp(-(x - 1.4)^2/0.09)"', '"1e-3*exp(-(x - 3)^2/0.25)"')
 PULSE = PULSE.replace('"1e-3*sin(x)"', f'"{2 * 2**0.5}*(x - 3)/0.25*1e-3*exp(-(x - 3)^2/0.25)"')
@@ -19,7 +19,7 @@ def layer(rate, where="x > 6"):
 class Absorbed(Folder):
     def test_a_layer_swallows_a_pulse_that_an_end_sends_back(self):
         open_end = columns(self.run_case(PULSE, name="open"))
-        rate = 3 * 2**0.5 / 3 * numpy.log(1e2)  # of docs/theory.md, for a reflection of 1e-2
+        rate = 3 * 2**0.5 / 3 * numpy.log(1e2)  # from docs/theory.md, for a reflection of 1e-2
         for name, scheme in (("explicit", "time_step = 0.02"), ("implicit", 'scheme = "newmark"\ntime_step = 0.02')):
             text = PULSE.replace("time_step = 0.02", scheme) + layer(f"{rate}*((x - 6)/3)^2")
             rows = columns(self.run_case(text, name=name))

@@ -1,4 +1,4 @@
-"""The program as a person meets it: exit codes, messages, and what is on disk after each ending."""
+"""The program from the user's point of view: exit codes, messages, and the files left after each ending."""
 
 import json
 import random
@@ -14,7 +14,8 @@ from tests.acceptance.strip import PULLED
 from tests.reference.program import PROGRAM, ROOT, limited_by_shell
 from tests.reference.results import table
 
-# Cases in whose deformation one of many bonds is so close to the kink of its law that steps are too short for an order.
+# Cases in whose deformation one of many bonds is so close to the kink of its law that the steps are too short to show
+# an order.
 CLOSE_TO_KINKS = {"crack_branching", "kalthoff_winkler", "toughness"}
 
 HISTORY_COLUMNS = [
@@ -114,7 +115,7 @@ class CommandLine(Folder):
         self.assertFalse((self.folder / "results").exists())
 
     def test_no_number_ends_in_a_crash_or_a_number_that_is_none(self):
-        """Every number of a small case replaced by odd ones: a named ending each time."""
+        """Every number of a small case is replaced by odd ones: each run ends with a known exit code."""
         numbers = ["0", "-1", "nan", "inf", "1e308", "1e-308", "0.5", '"x"', "[]", "true", "3"]
         places = [(line, text.split("=")[0]) for line, text in enumerate(STRIP.splitlines())
                   if "=" in text and "name" not in text and "set" not in text]  # fmt: skip
@@ -162,7 +163,7 @@ class CommandLine(Folder):
 
     def test_a_run_that_does_not_converge_keeps_what_it_reached(self):
         self.run_case(STRIP.replace("1e-5*load", "-8e-3*load"), "loading.steps=40", "loading.smallest_step=1e-3",
-                      "output.every=7", "solver.projection=never",  # or it finds the buckled state
+                      "output.every=7", "solver.projection=never",  # otherwise it finds the buckled state
                       threads=2, code=3)  # fmt: skip
         self.assertIn("negative pivots", self.ended.errors)
         summary = json.loads((self.folder / "out/summary.json").read_text())
@@ -170,7 +171,7 @@ class CommandLine(Folder):
         rows = self.history()
         self.assertGreater(len(rows), 1)
         decisions = (self.folder / "out/decisions.csv").read_text()
-        self.assertIn(",stop,", decisions)  # from an unstable state no smaller step helps
+        self.assertIn(",stop,", decisions)  # from an unstable state a smaller step does not help
         with h5py.File(self.folder / "out/results.h5") as file:
             self.assertIn(f"{int(rows[-1]['step']):06d}", file["steps"])
 
@@ -197,7 +198,7 @@ class CommandLine(Folder):
         for kill in range(15):
             process = self.long_run()
             first = ""
-            while kill % 5 and not first.startswith("step "):  # the others may die before
+            while kill % 5 and not first.startswith("step "):  # the others may be killed earlier
                 first = process.stdout.readline()
                 self.assertIsNone(process.poll())
             time.sleep(0.3 * chance.random())
@@ -215,7 +216,7 @@ class CommandLine(Folder):
             text = (self.folder / "out/history.csv").read_text()
             self.assertTrue(text.endswith("\n"))
             self.assertTrue(all(line.count(",") == len(HISTORY_COLUMNS) - 1 for line in text.splitlines()))
-        self.assertGreaterEqual(announced_in_all, 12)  # of those that were waited for
+        self.assertGreaterEqual(announced_in_all, 12)  # of the awaited ones
 
     # ---- the other commands -----------------------------------------------------------------------
 
@@ -226,7 +227,7 @@ class CommandLine(Folder):
         self.assertFalse((self.folder / "results").exists())
 
     def test_no_shipped_case_is_warned_of(self):
-        # But for the plate of a million points, whose check takes a minute and a half; glass_plate_half has its keys.
+        # Except the plate of a million points, whose check takes a minute and a half; glass_plate_half has its keys.
         cases = sorted(path for path in (ROOT / "cases").glob("*/*.toml") if path.stem != "glass_plate")
         self.assertGreaterEqual(len(cases), 40)
         for case in cases:
@@ -235,7 +236,7 @@ class CommandLine(Folder):
                 self.assertEqual([line for line in run.output.splitlines() if line.startswith("warning:")], [])
 
     def test_tangents_of_all_shipped_cases_pass_the_finite_difference_check(self):
-        # But for the plate of a million points, of which branching_2d is a cut.
+        # Except the plate of a million points, of which branching_2d is a section.
         cases = sorted(path for path in (ROOT / "cases").glob("*/*.toml") if path.stem != "glass_plate")
         self.assertGreaterEqual(len(cases), 4)
         for case in cases:
@@ -249,19 +250,19 @@ class CommandLine(Folder):
                     self.assertGreater(told["tangent_frobenius_norm"], 0.0)
                 if case.parent.name == "lps":  # linear forces without an energy
                     self.assertLess(told["tangent_error"], 1e-12)
-                    self.assertGreater(told["asymmetry"], 1e-5)  # of the largest entry: of motions, inertia
+                    self.assertGreater(told["asymmetry"], 1e-5)  # relative to the largest entry: of motions, inertia
                     self.assertIsNone(told["residual_error"])
                     self.assertIn("the asymmetry is meant", run.errors)
                     continue
                 self.assertLess(abs(told["residual_error"]), 1e-7)
                 self.assertLess(abs(told["tangent_error"]), 1e-7)
-                # differences, with short steps where a bond is close to a kink: round-off over the step
+                # short difference steps where a bond is close to a kink: round-off over the step
                 self.assertLess(abs(told["asymmetry"]), 1e-9)
                 self.assertLess(abs(told["force_sum"]), 1e-11)
                 if case.parent.name == "fcbm":  # linear: moments vanish in the reference, differences are exact
                     continue
                 self.assertLess(abs(told["moment_sum"]), 1e-11)
-                if case.parent.name == "bar" or case.name == "bimaterial.toml":  # quadratic energy: differences are exact at any step
+                if case.parent.name == "bar" or case.name == "bimaterial.toml":  # quadratic: exact at any step
                     self.assertIsNone(told["residual_order"])
                     continue
                 if case.stem in CLOSE_TO_KINKS and None in (told["residual_order"], told["tangent_order"]):

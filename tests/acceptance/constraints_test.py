@@ -13,7 +13,7 @@ from tests.reference.program import ROOT
 from tests.reference.verify import verify
 
 CASES = ROOT / "cases"
-# Two numberings of one system agree to the round-off of its solution: the condition of these small
+# Two numberings of one system agree to the round-off of its solution: the condition number of these small
 # bodies, 1e3, times that of a double.
 SAME_BODY = 1e-12
 
@@ -80,7 +80,7 @@ class Constrained(Programmes):
             return file["points/reference"][...], {key: step[key][...] for key in ("displacement", "force", "energy_density", "damage")}
 
     def bonds(self, name, rows):
-        """Places of both ends, in half spacings, of bonds that rows (first, second, image) tell."""
+        """Positions of both ends, in half spacings, of the bonds in rows (first, second, image)."""
         with h5py.File(self.folder / name / "results.h5") as file:
             places = file["points/reference"][...]
             kinds = [file[f"points/images/{part}"][...] for part in ("mirror", "shift")] if "images" in file["points"] else [[], []]
@@ -95,7 +95,7 @@ class Constrained(Programmes):
         return self.bonds(name, [map(int, row.split(",")[2:5]) for row in rows])
 
     def damaged(self, name):
-        """Largest stretch of every bond that has one."""
+        """Largest stretch of every bond with a written one."""
         stretches = {}
         with h5py.File(self.folder / name / "results.h5") as file:
             for step in file["steps"].values():
@@ -123,7 +123,7 @@ class Symmetry(Constrained):
                 share = 0.5 ** len(part)
                 for energy in ("stored_energy", "external_work", "dissipated_energy"):
                     self.assertAlmostEqual(history[-1][energy] / share, whole[-1][energy], delta=1e-11 * whole[-1]["external_work"])
-                # What the part beyond the plane pulls with balances the supports.
+                # The force from beyond the plane balances the supports.
                 if "y" in part:
                     self.assertAlmostEqual(history[-1]["reaction_y:symmetry_y"] / history[-1]["reaction_y:top"], -1, delta=1e-9)
 
@@ -133,7 +133,7 @@ class Symmetry(Constrained):
         # Bonds that reach half a cell beyond the horizon have images, too.
         for volume in ("linear", "exact", "exact_centroids"):
             self.compare(("x", "xy"), correction="energy", hole=HOLE, settings=(f"quadrature.volume_correction='{volume}'",))
-        # So have the corners of boxes.
+        # The corners of boxes also have images.
         self.compare(("x", "xy"), correction="volume", hole=HOLE, settings=("quadrature.horizon_shape='box'",))
 
     def test_parts_of_cpd_bodies_are_the_whole(self):
@@ -159,7 +159,7 @@ class Symmetry(Constrained):
         self.assertAlmostEqual(part[-1]["reaction_y:top"], 0.5 * whole[-1]["reaction_y:top"], delta=1e-6 * max(abs(row["reaction_y:top"]) for row in whole))
 
     def test_two_planes_across_one_axis_are_half_a_period(self):
-        """A strip between two planes, also one that is thinner than the horizon, beside the cell that both repeat."""
+        """A strip between two planes, also one thinner than the horizon, compared with the cell that both repeat."""
         for material, width in itertools.product((BONDS, CPD_2D), (0.006, 0.002)):
             with self.subTest(material=material, width=width):
                 strip = plate("x", material=material).replace("max = [0.012", f"max = [{width}")
@@ -253,7 +253,7 @@ class Periodic(Constrained):
         return self.rows(text, "loading.steps=6", name=f"y{crack}")
 
     def test_a_crack_on_the_side_of_a_cell_is_that_within_it(self):
-        """Where the same lattice is cut into cells changes nothing, to the round-off of softening bonds."""
+        """The choice of the cell within the same lattice changes nothing, to the round-off of softening bonds."""
         within, on_side = self.torn(0.003), self.torn(0.0)
         self.assertGreater(within[-1]["broken_bonds"], 5)
         for column in ("stored_energy", "dissipated_energy", "reaction_y:period_y", "max_damage"):
@@ -263,7 +263,7 @@ class Periodic(Constrained):
         self.assertGreater(within[-1]["crack"], 9e-3)
 
         def of_crack(name, crack):
-            """Bonds by where their middles are, over a whole period, and how they lie; in half spacings."""
+            """Bonds by their midpoints over a whole period, and their directions; in half spacings."""
             found = []
             for (x, y), (other_x, other_y) in self.broken(name):
                 lies = max((other_x - x, other_y - y), (x - other_x, y - other_y))
@@ -272,7 +272,7 @@ class Periodic(Constrained):
 
         inside, on_side = of_crack("y0.003", 0.003), of_crack("y0.0", 0.0)
         self.assertEqual(sorted(inside), sorted(set(on_side)))
-        # Those across the side are there at both of its ends.
+        # Bonds across the side appear at both of its ends.
         across = sum(min(y, 48 - y) < abs(high) for _, y, _, high in inside)
         self.assertEqual(len(on_side), len(inside) + across)
 
@@ -292,7 +292,7 @@ class Periodic(Constrained):
         self.assertLess(abs(row["reaction_y:period_y"]), 1e-11 * row["reaction_x:period_x"])
         self.assertAlmostEqual(row["gradient_x:period_x"] / strain, 1, delta=1e-14)
         low, high = -strain, 0.0
-        for _ in range(60):  # the contraction at which the lattice has no stress across
+        for _ in range(60):  # the contraction at which the lattice has no transverse stress
             middle = 0.5 * (low + high)
             low, high = (middle, high) if lattice_stress([[strain, 0], [0, middle]])[1, 1] < 0 else (low, middle)
         stress = lattice_stress([[strain, 0], [0, high]])[0, 0]
@@ -311,7 +311,7 @@ class Periodic(Constrained):
         first, second = numpy.triu_indices(len(ball), 1)
         near = numpy.linalg.norm(ball[first] - ball[second], axis=1) <= 3.015e-3 * (1 + 1e-8)
         area = numpy.cross(ball[first], ball[second])
-        keep = near & (numpy.abs(area) > 1e-9)  # in m2; those on a line span nothing
+        keep = near & (numpy.abs(area) > 1e-9)  # in m2; collinear points span nothing
         area, first, second = area[keep], first[keep], second[keep]
         ratio = numpy.cross(now[first], now[second]) / area
         pair = around**2 / (2 * len(area))
@@ -346,7 +346,7 @@ class Periodic(Constrained):
         self.assertIn("add up to", (self.folder / "kinked/decisions.csv").read_text())
 
     def test_cells_may_have_many_points(self):
-        """A gap of one spacing between a cell and the next is a small part of a large one."""
+        """A gap of one spacing between a cell and the next is a small relative error for a large cell."""
         text = CELL.format(material=BONDS, x=["1e-3*load", "0"], y=["0", "0"]).replace("0.008", "0.06")
         row = self.rows(text)[-1]
         stress = lattice_stress([[1e-3, 0], [0, 0]])
@@ -407,7 +407,7 @@ class Rigid(Constrained):
         self.assertTrue(math.isfinite(moments))
 
     def test_a_clamped_set_is_a_support(self):
-        """A rigid set without rotation is a layer of prescribed displacements."""
+        """A rigid set without rotation is equivalent to a layer with prescribed displacements."""
         rigid = self.rows(BODY + PIN.replace('"pin"', '"left"').replace('["0", "0"]', '[0, "1e-5*load"]\nrotation = [0]') + LIFTED, name="rigid")[-1]
         held = self.rows(BODY + '[[support]]\nset = "left"\ndisplacement = ["0", "1e-5*load"]\n' + LIFTED, name="held")[-1]
         for column in ("reaction_x:left", "reaction_y:left", "stored_energy", "external_work"):
@@ -418,7 +418,7 @@ class Rigid(Constrained):
             ended = self.assert_completed(self.command("check", text))
             return next(line for line in ended.output.splitlines() if line.startswith("supports"))
 
-        # 600 points, of which the pin has 32 and each end a column of 20; images have no degrees of freedom of their own.
+        # 600 points: the pin has 32 and each end a column of 20; images have no degrees of freedom of their own.
         pin, ends = 2 * 32, 2 * 20
         self.assertEqual(line(BODY + '[[support]]\nset = "left"\ndisplacement = [0, 0]\n'),
                          f"supports    {ends} prescribed and {1200 - ends} free degrees of freedom")  # fmt: skip
@@ -430,11 +430,11 @@ class Rigid(Constrained):
         self.assertEqual(line(plate("xy")), "supports    48 prescribed and 288 free degrees of freedom")
 
     def test_a_rotation_is_a_rigid_motion(self):
-        """Two rigid sets that turn by the same finite angle about one centre carry the body along."""
+        """Two rigid sets that rotate by the same finite angle about one centre rotate the body with them."""
         turned = "".join(f'[[rigid]]\nset = "{name}"\ncentre = [0.0, 0.0]\ndisplacement = [0, 0]\nrotation = ["2.5*load"]\n'
                          for name in ("left", "right"))  # fmt: skip
         rows = self.rows(BODY + turned, "loading.steps=25", "solver.relative_tolerance=1e-10")
-        stiffness = 200e9 * 1e-3  # a strain of one
+        stiffness = 200e9 * 1e-3  # for a strain of one
         self.assertLess(abs(rows[-1]["stored_energy"]), 1e-12 * stiffness * 0.02**2)
         place, fields = self.fields("out")
         turn = numpy.array([[math.cos(2.5), -math.sin(2.5)], [math.sin(2.5), math.cos(2.5)]])
@@ -455,7 +455,7 @@ class Rigid(Constrained):
                 self.assertAlmostEqual(row["reaction_y:pin"] / expected["reaction_y:pin"], 1, delta=1e-8)
 
     def test_the_surrogate_bears_linear_constraints(self):
-        """Whose followers have no rows, so that the springs of their neighbours alone do not hold."""
+        """Dependent degrees of freedom have no rows, so the springs of their neighbours alone do not hold them."""
         text = """\
 dimension = 2
 [lattice]
@@ -503,7 +503,7 @@ weights = [1, 0]
                 self.assertLess(found["asymmetry"], 1e-8)
 
     def test_an_inclined_roller_carries_no_force_along_its_slope(self):
-        """The whole case turned by an angle: what holds along an axis then holds along the slope."""
+        """The whole case rotated by an angle: a constraint along an axis then acts along the slope."""
         held = BODY + '[[support]]\nset = "left"\ndisplacement = ["0", "0"]\n' + '[[roller]]\nset = "right"\nnormal = [{}, {}]\ndisplacement = "1e-5*load"\n'
         row = self.rows(held.format(1, 0), name="along")[-1]
         support = self.rows(BODY + '[[support]]\nset = "left"\ndisplacement = ["0", "0"]\n[[support]]\nset = "right"\ndisplacement = ["1e-5*load", "free"]\n', name="support")[-1]
@@ -606,7 +606,7 @@ HELD_ROUND = mean_is_zero("held_round", ("right", [0, 1]), ("all", [0, -1]))
 
 
 class Pressed(Constrained):
-    """Pressures that follow what follows others."""
+    """Follower pressures on dependent degrees of freedom."""
 
     def assert_part_of(self, whole, part):
         of_place = {tuple(numpy.rint(place * 40).astype(int)): i for i, place in enumerate(whole[0])}
@@ -626,13 +626,13 @@ class Pressed(Constrained):
                     self.assert_part_of(self.fields("whole"), self.fields(name))
                     for energy in ("stored_energy", "external_work"):
                         self.assertAlmostEqual(rows[name][energy] / share / rows["whole"][energy], 1, delta=1e-10)
-            # Half of the ring is torn off by the pressure on the projection of its bore, which has widened.
+            # The pressure on the projection of the bore, which has widened, pulls half of the ring off.
             _, fields = self.fields("quarter")
             self.assertGreater(-rows["quarter"]["reaction_x:symmetry_x"], 0.5 * 0.1 * pressure)
             self.assertLess(-rows["quarter"]["reaction_x:symmetry_x"], (0.5 + numpy.abs(fields["displacement"]).max() + 0.05) * 0.1 * pressure)
 
     def test_what_check_tells_of_a_part_is_that_of_the_whole(self):
-        """A closed bore: nothing is left out of the stiffness."""
+        """A closed bore: the stiffness is complete."""
         for cut, held in (("", HELD_X + HELD_Y + HELD_ROUND), (LEFT + BELOW, plane("x") + plane("y"))):
             ended = self.assert_completed(self.command("check", RING.format(cut=cut, held=held, pressure=1e5)))
             self.assertIn("closed or held", ended.said)
@@ -650,7 +650,7 @@ class Pressed(Constrained):
             self.assertLess(max(told["residual_error"], told["tangent_error"], told["asymmetry"]), 1e-6, told)
 
     def test_a_rigid_body_hands_on_the_pressure_as_it_turns(self):
-        """A rigid block under pressure on one side: p A along the normal, which turns with the block."""
+        """A rigid block under pressure on one side: p A along the normal, which rotates with the block."""
         force = 1e10 * 0.01 * 1e-3
         with_it, without = (self.rows(BLOCK_UNDER_PRESSURE.replace("1e10*load", pressure), name=pressure[:4])[-1]
                             for pressure in ("1e10*load", "0*load"))  # fmt: skip
@@ -737,7 +737,7 @@ relative_tolerance = 1e-12
 
 
 class Judged(Constrained):
-    """By the reference, which knows no generalised coordinates (tests/reference/ties.py)."""
+    """Checked by the reference, which uses no generalised degrees of freedom (tests/reference/ties.py)."""
 
     def test_runs_are_what_the_reference_says(self):
         heavy = '[[load]]\nset = "{}"\nbody_force = ["{}*load", "1e9*load"]\n'
@@ -757,7 +757,7 @@ class Judged(Constrained):
 
 
 class Specimens(Constrained):
-    """The shipped cases beside ASTM E399, the compliances of benchmarks/specimens.py."""
+    """The shipped cases compared with ASTM E399, with the compliances of benchmarks/specimens.py."""
 
     def test_a_beam_on_rollers(self):
         row = self.rows(CASES / "three_point_bending/rollers.toml")[-1]
@@ -776,7 +776,7 @@ class Specimens(Constrained):
             half = half[:start] + half[half.index("\n\n", start) + 2 :]
         half = half[: half.index("[[probe]]")] + '[[probe]]\nname = "mouth"\nset = "mouth_above"\n[[symmetry]]\naxis = "y"\n'
         part = self.rows(half, name="half")[-1]
-        # Both solve to a residual of 1e-10 of the pin's force, by systems of another size.
+        # Both are solved to a residual of 1e-10 of the pin's force, in systems of different size.
         self.assertAlmostEqual(part["reaction_y:upper"] / whole["reaction_y:upper"], 1, delta=1e-8)
         self.assertAlmostEqual(part["rotation_z:upper"] / whole["rotation_z:upper"], 1, delta=1e-8)
         self.assertAlmostEqual(2 * part["mouth_y"] / whole["mouth_y"], 1, delta=1e-8)

@@ -129,7 +129,7 @@ class Statics(Images):
             found.append(self.results(CELL, f'solver.operator="{name}"', failing, "loading.steps=1",
                                       'period=[{axis="x", from=-0.01, to=0.01, gradient=["1e-4*load", 0]}, {axis="y", from=-0.008, to=0.008}]'))  # fmt: skip
         bonds, run = found
-        # Every pass of a tear is searched to a tolerance of its own.
+        # Every pass of a tear is solved to a tolerance of its own.
         for name in ("displacement", "damage", "energy_density"):
             self.assertLess(abs(bonds.fields[name] - run.fields[name]).max(), 1e-7 * abs(bonds.fields[name]).max(), name)
         for name in ("external_work", "dissipated", "stored"):
@@ -160,7 +160,7 @@ class Statics(Images):
             self.assertLess(abs(part.fields[name] - whole.fields[name][same]).max(), 1e-9 * scale, name)
 
     def test_a_cell_of_two_is_two(self):
-        """At large strains, which shear the cell, too."""
+        """At large strains, which also shear the cell."""
         one = PLATE.replace("min = [-0.012", "min = [0.0").replace("[0.0, 0.0], radius = 3.2e-3", "[0.006, 0.0], radius = 2.2e-3")
         two = PLATE.replace("max = [0.012", "max = [0.024").replace("min = [-0.012", "min = [0.0").replace(
             'centre = [0.0, 0.0], radius = 3.2e-3 }', 'centre = [0.006, 0.0], radius = 2.2e-3 }, { subtract = "disk", centre = [0.018, 0.0], radius = 2.2e-3 }')  # fmt: skip
@@ -201,7 +201,7 @@ gradient = ["0.04*load", "0.02*load"]
 
 class Motions(Images):
     def test_cells_move_as_those_of_bonds(self):
-        """Gradients that rise with the time, over both periods."""
+        """Gradients that grow with time, over both periods."""
         moving = CELL.replace('"free"', '"-3e-5*t/2e-6"').replace("*load", "*t/2e-6").replace("[loading]\nsteps = 2\n", "")
         moving = moving.replace("relative_tolerance = 1e-12\nlinear_tolerance = 1e-6\n", 'mode = "dynamics"\n')
         moving += "[dynamics]\nend_time = 4e-6\ntime_step = 5e-8\n"

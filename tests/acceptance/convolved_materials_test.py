@@ -1,4 +1,4 @@
-"""Materials that convolutions alone sum: Green bonds, correspondence, and the linear solid as it was printed."""
+"""Materials for convolutions only: Green bonds, correspondence, and the linear solid as printed."""
 
 import math
 import unittest
@@ -74,7 +74,7 @@ density = 2440
 
 
 class Pairs:
-    """Both ways of each pair of neighbours, dense; unit integrity unless told."""
+    """Both directions of each pair of neighbours, dense; unit integrity by default."""
 
     def __init__(self, run, horizon, dimension):
         self.d, self.x, self.V, self.horizon = dimension, run.reference[:, :dimension], run.volume[0], horizon
@@ -96,7 +96,7 @@ class Pairs:
         return u[self.j] - u[self.i]
 
     def solve(self, u, held, tolerance=1e-12):
-        """Newton's method, with central differences of forces that are at most cubic in few steps."""
+        """Newton's method, with central differences of forces that are at most cubic; few steps."""
         free = numpy.flatnonzero(~numpy.repeat(held, self.d))
         scale = abs(self.forces(u)).max()
         step = 1e-6 * self.horizon
@@ -154,7 +154,7 @@ class CorrespondencePairs(Pairs):
 
     def forces(self, u):
         F, _, S, y, z = self.states(u)
-        R = F @ S @ self.shape * self.V**-1  # shape is without V
+        R = F @ S @ self.shape * self.V**-1  # shape does not include V
         here = numpy.einsum("pij,pj->pi", R[self.i] + R[self.j], self.xi) * self.V
         there = y - numpy.einsum("pij,pj->pi", F[self.j], self.xi)  # minus z of the other
         return self.sums(here * self.V + self.V**2 * self.beta * (z + there)) * 1.0
@@ -165,7 +165,7 @@ class CorrespondencePairs(Pairs):
 
 
 class PrintedPairs(Pairs):
-    """[FCBM] (A-8), with the kernel 1/r and 1/m of the point itself for both ends."""
+    """[FCBM] (A-8), with the kernel 1/r and the point's own 1/m at both ends."""
 
     def __init__(self, run, ratio, spacing, modulus, poisson):
         super().__init__(run, ratio * spacing, 2)
@@ -227,7 +227,7 @@ class Statics(CommandLine):
     def test_small_strains_are_linear_kinematics(self):
         linear = self.results(STRIP, "solver.operator=fft")
         green = self.results(STRIP, *GREEN)
-        # Of 1e-4 of strain, to that.
+        # Relative to 1e-4 of strain.
         numpy.testing.assert_allclose(green.displacement, linear.displacement, atol=2e-4 * 2e-6)
         self.assertGreater(abs(green.displacement - linear.displacement).max(), 1e-7 * 2e-6)
         self.assertAlmostEqual(green.summary["energy"]["stored"] / linear.summary["energy"]["stored"], 1.0, delta=1e-3)
@@ -239,15 +239,16 @@ class Statics(CommandLine):
             c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
             expected = x @ numpy.array([[c, s], [-s, c]]) - x
             numpy.testing.assert_allclose(run.displacement[:, :2], expected, atol=1e-9 * abs(expected).max(), err_msg=name)
-            # Round-off of energies that go with squared displacements, of some horizons here; 0.1 without the turn.
+            # Round-off of energies proportional to squared displacements, which are some horizons here; 0.1 without the
+            # rotation.
             self.assertLess(abs(run.summary["energy"]["stored"]), 1e-14 * 70e9 * run.volume.sum())
 
     def test_the_modulus_of_a_correspondence_material(self):
-        # A plate that is pulled on all of its boundary as St. Venant and Kirchhoff would have it.
+        # A plate with displacements on all of its boundary from St. Venant-Kirchhoff elasticity.
         long, nu, E = 1.02, 0.2, 70e9
         green = (long**2 - 1) / 2
         across = math.sqrt(1 - 2 * nu * green)
-        # Forces reach two horizons: so wide a rim is held that none that is free sees the surface.
+        # Forces reach two horizons: the held rim is so wide that no free point sees the surface.
         case = TURNED[: TURNED.index("shape")] + 'shape = [{ add = "box", min = [0, 0], max = [0.02, 0.02] }]\n' + TURNED[TURNED.index("[[set]]") :]
         run = self.results(case, *CORRESPONDENCE, 'set=[{name="held", where="max(abs(x-0.01), abs(y-0.01)) > 3.7e-3"}]',
                            f'support=[{{set="held", displacement=["{long - 1}*x*load", "{across - 1}*y*load"]}}]')  # fmt: skip
@@ -266,7 +267,7 @@ class Statics(CommandLine):
             self.assert_completed(self.command("check-tangent", STRIP, *model))
 
     def test_struts_buckle(self):
-        """Beyond the limit the tangent is indefinite, and the straight strut no minimum."""
+        """Beyond the limit the tangent is indefinite, and the straight strut is no minimum."""
         case = TURNED[: TURNED.index("[[support]]")].replace("max = [0.02, 0.012] },", "max = [0.06, 0.004] }]").replace(
             '         { subtract = "disk", centre = [0.01, 0.0], radius = 2.7e-3 }]\n', "").replace(
             "abs(x - 0.01) > 7e-3", "abs(x - 0.03) > 0.027")  # fmt: skip
@@ -327,11 +328,11 @@ class Motions(CommandLine):
         return run, pairs, load, 2440 * pairs.V
 
     def test_the_printed_solid_is_the_direct_sums(self):
-        """20 steps of Verlet's method, of which the notch makes neighbourhoods that differ."""
+        """20 Verlet steps; the notch makes neighbourhoods that differ."""
         notch = 'lattice.shape=[{add="box", min=[0, 0], max=[0.014, 0.010]}, {subtract="box", min=[0.006, 0.004], max=[0.007, 0.011]}]'
         failing = 'material.damage={law="energy_density", fracture_energy=60}'
         run, pairs, load, mass = self.printed(notch, failing)
-        energy = run.summary["energy"]  # work that is not stored is told, not hidden
+        energy = run.summary["energy"]  # the imbalance of work and energy is reported
         self.assertGreater(abs(energy["balance_error"]), 1e-3 * energy["external_work"])
         u = v = numpy.zeros_like(load)
         force = pairs.forces(u) + load
@@ -346,7 +347,7 @@ class Motions(CommandLine):
         numpy.testing.assert_array_equal(run.damage == 1.0, pairs.q == 0.0)
         found = self.fields("displacement")[-1][:, :2]
         numpy.testing.assert_allclose(found, u, atol=1e-11 * abs(u).max())
-        # Not those of the energy, to more than round-off.
+        # They differ from those of the energy by more than round-off.
         self.results(MOVING, notch, failing, "quadrature.form=energy")
         self.assertGreater(abs(self.fields("displacement")[-1][:, :2] - u).max(), 1e-6 * abs(u).max())
 
@@ -356,7 +357,7 @@ class Motions(CommandLine):
             moving = MOVING[: MOVING.index("[quadrature]")] + "[material]\n"
             given = [dense, "load[0].body_force=[3e11, 1e11]", "dynamics.end_time=4e-6", "dynamics.time_step=2e-8"]
             explicit = self.results(moving, *given)
-            self.assertGreater(abs(explicit.displacement).max(), 1e-5, name)  # of 1 % of strain
+            self.assertGreater(abs(explicit.displacement).max(), 1e-5, name)  # 1 % of strain
             energy = explicit.summary["energy"]
             self.assertLess(abs(energy["balance_error"]), 1e-3 * energy["external_work"], name)
             implicit = self.results(moving, *given, "dynamics.scheme=newmark")

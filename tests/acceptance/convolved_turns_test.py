@@ -1,4 +1,4 @@
-"""Materials that convolutions alone sum, where strains or turns are large."""
+"""Materials for convolutions only, at large strains or rotations."""
 
 import math
 import unittest
@@ -35,7 +35,7 @@ damage = { law = "energy_density", fracture_energy = 3.8 }
 
 class LargeTurns(CommandLine):
     def test_a_brittle_plate_that_turns_by_90_degrees(self):
-        """Two thirds of what points bear, all along: sums that keep the turn lose all digits of it."""
+        """Two thirds of the strength everywhere: sums that keep the rotation lose all of its digits."""
         turned = self.results(PLATE)
         straight = self.results(PLATE, 'support=[{set="all", displacement=["1e-4*x*load", "0"]}]')
         self.assertEqual(turned.damage.max(), 0.0)

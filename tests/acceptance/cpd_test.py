@@ -1,4 +1,4 @@
-"""Continuum-kinematics-inspired peridynamics through the command line, as an analyst types it."""
+"""Continuum-kinematics-inspired peridynamics through the command line."""
 
 import unittest
 
@@ -48,7 +48,7 @@ class Cpd(Folder):
 
     def test_tangents_of_every_case_are_exact(self):
         checked = 0
-        # Coarse: a formula that is right is so at any number of points.
+        # Coarse: a correct formula is correct for any number of points.
         small = {"cube.toml": ["lattice.spacing=0.2", "material.c2=125", "material.c3=4e4"],
                  "cube_hole.toml": ["lattice.spacing=0.125", "material.c2=125", "material.c3=4e4"],
                  "table3.toml": ["lattice.spacing=0.2", "material.c2=51", "material.c3=1"]}  # fmt: skip
@@ -146,8 +146,8 @@ class Cpd(Folder):
         return self.results(case, *changes).summary["reactions"]["pulled"][0]
 
     def test_a_shift_of_points_that_cannot_be_seen_changes_nothing(self):
-        # Not the horizon, which cuts the longest bonds of the lattice beyond: at 0.01 the points of some
-        # move by more than the 0.015 spacings that they are away from it, hence the 2 % there.
+        # Not with the horizon, which cuts the longest bonds of the lattice beyond: at 0.01 some points
+        # move by more than the 0.015 spacings between them and it, hence the 2 % there.
         for case, end, ratios in (("square", '"0"', (0.1, 0.45)), ("cube", '"0","0"', (0.2, 0.4))):
             for ratio in ratios:
                 spacing = 0.05 if case == "square" else 0.2

@@ -16,7 +16,7 @@ from tests.reference.verify import Verification
 CASES = ROOT / "cases"
 E = 200e9
 
-# A square whose rim moves as Williams' fields do.
+# A square whose rim moves with Williams' fields.
 SQUARE = """\
 dimension = {dimension}
 [lattice]
@@ -47,7 +47,7 @@ relative_tolerance = 1e-12
 
 
 def williams(mode, shear, kolosov):
-    """Components as expressions of place for the stress intensity 1e6 Pa m^1/2; the crack lies on negative x."""
+    """Components as expressions of position for the stress intensity 1e6 Pa m^1/2; the crack lies on negative x."""
     size, half = f"1e6*load*sqrt(sqrt(x^2+y^2)/(2*pi))/(2*{shear})", "(atan2(y,x)/2)"
     if mode == 0:
         return (f"{size}*cos{half}*({kolosov}-1+2*sin{half}^2)", f"{size}*sin{half}*({kolosov}+1-2*cos{half}^2)", "0")
@@ -81,7 +81,8 @@ class CrackTips(Programmes):
             self.assertAlmostEqual(row[f"tip_{name}"], value, delta=1e-6 * size.get(name, largest), msg=name)
 
     def test_williams_fields_have_their_factors(self):
-        """Up to the moduli of the lattice, 2 % in tension and 4 % in shear off the continuum's, and a tip that is nonlocal."""
+        """Limited by the lattice's moduli, which differ from the continuum's by 2 % in tension and 4 % in shear, and by
+        a nonlocal tip."""
         thin = Elasticity(E, 1 / 3, True)
         for mode, (name, other, error) in enumerate((("K1", "K2", 0.02), ("K2", "K1", 0.04))):
             with self.subTest(name):
@@ -99,7 +100,7 @@ class CrackTips(Programmes):
         self.assert_same(row, self.by_reference("out", thin, ring))
 
     def test_t_stress_of_a_uniform_field(self):
-        """A stress along the crack loads no tip: T is that stress, and there is no K."""
+        """A stress along the crack does not load the tip: T is that stress, and K is zero."""
         strain = 1e-4
         row = self.rows(square([f"{strain}*load*x", f"-{strain}/3*load*y"]))[-1]
         self.assertAlmostEqual(row["tip_T"] / (E * strain), 1, delta=0.02)
@@ -107,12 +108,13 @@ class CrackTips(Programmes):
             self.assertLess(abs(row[f"tip_{name}"]), 0.01 * E * strain * math.sqrt(math.pi * 0.01))
 
     def test_factors_do_not_depend_on_the_unit_of_length(self):
-        """The same square with 1 m for 1 mm and for 1 km: with the same modulus J grows with the length, K with its root."""
+        """The same square scaled from 1 m to 1 mm and 1 km: at the same modulus J grows with the length, K with its
+        root."""
         thin = Elasticity(E, 1 / 3, True)
         found = []
         for unit in (1.0, 1e3, 1e-3):
             fields = [williams(mode, thin.shear, thin.kolosov) for mode in (0, 1)]
-            # Displacements grow with the lengths.
+            # Displacements scale with the lengths.
             field = [f"{unit}*({one}+0.5*({other})+1e-5*load*x*{axis == 0:d})" for axis, (one, other) in enumerate(zip(*fields))]
             field = [re.sub(r"\b([xy])\b", rf"(\1/{unit})", component) for component in field]
             text = square(field).replace("max(abs(x), abs(y)) > 0.017", f"max(abs(x), abs(y)) > {0.017 * unit}")
@@ -146,7 +148,7 @@ class CrackTips(Programmes):
                 self.assertAlmostEqual(row[f"tip_{name}"] / 1e6, 1, delta=0.06)
 
     def test_the_linear_solid_as_an_energy(self):
-        """Its elasticity is that of its E and nu, whatever the state of the plane."""
+        """Its elasticity is that of E and nu in either plane state."""
         for nu, plane_state in ((0.1, "stress"), (0.4, "stress"), (0.1, "strain"), (0.4, "strain")):
             with self.subTest(nu=nu, plane=plane_state):
                 own = Elasticity(E, nu, plane_state == "stress")
@@ -171,7 +173,7 @@ class CrackTips(Programmes):
     def test_a_cut_releases_what_j_says(self):
         """The rates are those of a crack that ends in the middle of the cut, at the same displacement or load."""
         text = (CASES / "three_point_bending/rollers.toml").read_text()
-        half = 1.6e-3  # a horizon is 1.5e-3
+        half = 1.6e-3  # the horizon is 1.5e-3
         for at, cut, name in ((0.01 - half, 2 * half, "cut"), (0.01, 0, "middle")):
             shorter = text.replace("to = [0.0, 0.01]", f"to = [0.0, {at}]")
             tip = f'[[crack_tip]]\nname = "tip"\nat = [0, {at}]\ndirection = [0, 1]\n' + (f"cut = {cut}\n" if cut else "")
@@ -183,7 +185,7 @@ class CrackTips(Programmes):
         self.assertAlmostEqual(rates[1] / (row["tip_J"] * (load / row["reaction_y:load"]) ** 2), 1, delta=0.03)
 
     def test_a_cut_under_a_load_that_stays(self):
-        """Of loads alone: both rates from the energies at the same load."""
+        """With loads only: both rates from the energies at the same load."""
         text = square(["0", "0"]).replace('where = "max(abs(x), abs(y)) > 0.017"', 'where = "x > 0.017"')
         text += '[[set]]\nname = "up"\nwhere = "x < -0.018 && y > 0"\n[[set]]\nname = "down"\nwhere = "x < -0.018 && y < 0"\n'
         text += "".join(f'[[load]]\nset = "{name}"\ntotal_force = [0, "{sign}*load"]\n' for name, sign in (("up", 1), ("down", -1)))
@@ -196,7 +198,7 @@ class CrackTips(Programmes):
         self.assertAlmostEqual(cut["tip_G_load"] / (released / (2 * half * 1e-3)), 1, delta=1e-6)
 
     def test_a_beam_on_rollers_has_the_factor_of_the_handbook(self):
-        """ASTM E399; the horizon is 0.15 of the crack."""
+        """ASTM E399; the horizon is 0.15 crack lengths."""
         text = (CASES / "three_point_bending/rollers.toml").read_text()
         row = self.rows(text + '[[crack_tip]]\nname = "tip"\nat = [0, 0.01]\ndirection = [0, 1]\n')[-1]
         a, width, span, thickness = 0.5, 0.02, 0.08, 0.01

@@ -1,4 +1,4 @@
-"""Bonds driven up and down: force, energy and dissipation of every accepted step in closed form."""
+"""Bonds that are loaded and unloaded: force, energy and dissipation of every accepted step in closed form."""
 
 import collections
 import unittest
@@ -25,7 +25,7 @@ AXES = {1: ["x"], 2: ["x", "y"], 3: ["x", "y", "z"]}
 
 
 def random_path(random, reach):
-    """A displacement that rises, falls and turns over, 0 at load 0, up to about `reach`."""
+    """A displacement that rises, falls and changes sign, 0 at load 0, up to about `reach`."""
     waves = [f"{random.uniform(-1, 1):.4f}*sin({random.uniform(1, 15):.4f}*load)" for _ in range(3)]
     return f"{reach:.4f}*({' + '.join(waves)})"
 

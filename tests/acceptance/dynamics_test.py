@@ -1,4 +1,4 @@
-"""Mode dynamics: motions judged by NumPy's velocity Verlet, by conserved quantities, by symmetry and by restarts."""
+"""Mode dynamics: motions compared with velocity Verlet in NumPy, conserved quantities, symmetry and restarts."""
 
 import json
 import unittest
@@ -13,7 +13,7 @@ from tests.reference.results import Results
 
 
 class AgainstNumPy(Folder):
-    """Random bodies of every law: what the reference finds with its own bonds, step by step."""
+    """Random bodies with every law, followed by the reference with its own bonds, step by step."""
 
     def judge(self, text, dt, end):
         folder = self.run_case(text, name=f"case_{len(list(self.folder.iterdir()))}")
@@ -55,7 +55,7 @@ class AgainstNumPy(Folder):
         for seed in range(24):
             with self.subTest(seed=seed):
                 broken.append(self.judge(*random_case(seed)))
-        self.assertGreater(sum(count > 0 for count in broken), 4)  # else nothing was seen of damage
+        self.assertGreater(sum(count > 0 for count in broken), 4)  # otherwise damage was not tested
 
     def test_triangles_and_tetrahedra(self):
         for dimension, constants in ((2, "c1 = 300\nc2 = 6e4"), (3, "c1 = 300\nc2 = 2e5\nc3 = 1e8")):
@@ -91,7 +91,7 @@ class Conserved(Folder):
         self.assertLess(numpy.ptp(rows["momentum_x"]) / abs(rows["momentum_x"][0]), 1e-12)
 
     def test_a_constant_force_on_a_free_body(self):
-        """The centre falls as a point does: u = g t^2 / 2, of which velocity Verlet is exact."""
+        """The centre falls like a point: u = g t^2 / 2, for which velocity Verlet is exact."""
         text = BAR.replace('displacement = ["1e-3*exp(-(x - 1.4)^2/0.09)"]\nvelocity = ["1e-3*sin(x)"]', 'velocity = [0.25]')
         text += '[[load]]\ngravity = [-9.81]\n[[probe]]\nname = "fall"\nset = "all"\nfield = "displacement"\n'
         text += '[[set]]\nname = "all"\nwhere = "1"\n'
@@ -102,7 +102,7 @@ class Conserved(Folder):
 
 class Waves(Folder):
     def test_a_long_wave_travels_at_the_speed_of_sound(self):
-        """sqrt(E/rho) = sqrt(2) m/s: half a standing wave of the free bar swings with the period 2 L / c."""
+        """sqrt(E/rho) = sqrt(2) m/s: half a standing wave of the free bar oscillates with the period 2 L / c."""
         text = BAR.replace("max = [3]", "max = [12]").replace("4.0\ntime_step = 0.02", "17.0\ntime_step = 0.05")
         text = text.replace('["1e-3*exp(-(x - 1.4)^2/0.09)"]\nvelocity = ["1e-3*sin(x)"]', '["1e-3*cos(pi*x/12)"]')
         text = text.replace("[lattice]", '[quadrature]\nvolume_correction = "linear"\nsurface_correction = "volume"\n[lattice]')
@@ -206,7 +206,7 @@ class Supports(Folder):
         self.assertLess(error, 0.05)
         self.assertLess(rows["balance_error"][0], 1e-14)
         finer = columns(self.run_case(text.replace("share = 0.5", "share = 0.125")))
-        # Of first order, since the velocity jumps.
+        # First order, because the velocity jumps.
         self.assertLess(numpy.abs(finer["balance_error"]).max() / finer["external_work"][-1], error / 3)
 
 
@@ -215,7 +215,7 @@ class Steps(Folder):
         return columns(self.run_case(text, name="share"))["time_step"][0] / 0.5
 
     def test_the_stable_step_is_that_of_the_highest_frequency(self):
-        """Dense: the tangent at rest by complex steps, its largest eigenvalue with the masses."""
+        """Dense: the tangent at rest by complex steps, and its largest eigenvalue with the masses."""
         text = SQUARE.replace("0.05*x", "0*x").replace("0.05*y", "0*y")
         text = text.replace("min = [-0.8, -0.8]\nmax = [0.8, 0.8]", "min = [0, 0]\nmax = [0.6, 0.6]")
         stable = self.stable(text.replace("[[initial]]", "[[initial]]\nvelocity = [0.1, 0]"))
@@ -233,7 +233,7 @@ class Steps(Folder):
         self.run_case(SQUARE.replace("step_share = 0.5", f"time_step = {0.98 * stable}"), name="shorter")
 
     def test_a_step_follows_the_stiffness(self):
-        """A body that is pressed together stiffens: the step shrinks, and one that is given ends the run."""
+        """Compression stiffens a body: the stable step shrinks, and a prescribed step ends the run."""
         text = SQUARE.replace("0.05*x", "0*x").replace("0.05*y", "0*y").replace("end_time = 2.0", "end_time = 24.0")
         text += '[[set]]\nname = "edge"\nwhere = "abs(x) > 0.7"\n[[support]]\nset = "edge"\ndisplacement = ["x*(exp(t/24) - 1)", "free"]\n'
         text = text.replace("step_share = 0.5", "step_share = 0.95")
@@ -278,7 +278,7 @@ history_every = 1
             numpy.testing.assert_allclose(last["displacement"][4:, 0], 0.03 * moving, rtol=1e-12)
 
     def test_loads_that_begin_with_nothing(self):
-        """In the first loaded step nothing has moved: kinetic energy without work."""
+        """Nothing has moved in the first loaded step: kinetic energy without work."""
         bar = """\
 dimension = 1
 [lattice]
@@ -307,7 +307,7 @@ history_every = 1
         for number, (load, scheme) in enumerate((
             ("1e-3*t", ""),
             ("t < 20 ? 0 : 1e-3", ""),
-            ("1e-6 + (t < 20 ? 0 : 1e-3)", ""),  # in a motion that goes on
+            ("1e-6 + (t < 20 ? 0 : 1e-3)", ""),  # in a motion that continues
             ("t < 20 ? 0 : 1e-3", 'scheme = "newmark"\nspectral_radius = 0.0\n'),
         )):  # fmt: skip
             with self.subTest(load=load, scheme=scheme):
@@ -372,7 +372,7 @@ density = 2440
 
 
 class Start(Folder):
-    """From the equilibrium of supports and loads at t = 0."""
+    """Start from the equilibrium of supports and loads at t = 0."""
 
     HANGING = (BAR.split("[[initial]]")[0] + """\
 [[set]]
@@ -411,7 +411,7 @@ every = 20
             self.assertGreater(swings["kinetic_energy"].max(), 0.1 * rows["stored_energy"][0])
 
     def test_a_load_more_is_the_motion_about_the_preload(self):
-        """The bar is linear to 1e-6 or so of its strains: what the further load does adds up."""
+        """The bar is linear to about 1e-6 of its strains: the effect of the further load adds up."""
         small = self.HANGING.replace("1e-2", "1e-6")
 
         def run(name, start, load):
@@ -431,8 +431,8 @@ every = 20
         self.assertIn("damage_begins before the first time step", self.ended.said)
 
     def test_a_point_on_a_spring(self):
-        """A point between two that are held swings about where the further load would leave it. That sets in with
-        the first step, of which each scheme takes the half; the rest of the error is of second order."""
+        """A point between two held ones oscillates about its equilibrium under the further load. The load sets in with
+        the first step, of which each scheme takes half; the rest of the error is of second order."""
         text = BAR.split("[[initial]]")[0].replace("max = [3]", "max = [0.3]").replace("3.015", "1.5")
         text = text.replace("youngs_modulus = 4.0", "micromodulus = 500.0") + """\
             [[set]]

@@ -1,4 +1,4 @@
-"""What the machine may do to a run, and a run to the files of others: nothing of theirs is lost or
+"""Faults of the machine, and files of other users and programs: no file of theirs is lost or
 overwritten, every accepted step is kept and readable, and the exit code says what happened."""
 
 import csv
@@ -19,10 +19,10 @@ PLAIN = {"results.h5", "results.xdmf", "history.csv", "iterations.csv", "decisio
          "convergence.csv", "summary.json", "peristat.json"}  # fmt: skip
 
 STRIP = 'title = "Strip"\n' + PULLED
-LONG = ["--set", "loading.steps=20000"]  # a run that lasts until something happens to it
+LONG = ["--set", "loading.steps=20000"]  # a run that lasts until the test disturbs it
 CAN_MOUNT = execute(["unshare", "-rm", "sh", "-c", "mount -t tmpfs tmpfs /mnt"]).code == 0
 CANNOT_MOUNT = "this machine lets nobody mount a small disk: not tried what a full one does"
-# root may write everywhere: a run without that right meets a read-only folder
+# root may write everywhere, so the run drops that right to meet a read-only folder
 AS_ANYBODY = (["setpriv", "--bounding-set=-dac_override", "--inh-caps=-dac_override"]
               if os.geteuid() == 0 else [])  # fmt: skip
 
@@ -56,12 +56,12 @@ class Faults(Folder):
             return 0
 
     def assert_readable(self, folder=None, at_least=0):
-        """Every accepted step can be read; gives their number."""
+        """Every accepted step can be read; returns their number."""
         folder = folder or self.out
         with h5py.File(folder / "results.h5") as file:
             rows = list(file["history/step"][...])
             self.assertEqual(rows, list(range(len(rows))))
-            steps = rows[1:]  # after step 0, which the disk may have been full for
+            steps = rows[1:]  # without step 0, for which the disk may have been full
             self.assertGreaterEqual(len(steps), at_least)
             self.assertEqual(sorted(file["steps"]), [f"{step:06d}" for step in steps])
             for step in file["steps"].values():
@@ -73,7 +73,7 @@ class Faults(Folder):
         return len(steps)
 
     def assert_failed(self, folder=None):
-        """The summary says that the machine failed, why, and how many steps there are."""
+        """The summary reports that the machine failed, the reason, and the number of steps."""
         folder = folder or self.out
         summary = json.loads((folder / "summary.json").read_text())
         self.assertEqual(summary["status"], "failed")
@@ -84,7 +84,7 @@ class Faults(Folder):
         return {str(path.relative_to(folder)): path.read_bytes() if path.is_file() else None
                 for path in folder.rglob("*")}  # fmt: skip
 
-    # ---- what belongs to others -------------------------------------------------------------------
+    # ---- files of others --------------------------------------------------------------------------
 
     def test_a_folder_with_files_of_others_is_refused_and_left_as_it_is(self):
         for name in ["summary.json", "history.csv", "results.h5", "plots/deformed.png", "peristat.json"]:
@@ -108,7 +108,7 @@ class Faults(Folder):
         self.assertFalse((self.out / "plots/deformed.png").exists())
 
     def test_results_of_another_case_are_replaced_on_demand_only(self):
-        # Two cases whose folders have the same name have the same default folder.
+        # Two cases in folders of the same name have the same default folder.
         first, second = self.write("a/bar/strip.toml", STRIP), self.write("b/bar/strip.toml", STRIP)
         run = lambda case, *options: self.execute([PROGRAM, "run", case, "--threads", "1", *options])
         self.assert_code(run(first), 0)
@@ -122,7 +122,7 @@ class Faults(Folder):
         self.assert_code(run(second, "--overwrite", "--set", "loading.steps=2"), 0)
         self.assertEqual(self.assert_readable(folder), 2)
         self.assert_code(run(first), 2)
-        # The same file by another way is the same case.
+        # The same file by another path is the same case.
         (self.folder / "way").symlink_to(second.parent)
         self.assert_code(run(self.folder / "way/strip.toml", "--output", folder), 0)
 
@@ -229,7 +229,7 @@ class Faults(Folder):
         self.assertEqual(self.assert_readable(), 200)
 
     def test_a_full_disk_under_standard_output(self):
-        # What a command other than run gives is nothing but what it prints.
+        # Commands other than run only produce output.
         for command, code in ((self.words(), 0), ([PROGRAM, "check", self.strip], 5)):
             ended = self.execute(limited_by_shell("exec >/dev/full", command))
             self.assert_code(ended, code)
@@ -259,7 +259,7 @@ class Faults(Folder):
             self.assertEqual((self.folder / "log.txt").read_text().count("# log of peristat\n"), 1)
 
     def test_a_log_does_not_take_the_place_of_an_input(self):
-        """Of points, and of a file of points that is not there yet."""
+        """The input is a file of points, which may not exist yet."""
         for points in ("points.csv", "missing.csv"):
             self.write("cloud.toml", '[points]\nfile = "' + points + '"\nspacing = 1.0\n' + STRIP[STRIP.index("[material]"):])
             self.write("points.csv", "x, y, volume\n0, 0, 1\n1, 0, 1\n")
@@ -269,7 +269,7 @@ class Faults(Folder):
             self.assertEqual(self.contents(self.folder), before)
 
     def test_results_do_not_take_the_place_of_other_files(self):
-        """Of an input with the name of a result, and of a table that no earlier run has written."""
+        """The other files are an input with the name of a result, and a table that no earlier run has written."""
         self.assert_code(self.run_strip(), 0)
         line = '[[probe]]\nname = "cut"\nfrom = [0.0, 0.0]\nto = [1.0, 0.0]\n'
         self.write("strip.toml", STRIP + line)
@@ -316,7 +316,7 @@ class Faults(Folder):
     # ---- disks and limits -------------------------------------------------------------------------
 
     def on_small_disk(self, size, *arguments):
-        """A run whose results folder is a disk of its own; what it holds then is copied to `out`."""
+        """A run whose results folder is a disk of its own; its contents are then copied to `out`."""
         disk = self.folder / "disk"
         disk.mkdir(exist_ok=True)
         shutil.rmtree(self.out, ignore_errors=True)
@@ -346,7 +346,7 @@ class Faults(Folder):
 
     @unittest.skipUnless(CAN_MOUNT, CANNOT_MOUNT)
     def test_steps_that_cannot_be_gathered_stay_in_parts(self):
-        for size in range(160, 1200, 40):  # somewhere the steps fit once but not twice
+        for size in range(160, 1200, 40):  # some sizes fit the steps once but not twice
             run = self.on_small_disk(f"{size}k", "--set", "loading.steps=6")
             if run.code == 0:
                 break
@@ -381,7 +381,7 @@ class Faults(Folder):
 
     def test_a_limit_of_the_address_space(self):
         codes = {}
-        # Close enough to meet the few megabytes between one allocation's room and the next one's.
+        # Close enough to hit the few megabytes between the limits of one allocation and the next.
         for megabytes in [50, 100, 150, 200, *range(300, 560, 4), 600, 700, 900, 1200, 2000]:
             for linear in ["cholesky", "pcg"]:
                 started = time.monotonic()

@@ -1,4 +1,4 @@
-"""What tests through the program share: a folder, runs in it, and how these end."""
+"""Common parts of tests through the program: a folder, runs in it, and checks of their endings."""
 
 import os
 import pathlib
@@ -12,12 +12,12 @@ from tests.reference.results import Results
 
 
 class Folder(unittest.TestCase):
-    """Commands run in a temporary folder, which each test has for itself."""
+    """Runs commands in a temporary folder, one per test."""
 
     threads = 1  # of runs
 
     def setUp(self):
-        # The space is for whoever forgets to quote a path.
+        # The space detects unquoted paths.
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="peristat test "))).resolve()
 
     def write(self, name, text):
@@ -27,7 +27,7 @@ class Folder(unittest.TestCase):
         return path
 
     def case(self, case):
-        """The path of a case that is given by its path, its text or its tables."""
+        """The path of a case that is given as a path, as text or as tables."""
         if isinstance(case, pathlib.Path):
             return case
         return self.write("case.toml", case if isinstance(case, str) else toml(case))
@@ -39,7 +39,7 @@ class Folder(unittest.TestCase):
         return self.execute([PROGRAM, *arguments], **options)
 
     def start(self, command, environment=None, **options):
-        """A process that is killed with the test."""
+        """A process that is killed at the end of the test."""
         options = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | options
         process = subprocess.Popen([str(word) for word in command], cwd=self.folder, text=True,
                                    env=os.environ | (environment or {}), **options)  # fmt: skip
@@ -48,11 +48,11 @@ class Folder(unittest.TestCase):
         return process
 
     def command(self, name, case, *changes, words=(), **options):
-        """A command about a case, some of whose keys are changed by `key=value`."""
+        """Runs a command on a case, with some keys changed by `key=value`."""
         return self.peristat(name, self.case(case), *words, *settings(*changes), **options)
 
     def run_case(self, case, *changes, name="out", words=(), threads=None, code=0, **options):
-        """The folder of a run that ends with a code, or with one of several; `ended` is how it did."""
+        """The folder of a run that ends with the given code, or one of several; `ended` is the ending."""
         words = ("--output", self.folder / name, "--overwrite", "--no-plots", "--threads", threads or self.threads, *words)
         self.ended = self.command("run", case, *changes, words=words, **options)
         self.assert_code(self.ended, code)
@@ -62,23 +62,23 @@ class Folder(unittest.TestCase):
         return Results(self.run_case(*arguments, **options))
 
     def resume(self, folder, *changes, words=(), threads=None, code=0, **options):
-        """How a run goes on and ends."""
+        """Continues a run; returns the ending."""
         words = ("--no-plots", "--threads", threads or self.threads, *words, *settings(*changes))
         ended = self.peristat("resume", self.folder / folder, *words, **options)
         self.assert_code(ended, code)
         return ended
 
     def refusal(self, case, *changes, **options):
-        """What a run says that is refused; it leaves nothing."""
+        """The message of a refused run, which leaves no files."""
         self.assertFalse(self.run_case(case, *changes, name="refused", code=2, **options).exists())
         return self.ended.errors
 
     def assert_code(self, ended, code):
-        """The exit code is this one, or one of several."""
+        """The exit code is the given one, or one of several."""
         self.assertIn(ended.code, code if isinstance(code, tuple) else (code,), ended.said)
 
     def assert_completed(self, ended):
-        """Gives back what it is about."""
+        """Checks that a command succeeded; returns its ending."""
         self.assert_code(ended, 0)
         return ended
 

@@ -101,7 +101,7 @@ class Springs(Programmes):
                 self.judge(solver)
 
     def test_all_searches_find_the_same(self):
-        """Half of the block's load on its right end, so that it is strained, too."""
+        """Half of the block's load acts on its right end, so that it is strained, too."""
         text = BLOCK + SPRINGS + FORCE.replace('"all"', '"right"')
         self.run_case(text)
         expected = self.fields()[1]["displacement"]
@@ -115,7 +115,7 @@ class Springs(Programmes):
 
     def test_a_ground_that_moves_carries_a_body_along(self):
         moved = SPRINGS + 'displacement = ["1e-3*load", "2e-3*load"]\n'
-        # On softer springs relaxation has to wait for a mode that is a thousand times slower than the others.
+        # On softer springs relaxation would wait for a mode a thousand times slower than the others.
         stiff = ("foundation[0].stiffness=[2e10, 5e9]", "solver.mode=relaxation")
         for name, settings in (("once", ()), ("relaxed", stiff), ("steps", ("loading.steps=4",))):
             with self.subTest(name):
@@ -138,8 +138,8 @@ class Springs(Programmes):
         self.judge()
 
     def test_a_soft_machine_breaks_a_bar_with_the_energy_of_its_spring(self):
-        """Of a stiff machine the work is what the bar takes up; a soft one gives its spring's energy in addition."""
-        stiffness = 4e7  # of the bar, roughly
+        """With a stiff machine the work is the energy of the bar; a soft machine adds its spring's energy."""
+        stiffness = 4e7  # of the bar, approximately
         drained = {}
         for name, factor in (("stiff", 100), ("soft", 0.1)):
             text = BAR + BRITTLE + PULLED_BY_SPRING.format(stiffness=factor * stiffness, ground=0.02 * 0.5 * (1 + 1 / factor))
@@ -153,8 +153,8 @@ class Springs(Programmes):
         self.assertGreater(drained["soft"], 5 * drained["stiff"])
 
     def test_a_beam_on_soil_sags_as_hetenyi_says(self):
-        """w(x) = P l / (2 k b) exp(-l x) (cos l x + sin l x), l4 = k b / (4 E I), with shear and 3.5 l of beam either way
-        left out: to the lattice's error in bending, which falls."""
+        """w(x) = P l / (2 k b) exp(-l x) (cos l x + sin l x), l4 = k b / (4 E I), without shear and for an infinite
+        beam (this one extends 4.7 / l to either side): up to the lattice's error in bending, which falls."""
         errors = []
         for spacing in (4e-3, 2e-3):
             self.run_case(BEAM.format(spacing=spacing))
@@ -178,7 +178,7 @@ class Springs(Programmes):
             self.assertLess(max(told["asymmetry"], told["force_sum"], told["moment_sum"]), 1e-9, told)
 
     def test_a_rigid_set_on_springs(self):
-        """A platen that rests on springs below its ends turns by M / (k a2 / 2)."""
+        """A platen on springs below its ends rotates by M / (k a2 / 2)."""
         text = BLOCK + """\
 [[set]]
 name = "feet"
@@ -217,7 +217,7 @@ total_force = [0, "-1*load"]
         self.assertEqual(differences(self.folder / "whole", self.folder / "part"), [])
 
     def test_what_came_off_stays_on_its_springs(self):
-        """A body in two parts, each on springs: nothing floats."""
+        """A body in two parts, each on springs: no part floats."""
         text = BAR + BRITTLE + PULLED_BY_SPRING.format(stiffness=4e6, ground=0.11)
         rows = self.rows(text, "solver.mode=adaptive", "loading.steps=40", "solver.fragments=stop")
         self.assertGreater(rows[-1]["broken_bonds"], 0)

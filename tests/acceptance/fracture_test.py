@@ -19,7 +19,7 @@ from tests.reference.results import table
 CASES = ROOT / "cases"
 SQUARE = CASES / "plate_with_hole/square.toml"
 
-# 20 x 10 points, half cut at x = 10 mm, and a layer of three columns at either end.
+# 20 x 10 points, half cut at x = 10 mm, and a layer of three columns at each end.
 CRACK = """\
 [[crack]]
 from = [0.01, -1e-3]
@@ -63,7 +63,7 @@ SPACING, MICROMODULUS, REACH = 1e-3, 1e22, 3.015
 
 
 def cut_by(segment, bond):
-    """Whether two closed segments meet; exact for whole numbers."""
+    """Whether two closed segments meet; exact for integers."""
     (p, q), (a, b) = segment, bond
 
     def side(o, m, n):
@@ -81,7 +81,7 @@ def cut_by(segment, bond):
 
 
 def bonds_of(places, reach):
-    """Pairs of points (i < j) that are no further apart than `reach`."""
+    """Pairs of points (i < j) no farther apart than `reach`."""
     pairs = []
     for i in range(len(places) - 1):
         near = ((places[i + 1 :] - places[i]) ** 2).sum(axis=1) <= reach**2
@@ -95,7 +95,7 @@ def strip_places():
 
 
 class Run:
-    """How it ended, and what it has left."""
+    """The ending of a run, and its files."""
 
     def __init__(self, ended, folder):
         self.code, self.said, self.folder = ended.code, ended.said, folder
@@ -116,7 +116,7 @@ class Run:
         return numpy.array([row[name] for row in self.history])
 
     def last_iterations(self):
-        """Of every accepted step."""
+        """A column over the accepted steps."""
         last = {row["step"]: row for row in self.table("iterations")}
         return [last[row["step"]] for row in self.history]
 
@@ -129,7 +129,7 @@ class Run:
             return file[f"steps/{sorted(file['steps'])[step]}/{name}"][...]
 
 
-# A crack that is driven between two arms, in equilibrium.
+# A crack driven between two arms, in equilibrium.
 CANTILEVERS = """\
 dimension = 2
 [lattice]
@@ -191,10 +191,10 @@ class Fracture(Folder):
         cls.runs = {}
 
     def setUp(self):
-        """All tests share a folder and the runs in it."""
+        """All tests share a folder with its runs."""
 
     def run_case(self, case, *changes, threads=2):
-        """Runs a case once for all tests, whatever its end."""
+        """Runs a case once for all tests, with any ending."""
         key = (case, changes, threads)
         if key not in self.runs:
             out = super().run_case(case, *changes, name=f"out_{len(self.runs)}", threads=threads, code=(0, 2, 3))
@@ -223,27 +223,27 @@ class Fracture(Folder):
                 "moving": self.completed(SQUARE, *self.MOVING)}  # fmt: skip
 
     def assert_balanced(self, run, sets, axes, points):
-        """Reactions sum up to minus the residual's sum, as bonds pull their ends equally: at most
+        """Reactions sum up to minus the residual's sum, because bonds pull their ends equally: at most
         the residual's 2-norm times the root of the number of its components, and round-off."""
         for row, last in zip(run.history, run.last_iterations()):
             bound = math.sqrt(points) * float(last["residual"])
             for axis in axes:
                 forces = [row[f"reaction_{axis}:{name}"] for name in sets]
-                # the forces of the bonds that are summed up are some 100 of the reaction
+                # the summed forces of the bonds are some 100 times the reaction
                 round_off = 1e-12 * max(map(abs, run.column(f"reaction_y:{sets[0]}")))
                 self.assertLessEqual(abs(sum(forces)), bound + round_off, row["step"])
 
     def test_square_plate_breaks_in_each_mode(self):
         for mode, run in self.square_runs().items():
             with self.subTest(mode):
-                # [ADAPT] sec. 5.2 and its variants of mode and step: two cracks of 20 columns, each of
-                # some 20 bonds with a horizon of three spacings
+                # [ADAPT] sec. 5.2 and its variants of mode and step: two cracks of 20 columns, each with
+                # about 20 bonds for a horizon of three spacings
                 self.assertGreaterEqual(run.summary["broken_bonds"], 700)
                 self.assertLessEqual(run.summary["broken_bonds"], 880)
                 self.assert_balanced(run, ("top", "bottom"), "xy", run.summary["points"])
                 pull = run.column("reaction_y:top")
                 self.assertGreater(pull.max(), 0.0)
-                self.assertLess(abs(pull[-1]), 0.02 * pull.max())  # nothing but single bonds is left
+                self.assertLess(abs(pull[-1]), 0.02 * pull.max())  # only single bonds are left
 
     def test_square_plate_has_the_same_reaction_before_damage(self):
         weak = ("support[0].displacement=['0','-1e-4*load']", "support[1].displacement=['0','1e-4*load']", "relaxation.steps=2")
@@ -253,14 +253,14 @@ class Fracture(Folder):
             self.assertEqual(run.summary["energy"]["dissipated"], 0.0)
             pulls.append(run.history[-1]["reaction_y:top"])
         self.assertGreater(pulls[0], 0.0)
-        # residuals are relaxed to 1e-10; single long waves of the plate answer 1e3 times stronger
+        # residuals are relaxed to 1e-10; single long waves of the plate respond 1e3 times more strongly
         for pull in pulls:
             self.assertLess(abs(pull / pulls[0] - 1.0), 1e-6)
 
     def test_moving_load_and_adaptive_mode_agree_on_the_strength(self):
         runs = self.square_runs()
         peaks = [runs[mode].column("reaction_y:top").max() for mode in ("adaptive", "moving")]
-        # both sample the curve: the plate's inertia and steps of 1/100 or less of the load count
+        # both sample the curve: the difference is due to the plate's inertia and load steps of 1/100 or less
         self.assertLess(abs(peaks[0] / peaks[1] - 1.0), 0.1)
 
     def test_cracks_of_the_square_plate_reach_the_free_edges(self):
@@ -268,7 +268,7 @@ class Fracture(Folder):
             with self.subTest(mode):
                 places = run.points("reference")
                 broken = {(int(row["first_point"]), int(row["second_point"])) for row in run.table("broken_bonds")}
-                self.assertEqual(len(broken), run.summary["broken_bonds"])  # each is told once
+                self.assertEqual(len(broken), run.summary["broken_bonds"])  # each is listed once
                 bonds = bonds_of(places, REACH * SPACING)
                 self.assertEqual(len(bonds), run.summary["bonds"])
                 self.assertLessEqual(broken, set(bonds))
@@ -294,7 +294,7 @@ class Fracture(Folder):
                     before = row["balance_error"]
                 self.assertTrue((numpy.diff(dissipated) >= 0.0).all())
                 self.assertTrue((numpy.diff(run.column("broken_bonds")) >= 0).all())
-                # damping takes energy out: what is drained in moving load includes motion that swings
+                # damping removes energy: with a moving load, drained energy includes that of oscillations
                 if mode != "moving":
                     self.assertTrue((numpy.diff(drained, prepend=0.0) >= -1e-8 * work.max()).all())
                 self.assertGreater(dissipated[-1], 0.0)
@@ -336,7 +336,7 @@ class Fracture(Folder):
         middle = numpy.array([reference[[int(row["first_point"]), int(row["second_point"])]].mean(axis=0)
                               for row in run.table("broken_bonds")])  # fmt: skip
         path = middle[abs(middle[:, 0]) < 10 * 1.2e-3]
-        # from the notch's tip at 18 mm to within the horizon of the loaded edge at 60 mm, without a gap
+        # from the notch's tip at 18 mm to within the horizon of the loaded edge at 60 mm, without gaps
         heights = numpy.concatenate([[18e-3], numpy.sort(path[:, 1]), [60e-3]])
         self.assertLess(numpy.diff(heights).max(), 3.015 * 1.2e-3 + 1e-12)
 
@@ -352,7 +352,7 @@ class Fracture(Folder):
         self.assertGreater(first, 0)
         self.assertEqual(run.history[first - 1]["broken_bonds"], 0)
         self.assertGreater(run.summary["broken_bonds"], 0)
-        # The body's ledger begins with what it stores; relaxation's closes to round-off, and an
+        # The body's energy balance begins with its stored energy; relaxation's closes to round-off, and an
         # implicit step's error falls with the cube of its strain, 1e-2 at most.
         self.assertLess(abs(run.history[first]["balance_error"]), 1e-3 * run.history[first]["external_work"])
 
@@ -442,7 +442,7 @@ class Fracture(Folder):
                     self.assertIn(fragment, run.said)
                 if at:
                     line = next(k for k, one in enumerate(text.splitlines(), 1) if one.startswith(at))
-                    # where a key is missing the place is its table's, whose header stands right above
+                    # a missing key is reported at its table, whose header is right above
                     self.assertTrue(f".toml:{line}:" in run.said or f".toml:{line - 1}:" in run.said, run.said)
                 self.assertFalse(run.folder.exists())
 
@@ -468,7 +468,7 @@ class Fracture(Folder):
         run = self.completed(STRIP)
         for row in run.history:
             for axis in "xy":
-                # the same sums, told with all digits
+                # the same sums, printed with all digits
                 self.assertAlmostEqual(row[f"gap_{axis}"], row[f"pulled_{axis}"] - row[f"body_{axis}"], delta=1e-18)
             self.assertAlmostEqual(row["pulled_x"], 5e-4 * row["load_factor"], delta=1e-15)
 
@@ -484,19 +484,19 @@ class Fracture(Folder):
                 self.assertLessEqual(abs(length[-1] - 20e-3), 2 * SPACING)
 
     def test_resistance_sums_up_to_what_is_dissipated(self):
-        """Over the area that it is of; 0 where the crack does not grow, whatever is dissipated."""
+        """Dissipated energy over the newly cracked area; 0 if the crack does not grow, whatever is dissipated."""
         run = self.completed(CANTILEVERS)
         area, resistance, dissipated = (run.column(name) for name in ("area", "resistance", "dissipated_energy"))
-        growth = numpy.diff(area, prepend=10e-6)  # the pre-crack does not count
+        growth = numpy.diff(area, prepend=10e-6)  # without the pre-crack
         growth[abs(growth) < 1e-12] = 0.0
         grown = growth > 0
         self.assertGreater(grown.sum(), 5)
         self.assertGreater((~grown & (numpy.diff(dissipated, prepend=0.0) > 0)).sum(), 0)
         self.assertTrue(((resistance > 0) == grown).all())
         last = numpy.flatnonzero(grown)[-1]
-        # sums of some ten rows, told with all digits
+        # sums of about ten rows, printed with all digits
         self.assertAlmostEqual((resistance * growth).sum() / dissipated[last], 1.0, delta=1e-12)
-        # What the material was asked for; a face more or less is open for the same softening ahead of it.
+        # The material's fracture energy; a face more or less opens for the same softening ahead of it.
         self.assertAlmostEqual((resistance * growth).sum() / growth.sum() / 1000, 1.0, delta=0.15)
 
     def test_threads_do_not_change_the_states(self):
@@ -512,7 +512,7 @@ class Fracture(Folder):
             self.assertAlmostEqual(float(first["load_factor"]), float(second["load_factor"]), delta=1e-12)
             work = float(first["external_work"])
             for key in ("stored_energy", "dissipated_energy"):
-                # of equilibria whose residuals are 1e-10 of the forces
+                # equilibria have residuals of 1e-10 of the forces
                 self.assertAlmostEqual(float(first[key]), float(second[key]), delta=1e-8 * work, msg=key)
             compared += 1
         self.assertGreater(compared, 0)
@@ -533,12 +533,12 @@ class Fracture(Folder):
         for remedy in ("hold", "remove"):
             run = self.completed(STRIP, self.APART.replace("'0'", "'free'"), f"solver.fragments={remedy}")
             pull = run.column("reaction_x:right")
-            self.assertLess(abs(pull[-1]), 1e-6 * pull.max())  # as above: it is free of stress
+            self.assertLess(abs(pull[-1]), 1e-6 * pull.max())  # free of stress, as above
             self.assertLess(run.history[-1]["pin_force"], 1e-6 * pull.max())
             self.assertEqual(run.field("fragment").max(), 1)  # it may slide across
 
-    # The supports move away by a spacing, faster than the body can follow: each of their bonds with
-    # it, of three spacings or less, would be stretched by a fourth or more.
+    # The supports move away by a spacing, faster than the body can follow: each of their bonds, of three
+    # spacings or less, would be stretched by a fourth or more.
     TORN = (*(f"support[{k}].displacement=['{sign}1e-3*min(2*load,1)','0']" for k, sign in ((0, "-"), (1, ""))),
             "solver.mode=relaxation", "relaxation.ramp=100", "relaxation.steps=2", "relaxation.breaking=transient")  # fmt: skip
 
@@ -564,7 +564,7 @@ class Fracture(Folder):
                 for step in (0, 1):
                     fragment = run.field("fragment", step)
                     self.assertTrue((fragment == ((x > 0) & (x < 0.02))).all())
-                # no stress is left: 1e-10 of the forces of the whole body over such a jump, some 5e4 N
+                # no stress is left: 1e-10 of the forces of the whole body over such a jump, about 5e4 N
                 self.assertLess(abs(run.field("force")).max(), 1e-5)
                 self.assertIn(f"{remedy} fragments", [row["action"] for row in run.table("decisions")])
 
@@ -587,7 +587,7 @@ class Fracture(Folder):
         tight = "solver.relative_tolerance=1e-12"
         exact = self.completed(STRIP, *self.ELASTIC, tight).field("displacement")
         relaxed = self.completed(STRIP, self.ELASTIC[1], tight, "solver.mode=relaxation", "relaxation.steps=2").field("displacement")
-        # the tangent of 20 x 10 points has a condition number of some 1e3
+        # the tangent of 20 x 10 points has a condition number of about 1e3
         self.assertLess(abs(relaxed - exact).max(), 1e-8 * abs(exact).max())
 
 

@@ -1,4 +1,4 @@
-"""A short run of the fuzzer (tests/fuzz/fuzz.py), always the same inputs; more by hand."""
+"""A short run of the fuzzer (tests/fuzz/fuzz.py), always with the same inputs; run more by hand."""
 
 import tempfile
 import time

@@ -1,4 +1,4 @@
-"""The histories of bonds in the results: with them a reader rebuilds every state from outside."""
+"""The histories of bonds in the results: a reader can reconstruct every state from them."""
 
 import math
 import pathlib
@@ -44,7 +44,7 @@ steps = 20
 
 
 class Run:
-    """What a run has left, and the histories as its reader rebuilds them."""
+    """The files of a run, and the histories as a reader reconstructs them."""
 
     def __init__(self, folder):
         with h5py.File(folder / "results.h5") as file:
@@ -62,7 +62,7 @@ class Run:
                        for row in table(folder / "broken_bonds.csv")]  # fmt: skip
 
     def histories(self):
-        """After each step with fields: bond -> largest stretch, of the bonds that are not as new."""
+        """After each step with fields: bond -> largest stretch, for the bonds whose history has changed."""
         known = {}
         for changed in self.changes:
             bonds = zip(changed["first_point"].tolist(), changed["second_point"].tolist())
@@ -70,7 +70,7 @@ class Run:
             yield dict(known)
 
     def bonds(self):
-        """Bonds within the horizon that do not touch the crack, as the lattice leaves them."""
+        """Bonds of the lattice within the horizon that do not touch the crack."""
         reach = 3.015e-3
         for i, at in enumerate(self.places):
             for j in range(i + 1, len(self.places)):
@@ -137,7 +137,7 @@ class Histories(unittest.TestCase):
                             self.assertGreater(largest, known.get(bond, run.law["onset"]))
                             self.assertLess(known.get(bond, 0.0), run.law["critical"])
                         known[bond] = largest
-        # Relaxation begins at load 0, long before damage: steps without a change are told, too.
+        # Relaxation begins at load 0, long before damage: steps without a change are listed, too.
         self.assertEqual(len(self.runs["transient"].changes[1]["largest_stretch"]), 0)
 
     def test_bonds_that_never_fail_are_told_once_and_cut_ones_never(self):

@@ -31,12 +31,12 @@ displacement = {displacement}
 [solver]
 relative_tolerance = 1e-12
 """
-# Lattices that are neither square nor upright, as --set takes them.
+# Lattices that are neither square nor aligned, as arguments of --set.
 LATTICES = {
     2: [["lattice.angle=30"], ["lattice.spacing=[0.1, 0.14]"], ["lattice.spacing=[0.12, 0.08]", "lattice.angle=-52"]],
     3: [["lattice.angle=30"], ["lattice.spacing=[0.1, 0.14, 0.12]"], ["lattice.spacing=[0.12, 0.1, 0.13]", "lattice.angle=70"]],
 }  # fmt: skip
-# Slanted and round boundaries, layers, and cells that a face cuts.
+# Slanted and round boundaries, layers, and cut cells.
 CUT = PULLED.replace("max = [0.02, 0.01]", "max = [0.02, 0.0104]").replace("[[lattice.layer]]", """\
 [[lattice.shape]]
 subtract = "disk"
@@ -80,14 +80,14 @@ class Cases(Folder):
     threads = 2
 
     def solved(self, text, settings=()):
-        """Places, volumes, displacements; the reference judges the run if it is elastic and small."""
+        """Positions, volumes, displacements; the reference checks the run if it is elastic and small."""
         with h5py.File(self.run_case(text, *settings) / "results.h5") as file:
             step = file["steps"][sorted(file["steps"])[-1]]
             self.resolved = file["case/as_resolved"][()].decode()
             return file["points/reference"][:], file["points/volume"][:], step["displacement"][:]
 
     def judge(self):
-        """The run beside the reference."""
+        """Compares the run with the reference."""
         self.assertEqual(verify(self.folder / "out", self.resolved, self.folder)[0], [])
 
     def refuses(self, text, settings, *words):
@@ -96,7 +96,7 @@ class Cases(Folder):
 
 class PatchTest(Cases):
     def test_homogeneous_deformations_are_equilibria(self):
-        """Every free point has its whole neighbourhood, which is symmetric about it, so that no force is left."""
+        """Every free point has a full neighbourhood, which is symmetric about it, so no force remains."""
         for dimension, lattices in LATTICES.items():
             reach, half = 0.5, {2: 1.0, 3: 0.72}[dimension]
             where = f"max({', '.join(f'abs({axis})' for axis in 'xyz'[:dimension])}) > {half - reach}"
@@ -109,7 +109,7 @@ class PatchTest(Cases):
                     places, _, found = self.solved(text, [*settings, "lattice.horizon_ratio=3.1"])
                     inside = numpy.abs(places).max(axis=1) <= half - reach
                     self.assertGreater(inside.sum(), 4)
-                    # The residual is at 1e-12 of what the frame's forces are.
+                    # The residual is 1e-12 of the frame's forces.
                     off = numpy.abs(found - places @ gradient.T)[inside].max()
                     self.assertLess(off, 1e-9 * numpy.abs(found).max())
 
@@ -176,7 +176,7 @@ class ByTheReference(Cases):
 
 
 class Shapes(Cases):
-    """The complex shapes of [GPMB] 3.1.1, with the bonds that the reference leaves them."""
+    """The complex shapes of [GPMB] 3.1.1, with the bonds that the reference keeps in them."""
 
     HOLE = [[0.5 + 0.13 * math.cos(k * math.pi / 10), 0.5 + 0.13 * math.sin(k * math.pi / 10)] for k in range(20)]
     SHAPES = {
@@ -208,8 +208,8 @@ class Shapes(Cases):
                 summary = json.loads((self.folder / "out/summary.json").read_text())
                 self.assertEqual(summary["bonds"], len(left.bonds))
                 if name == "hole":
-                    # No bond that is left passes through the polygon: its middle is farther from the hole's than the
-                    # circle that the sides touch.
+                    # No remaining bond passes through the polygon: its midpoint is farther from the hole's centre than
+                    # the inscribed circle.
                     steps = numpy.linspace(0, 1, 51)[:, None, None]
                     along = places[left.bonds[:, 0]] + steps * (places[left.bonds[:, 1]] - places[left.bonds[:, 0]])
                     self.assertGreater(numpy.hypot(*(along - 0.5).transpose(2, 0, 1)).min(), 0.13 * math.cos(math.pi / 20))
@@ -217,7 +217,7 @@ class Shapes(Cases):
 
 class CutCells(Cases):
     def test_volumes_are_those_of_samples_of_the_cells(self):
-        """Each cell's part inside, counted on a fine grid of its own: shares to about a line of that grid."""
+        """Inside part of each cell, counted on a fine grid of its own: shares to about a line of that grid."""
         settings = ["lattice.volumes=fractional", "lattice.angle=33"]
         text = CUT.split("[[lattice.layer]]")[0] + """\
 [material]
@@ -240,7 +240,7 @@ displacement = [0, 0]
             inside = (x > 0) & (x < 0.02) & (y > 0) & (y < 0.0104)
             inside &= (x - 0.0103) ** 2 + (y - 0.0051) ** 2 > 2.7e-3**2
             share = volume / 1e-9
-            # A sliver of up to a hundredth may have come from each of four cells beside it.
+            # A sliver of up to a hundredth may have been merged from each of four neighbouring cells.
             self.assertGreater(share, inside.mean() - 0.01)
             self.assertLess(share, inside.mean() + 0.05)
             cut += 0.02 < inside.mean() < 0.98
@@ -267,15 +267,15 @@ class BlueNoise(Cases):
         self.assertEqual(*found)
 
     def test_stretched_squares_have_the_modulus(self):
-        """A frame as wide as two horizons moves as a homogeneous strain asks for; the points inside follow it nearly, and
-        store nearly the classical energy. On a lattice they do to round-off."""
+        """A frame as wide as two horizons moves with a homogeneous strain; the points inside approximately follow it,
+        and store approximately the classical energy. On a lattice they do so to round-off."""
         strain = 1e-4
         where = "max(abs(x), abs(y)) > 1.4"
         displacement = json.dumps([f"{strain}*x*load", 0])
         text = SQUARE.format(dimension=2, low=[-2, -2], high=[2, 2], where=where, displacement=displacement)
         text = text.replace("spacing = 0.1", 'spacing = 0.05\npoints = "blue_noise"')
         modulus = 1e9 / (1 - 1 / 9)
-        # Measured, and half as much again; regular lattices store 1.031, 1.022 and 0.989 at a ratio of 3.015.
+        # Measured values times one and a half; regular lattices store 1.031, 1.022 and 0.989 at a ratio of 3.015.
         stored = {3.015: {"linear": 1.023, "exact": 1.010, "exact_centroids": 0.982},
                   5: {"linear": 1.009, "exact": 1.004, "exact_centroids": 0.994}}  # fmt: skip
         for ratio, off_place in ((3.015, 0.035), (5, 0.012)):
@@ -295,7 +295,7 @@ class BlueNoise(Cases):
         brittle = ['material.damage={law="critical_stretch", critical=5e-4}', "loading.steps=4", "solver.mode=adaptive"]
         crack = "crack=[{from=[0.0201, 0.0], to=[0.0201, 0.007]}]"
         whole, cut = (self.results(HOLED, *brittle, *cracks).summary for cracks in ((), (crack,)))
-        # Bonds that cross a line of unit length: h^3/3 of each side of it per spacing, 2/3 (h/s)^3 in all.
+        # Bonds that cross a line of unit length: h^3/3 on each side of it per spacing, 2/3 (h/s)^3 in total.
         self.assertAlmostEqual((whole["bonds"] - cut["bonds"]) / (7 * 2 / 3 * 3.015**3), 1, delta=0.15)
         self.assertGreater(cut["broken_bonds"], 50)
 
@@ -303,7 +303,7 @@ class BlueNoise(Cases):
         self.refuses(HOLED, ['probe=[{name="area", field="crack_area", set="left"}]'], "probe[0].field", "points on a lattice")
 
     def test_squares_may_have_exact_parts(self):
-        """Cells that the body does not cut are polygons, as perturbed cells of a lattice are."""
+        """Uncut cells are polygons, like perturbed cells of a lattice."""
         box = HOLED.replace(HOLED[HOLED.index("[[lattice.shape]]\nsubtract"):HOLED.index("[[set]]")], "")
         perturbed = CUT.replace("spacing = 1e-3", "spacing = 1e-3\ncell_perturbation = 0.2")
         for text in (box, perturbed):
@@ -313,7 +313,7 @@ class BlueNoise(Cases):
                 reaction[correction] = json.loads((self.folder / "out/summary.json").read_text())["reactions"]["right"][0]
             for correction in ("exact", "exact_centroids"):
                 self.assertNotEqual(reaction[correction], reaction["linear"])
-                # They are softer in the mean, as on a regular lattice: 1.022 and 0.989 instead of 1.031 there.
+                # They are softer on average, as on a regular lattice: 1.022 and 0.989 instead of 1.031 there.
                 self.assertAlmostEqual(reaction[correction] / reaction["linear"], 1, delta=0.06)
 
 

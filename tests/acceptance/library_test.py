@@ -1,5 +1,5 @@
-"""The library: the page quotes the example, which is built against an installed peristat, and gives
-what the same case gives."""
+"""The library: the page quotes the example, which is built against an installed peristat and gives
+the same results as the case."""
 
 import os
 import pathlib
@@ -49,7 +49,7 @@ name = "end"
 set = "right"
 field = "displacement"
 """
-# Another program with a src/ of its own, and a header in it that ours has, too.
+# Another program with its own src/, and in it a header with the name of one of ours.
 OTHERS_POINTS = "#error the program's own header was taken for peristat's\n"
 
 
@@ -82,15 +82,15 @@ class Library(Folder):
         told = run(self.folder / "build/plate", environment={"OMP_NUM_THREADS": "2", "OMP_WAIT_POLICY": "passive"})
         displacement, reaction = (float(value) for value in re.findall(r"(\S+) (?:m|N)\n", told))
 
-        # The installed program, which finds its module in the same prefix.
+        # The installed program finds its module in the same prefix.
         results = self.folder / "results"
         run(self.prefix / "bin/peristat", "run", self.case(THE_SAME_CASE), "--output", results, "--threads", 2)
         last = table(results / "history.csv")[-1]
-        # The same computation: what differs is the number of digits that are printed.
+        # The same computation: only the number of printed digits differs.
         self.assertAlmostEqual(displacement / last["end_x"], 1.0, delta=1e-12)
         self.assertAlmostEqual(reaction / last["reaction_x:left"], 1.0, delta=1e-12)
-        # F L / (E w h) of the plate without its hole, which lets it give way by a tenth or so, as do
-        # the ends that are pulled across three rows.
+        # F L / (E w h) of the plate without its hole; the hole and the ends, which are pulled across three rows, make
+        # it softer by a tenth or so.
         whole = 12.8e3 * 0.15 / (192e9 * 0.05 * 1e-3)
         self.assertAlmostEqual(displacement / whole, 1.1, delta=0.1)
 

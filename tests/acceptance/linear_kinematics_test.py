@@ -1,4 +1,4 @@
-"""Linear kinematics, bond by bond and by convolutions, and points that fail by their energy density."""
+"""Linear kinematics, by bonds and by convolutions, and points that fail by their energy density."""
 
 import math
 import unittest
@@ -66,11 +66,11 @@ every = 10000
 """
 CRACKS = "crack=[{from=[0.0062, 0.008], to=[0.0062, 0.02]}, {from=[0.0149, 0.001], to=[0.0173, 0.0052]}]"
 FAILING = 'material.damage={law="energy_density", fracture_energy=2.0, no_fail=["left", "right"]}'
-GLASS = ["lattice.spacing=4e-4", "lattice.horizon_ratio=3.1"]  # of branching_2d
+GLASS = ["lattice.spacing=4e-4", "lattice.horizon_ratio=3.1"]  # for branching_2d
 
 
 class Run(Results):
-    """With the last step's fields as its own."""
+    """With the last step's fields as attributes."""
 
     def __init__(self, folder):
         super().__init__(folder)
@@ -87,7 +87,7 @@ class CommandLine(Folder):
         return Run(self.run_case(*arguments, **options))
 
     def same(self, one, other, share=1e-11):
-        # What is torn through is left with the round-off of what it bore.
+        # A severed part keeps the round-off of its previous forces.
         work = one.summary["energy"]["external_work"]
         least = {"force": work / abs(one.displacement).max(), "energy_density": work / one.volume.sum()}
         for name, field in one.fields.items():
@@ -106,7 +106,7 @@ class CommandLine(Folder):
 
 
 class Solved:
-    """Bonds and stiffness once more, dense."""
+    """Bonds and stiffness, recomputed densely."""
 
     def __init__(self, run, ratio=3.015, spacing=1e-3, thickness=2e-3, modulus=70e9):
         places = run.reference[:, :2]
@@ -152,7 +152,7 @@ class Statics(CommandLine):
                          ["lattice.horizon_ratio=2.015", "solver.preconditioner=block_jacobi"],
                          [CRACKS, "lattice.horizon_ratio=5.1", "solver.mode=relaxation"]):  # fmt: skip
             with self.subTest(settings=settings):
-                # Relaxation ends at its own tolerance, on ways that round-off parts.
+                # Relaxation ends at its own tolerance, along paths that differ by round-off.
                 self.both(STRIP, *settings, share=1e-7 if "solver.mode=relaxation" in settings else 1e-9)
 
     def test_cracks_beyond_the_ball_of_a_turned_box(self):
@@ -161,7 +161,7 @@ class Statics(CommandLine):
         self.both(STRIP, crack, "lattice.angle=45", 'quadrature.horizon_shape="box"', share=1e-9)
 
     def test_what_rollers_and_rigid_sets_carry_is_no_points(self):
-        # Displacements of a billionth of the spacing: what finite kinematics adds is of that share.
+        # Displacements of 1e-9 spacings: the additional terms of finite kinematics are of that relative size.
         on_left = STRIP[: STRIP.index('[[support]]\nset = "right"')] + STRIP[STRIP.index("[solver]") :]
         for held in ('[[roller]]\nset = "right"\nnormal = [1, 0.3]\ndisplacement = "1e-12*load"\n',
                      '[[rigid]]\nset = "right"\ndisplacement = ["1e-12*load", "free"]\n'):  # fmt: skip
@@ -190,7 +190,7 @@ class Statics(CommandLine):
             self.same(bonds, fft, 1e-9)
 
     def test_solids_with_lame_constants_alike_are_bonds(self):
-        # Nothing is left of the dilatation: bonds of the weights 1/M + 1/M' ([FCBM] 5.6), M of whom there is.
+        # No dilatation remains: bonds have the weights 1/M + 1/M' ([FCBM] 5.6), M of the existing neighbours.
         run = self.results(STRIP, "material.model=lps", "material.poisson_ratio=0.33333333333333333", "quadrature.form=energy", "solver.operator=fft")
         solved = Solved(run)
         length = solved.length
@@ -214,7 +214,7 @@ set = [{name = "low", where = "z < 0.1"}, {name = "high", where = "z > 0.6"}]
 support = [{set = "low", displacement = [0, 0, 0]}, {set = "high", displacement = [0, "1e-3*load", "2e-3*load"]}]
 solver = {relative_tolerance = 1e-12, linear_tolerance = 1e-6}
 """
-        for ratio in (2.015, 3.015, 9.0):  # the last one sees all of the body
+        for ratio in (2.015, 3.015, 9.0):  # the last one includes the whole body
             self.both(cube, f"lattice.horizon_ratio={ratio}", share=1e-9)
 
     def test_strains_of_solids(self):
@@ -262,7 +262,7 @@ solver = {operator = "fft"}
 
 class FailingPoints(CommandLine):
     def test_they_are_those_of_the_direct_sums(self):
-        """Solve, fail all beyond the threshold, again: until nothing more fails."""
+        """Solves, fails all points beyond the threshold, and repeats until nothing more fails."""
         for steps in (1, 4):
             run = self.both(STRIP, FAILING, f"loading.steps={steps}", share=1e-8)
             solved = Solved(run)
@@ -308,7 +308,7 @@ class Motions(CommandLine):
         self.assertAlmostEqual((tips[-1]["dissipated_energy"] - tips[0]["dissipated_energy"]) / grown / 3.8, 1, delta=0.05)
 
     def test_steps_are_stable_up_to_the_stable_one(self):
-        # 2 / omega_max of plane waves in the bulk, from the lattice's sums: no mask has a shorter one.
+        # 2 / omega_max of plane waves in the bulk, from the lattice's sums: no mask has a shorter step.
         bulk = 1e-3 * math.sqrt(2440 / 72e9) * self.bulk_step()
         ended = self.assert_completed(self.command("check", WAVES))
         stable = float(ended.said.split("stable time step ")[1].split()[0])
@@ -322,7 +322,7 @@ class Motions(CommandLine):
 
     @staticmethod
     def bulk_step(ratio=3.015):
-        """Of E = 1, rho = 1, spacing = 1, in plane stress."""
+        """For E = 1, rho = 1, spacing = 1, in plane stress."""
         steps = numpy.array([(x, y) for x in range(-3, 4) for y in range(-3, 4) if 0 < math.hypot(x, y) <= ratio])
         c = 9 / (math.pi * ratio**3) / numpy.hypot(*steps.T)
         n = steps / numpy.hypot(*steps.T)[:, None]
@@ -336,7 +336,7 @@ class Motions(CommandLine):
 
 
     def test_coarse_steps_end_as_fine_ones(self):
-        """All points that are overloaded fail together: steps must not overload them."""
+        """All overloaded points fail together, so steps must end where the first points are overloaded."""
         fine = self.results(STRIP, FAILING, "loading.steps=64")
         for steps in (1, 3):
             coarse = self.results(STRIP, FAILING, f"loading.steps={steps}")
@@ -385,7 +385,7 @@ class CutsAhead(CommandLine):
 
 class Refusals(CommandLine):
     def test_bodies_held_across_a_gap(self):
-        """Bonds to next neighbours do not reach over a row that is missing, and others do."""
+        """Bonds to next neighbours do not reach across a missing row; longer bonds do."""
         halves = '[{ add = "box", min = [0.0, 0.0], max = [0.009, 0.012] }, { add = "box", min = [0.010, 0.0], max = [0.02, 0.012] }]'
         self.both(STRIP, f"lattice.shape={halves}")
         loaded = STRIP[: STRIP.index('[[support]]\nset = "right"')] + STRIP[STRIP.index("[solver]") :]
@@ -433,7 +433,7 @@ class SoonerOperator(CommandLine):
                 self.assertEqual("summed by convolutions" in ended.said, convolved)
 
     def test_both_move_alike(self):
-        steps = "dynamics={end_time=2e-5, time_step=1e-7}"  # the stable step is known to some digits only
+        steps = "dynamics={end_time=2e-5, time_step=1e-7}"  # the stable step is known to few digits only
         auto = self.results(WAVES, steps, "solver.operator=auto")
         self.same(self.results(WAVES, steps, "solver.operator=bonds"), auto, share=1e-9)
 

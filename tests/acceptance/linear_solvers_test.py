@@ -20,7 +20,7 @@ class LinearSolvers(Folder):
     threads = 2
 
     def solved(self, case, *changes):
-        """What a run prints, and its summary."""
+        """The output of a run, and its summary."""
         summary = self.results(case, *changes).summary
         return self.ended.output, summary
 
@@ -48,7 +48,7 @@ class LinearSolvers(Folder):
             self.assertLess(counted["pcg", better], 0.5 * counted["pcg", "jacobi"])
 
     def with_launcher(self, script):
-        """A run that iterates, by a program without modules beside it and a stand-in for the launcher."""
+        """A run that iterates, by a program without modules beside it and a substitute for the launcher."""
         launcher = self.write("a house/launcher", "#!/bin/sh\n" + script)
         launcher.chmod(0o755)
         program = shutil.copy(PROGRAM, launcher.with_name("peristat"))
@@ -159,7 +159,7 @@ class LinearSolvers(Folder):
         for tangent, most in [("matrix_free", 1200), ("stored", 5000)]:
             with self.subTest(tangent=tangent):
                 used = []
-                for half_width in (0.12, 0.24):  # so large that what libraries take says little
+                for half_width in (0.12, 0.24):  # so large that the libraries' own memory is a small part
                     _, summary = self.solved(BEAM, *self.beam_of(half_width), "solver.linear=pcg",
                                              f"solver.tangent={tangent}")  # fmt: skip
                     used.append((summary["points"], summary["peak_memory_bytes"]))

@@ -149,7 +149,7 @@ class LoadZero(Programmes):
             for steps in (1, 10):
                 with self.subTest(mode=mode, steps=steps):
                     text = HANGING.replace("WEIGHT", "9.81").replace("MODE", mode)
-                    if mode == "arc_length":  # something has to grow
+                    if mode == "arc_length":  # needs something that grows
                         text += '[[load]]\nset = "end"\ntotal_force = ["1000*load"]\n'
                     rows = self.rows(text, f"loading.steps={steps}", name=f"{mode}{steps}")
                     self.assertEqual([rows[0]["step"], rows[0]["load_factor"]], [0, 0])
@@ -207,7 +207,7 @@ class LoadZero(Programmes):
         self.assertIn("arc_length", reason)
 
     def test_the_path_breaks_what_a_dead_load_breaks(self):
-        """The weak bond bears 500 N, and takes k s^2 / 2 with it."""
+        """The weak bond carries 500 N, and dissipates k s^2 / 2."""
         rows = self.rows(TWO_BONDS.replace("FORCE", "600 + 1000*load"))
         self.assertEqual([rows[0]["step"], rows[0]["broken_bonds"]], [0, 1])
         self.assertAlmostEqual(rows[0]["dissipated_energy"], 0.5 * 1e6 * 5e-4**2, delta=1e-9)

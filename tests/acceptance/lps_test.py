@@ -10,21 +10,21 @@ from tests.reference import lps
 from tests.reference.program import ROOT
 
 CASES = ROOT / "cases/lps"
-# Solutions of some hundred unknowns lose the condition of the system, 1e3, of round-off.
+# Solutions of a few hundred unknowns lose the condition number of the system, 1e3, to round-off.
 EXACT = 1e-12
 NAMES = {"x-": "x_low", "x+": "x_high"}
 FIELD = ["3e-3*x + 2e-3*y", "1e-3*y - 4e-3*x"]
 
 
 def stress(poisson, plane="strain"):
-    """Of FIELD: xx, yy, xy."""
+    """Stress of FIELD: xx, yy, xy."""
     first, second = lps.lame(1.0, poisson, plane)
     return [first * 4e-3 + 2 * second * 3e-3, first * 4e-3 + 2 * second * 1e-3, -second * 2e-3]
 
 
 def patch(lattice="", shapes="", material="", loads=None, poisson=0.3, plane="strain", size=(1.0, 1.0), quadrature="",
           solver="", steps=1, scale="", layers=("x-", "x+"), origin=(0.0, 0.0), ratio=3.5, thickness=8):  # fmt: skip
-    """A body with layers on some sides, whose displacements are those of FIELD, and its stress on the others."""
+    """A body with layers on some sides that move with FIELD, and FIELD's stress on the other sides."""
     if loads is None:
         loads = f"[[load]]\nstress = {[f'({value!r}){scale}' for value in stress(poisson, plane)]}\n"
     high = [low + length for low, length in zip(origin, size)]
@@ -56,7 +56,7 @@ poisson_ratio = {poisson}
 
 
 class Patches(Folder):
-    """Linear displacements are found exactly."""
+    """Linear displacements are reproduced exactly."""
 
     def error(self, *arguments, **options):
         found = self.results(patch(*arguments, **options))
@@ -104,7 +104,7 @@ class Patches(Folder):
                 self.assert_exact(lattice, layers=("x-",))
 
     def test_normals_of_faces(self):
-        """A linear field is exact whatever the normals, as tractions have the same."""
+        """A linear field is exact for any normals that tractions share."""
         hole = '[[lattice.shape]]\nsubtract = "disk"\ncentre = [0.5, 0.5]\nradius = 0.2\nname = "hole"\n'
         self.assert_exact(quadrature='normals = "exact"', shapes=hole)
         self.assert_exact("perturbation = 0.2\nseed = 5", quadrature='normals = "exact"', shapes=hole, layers=("x-",))
@@ -120,7 +120,7 @@ class Patches(Folder):
                 self.assert_exact(size=(1.0, 0.05 * rows))
 
     def test_far_from_the_origin(self):
-        self.assertLess(self.error(origin=(1000.0, -500.0)), 1e-9)  # 5 of 16 digits are the place's
+        self.assertLess(self.error(origin=(1000.0, -500.0)), 1e-9)  # positions take 5 of 16 digits
 
     def test_a_side_at_a_time_is_all_of_them(self):
         loads = "".join(f'[[load]]\nside = "{side}"\nstress = {stress(0.3)}\n' for side in ("y-", "y+"))
@@ -185,8 +185,8 @@ class Patches(Folder):
 
 
 class KnownSolutions(Folder):
-    # Root mean squares times the root of the area are the errors that tests/reference/lps.py has found
-    # with systems of its own: 3.98e-2, 9.32e-2; 1.60e-2, 4.37e-2; 1.01e-2, 2.20e-2; 1.90e-3, 7.21e-2.
+    # Root mean squares times the root of the area are the errors that tests/reference/lps.py found
+    # with its own systems: 3.98e-2, 9.32e-2; 1.60e-2, 4.37e-2; 1.01e-2, 2.20e-2; 1.90e-3, 7.21e-2.
     ERRORS = {"manufactured": (3.98e-2, 9.32e-2, 256 * (math.pi / 16) ** 2), "hole": (1.60e-2, 4.37e-2, None),
               "disk": (1.01e-2, 2.20e-2, None), "inclusion": (1.90e-3, 7.21e-2, 1.0)}  # fmt: skip
 
@@ -217,7 +217,7 @@ class KnownSolutions(Folder):
 
 
 def of_faces(solid):
-    """Normals of the hole about the origin, its radius 0.2 m, in the place of the numerical ones."""
+    """Normals of the hole about the origin, with radius 0.2 m, in place of the numerical ones."""
     normals = numpy.zeros(solid.places.shape)
     normals[solid.rows] = solid.normals
     distance = numpy.linalg.norm(solid.places, axis=1)
@@ -227,10 +227,10 @@ def of_faces(solid):
 
 
 def residual_of(found, case, normals_of=None):
-    """Largest residual of the body's points, and the largest force without equilibrium [N/m3]."""
+    """Largest residual of the body's points, and the largest out-of-balance force [N/m3]."""
     spacing = math.pi / 16 if case == "manufactured" else 1 / 16
     carried = found.reference[:, :2]
-    half = 11.5 + 12  # cells about the origin: the collar of 7 and ghosts of 4 behind it, and some more
+    half = 11.5 + 12  # cells about the origin: the collar of 7, ghosts of 4 behind it, and a few more
     line = (numpy.arange(-half, half + 1)) * spacing
     line = line[abs(line) < 23.6 * spacing] if case != "manufactured" else line
     grid = numpy.stack(numpy.meshgrid(line, line, indexing="ij"), -1).reshape(-1, 2)
@@ -253,7 +253,7 @@ def residual_of(found, case, normals_of=None):
     if case == "manufactured":
         sx, sy, cx, cy = numpy.sin(0.4 * x), numpy.sin(0.4 * y), numpy.cos(0.4 * x), numpy.cos(0.4 * y)
         force = 0.430769230769231 * numpy.stack([sx * sy, -cx * cy], 1)
-        top = math.pi / 2 * 0.4  # the nearest place above
+        top = math.pi / 2 * 0.4  # the nearest position above
         normal, shear = 0.769230769230769 * cx * math.sin(top), 0.307692307692308 * sx * math.cos(top)
         n = solid.normals[solid.row[solid.points]]
         tractions = numpy.stack([normal * n[:, 0] + shear * n[:, 1], shear * n[:, 0] + normal * n[:, 1]], 1)
@@ -288,7 +288,7 @@ class Refusals(Folder):
                             patch(loads='[[load]]\nboundary = "hole"\npressure = 1\n'))  # fmt: skip
 
     def test_tractions_that_would_be_lost(self):
-        """In necks a point has two faces and one traction."""
+        """In necks a point has two faces but one traction."""
         neck = '[[lattice.shape]]\nsubtract = "box"\nmin = [0.4, -1.0]\nmax = [0.6, 0.25]\n'
         for value in ("traction = [0, 1]", "pressure = 1"):
             load = f'[[load]]\nside = "y+"\n{value}\n'
@@ -297,7 +297,7 @@ class Refusals(Folder):
         self.run_case(patch(loads="[[load]]\npressure = 1\n", size=(1.0, 0.5), shapes=neck))
 
     def test_thin_bodies(self):
-        """Their operator has eigenvalues of the other sign: cantilevers would bend as the load does not."""
+        """Their operator has eigenvalues of the opposite sign: cantilevers would bend against the load."""
         for rows in (1, 3, 6):
             self.assert_both_refuse(r"material.model = lps: needs bodies thicker than two horizons",
                                 patch(size=(1.0, 0.05 * rows), layers=("x-",)))  # fmt: skip
@@ -364,7 +364,7 @@ class Told(Folder):
         self.assertRegex(told, r"at \d+ points only to a lower degree")
 
     def test_errors_over_a_set(self):
-        """Of FIELD less itself, and less something that is 3e-4 and 4e-4 off."""
+        """Error of FIELD against itself, and against a field that differs by 3e-4 and 4e-4."""
         probe = '[[probe]]\nname = "{0}"\nset = "x_low"\nstatistic = "{0}"\nexpected = ["{1} + 3e-4", "{2} - 4e-4*load"]\n'
         text = patch() + "".join(probe.format(name, *FIELD) for name in ("rms_error", "max_error"))
         probes = self.results(text).summary["probes"]
@@ -406,7 +406,7 @@ relative_tolerance = 1e-13
 
 
 class Solids(Folder):
-    """Linear displacements of a cube that is held at one face, with five faces, eight edges and four corners."""
+    """Linear displacements of a cube held at one face: five faces, eight edges and four corners are free."""
 
     def error(self, form="full", perturbation=0.0):
         first, second = lps.lame(1.0, 0.3, "strain")
@@ -509,7 +509,7 @@ steps = 6
 
 class Motions(Folder):
     def test_quadratic_in_time(self):
-        """Newmark's mean acceleration is exact for motions quadratic in time, whatever the step."""
+        """Newmark's average acceleration is exact for motions quadratic in time, for any step."""
         tractions = [f"t*t*({value!r})" for value in stress(0.3)]
         for step in (0.5, 0.25):
             found = self.results(MOTION.format(stress=tractions, step=step))
@@ -608,7 +608,7 @@ every = 500
 
 class ThinBodies(Folder):
     def test_cantilevers_bend_as_the_page_tells(self):
-        """Deflections over those of Timoshenko's beam, and what of the weight no reaction bears."""
+        """Deflections over those of Timoshenko's beam, and the part of the weight that no reaction carries."""
         def beam(height):
             bending = 1e-5 * height * 3.0**4 / (8 * height**3 / 12)
             return bending + 1e-5 * height * 3.0**2 / (2 * 5 / 6 * height / 2.2)
@@ -636,7 +636,8 @@ class ThinBodies(Folder):
 
 class Iterations(Folder):
     def test_they_depend_on_neither_size_nor_perturbation(self):
-        """Of GMRES with the operator between neighbours of the unperturbed lattice, in all solves of the step."""
+        """Iterations of GMRES with the nearest-neighbour operator of the unperturbed lattice, over all solves of the
+        step."""
         for poisson, most in ((0.3, 35), (0.49, 120)):
             for sides in (16, 48):
                 for perturbation in (0, 0.2):
@@ -649,7 +650,7 @@ class Iterations(Folder):
 
 class LoadSteps(Folder):
     def test_a_strip_tears(self):
-        """What a straight crack dissipates is its area times the fracture energy, but for the ends of its path."""
+        """A straight crack dissipates its area times the fracture energy, except at the ends of its path."""
         found = self.results(STRIP)
         area = 0.028  # for a metre of thickness
         self.assertAlmostEqual(found.summary["energy"]["dissipated"] / (3.8 * area), 1.0, delta=0.1)

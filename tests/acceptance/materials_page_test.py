@@ -1,4 +1,4 @@
-"""docs/materials.md: its tables are accepted, and its numbers are those of its formulas."""
+"""docs/materials.md: its tables are accepted, and its numbers follow from its formulas."""
 
 import re
 import tomllib
@@ -8,7 +8,7 @@ from tests.acceptance.folder import Folder
 from tests.reference.program import ROOT
 
 PAGE = (ROOT / "docs/materials.md").read_text()
-# A body of a few points on a lattice that resolves the strength of every material.
+# A body of a few points, on a lattice that is fine enough for every material's strength.
 BODY = """
 dimension = {dimension}
 
@@ -39,7 +39,7 @@ def sheets():
 
 
 def row(name):
-    """Cells of the overview."""
+    """Cells of the overview table."""
     line = next(line for line in PAGE.splitlines() if line.startswith(f"| [{name}]"))
     return [cell.strip() for cell in line.strip("|").split("|")][1:]
 

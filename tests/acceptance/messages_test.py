@@ -1,4 +1,4 @@
-"""What the program says to wrong, extreme and long input, and to an interrupt."""
+"""Messages for wrong, extreme and long input, and for an interrupt."""
 
 import json
 import signal
@@ -68,9 +68,9 @@ class Messages(Folder):
         vertices = ", ".join(f"[{x:.9f}, {y}]" for x, y in corners)
         text = PLATE.replace('add = "box"\nmin = [0.0, 0.0]\nmax = [0.04, 0.012]', f'add = "polygon"\nvertices = [{vertices}]')
         start = time.monotonic()
-        # unknown, so that nothing but reading is done
+        # an unknown key, so that the case is only read
         self.assert_refused(self.command("check", text, "lattice.spacin=1"), "lattice.spacin")
-        # Quadratic reading took 13 s for a fifth of the vertices.
+        # Reading in quadratic time took 13 s for a fifth of the vertices.
         self.assertLess(time.monotonic() - start, 30.0)
 
     def test_a_first_shape_that_subtracts_is_wrong_input(self):
@@ -165,7 +165,7 @@ class Messages(Folder):
         self.assert_refused(run, "numbers carry no unit", "write 0.001")
 
     def test_data_of_damage_need_a_law(self):
-        """They used to be dropped without a word. Law none, said aloud, switches them off."""
+        """They used to be ignored silently. An explicit law "none" switches them off."""
         lawless = PLATE.replace('law = "critical_stretch", ', "").replace('law = "critical_stretch"\n', "")
         self.assertNotEqual(lawless, PLATE)
         self.assert_refused(self.command("check", lawless), "material.damage", "needs a law beside it")
@@ -177,7 +177,7 @@ class Messages(Folder):
         self.assertNotIn("fracture ", run.output)
 
     def test_a_layer_of_points_in_space(self):
-        """No horizon gives bonds a direction out of the plane in which all points stand."""
+        """No horizon gives bonds a direction out of the plane in which all points lie."""
         layer = 'dimension = 3\n[lattice]\nspacing = 1e-3\nshape = [{ add = "box", min = [0, 0, 0], max = [0.02, 0.01, 0.001] }]\n'
         layer += '[material]\nyoungs_modulus = 200e9\n[[set]]\nname = "left"\nwhere = "x < 0.003"\n'
         layer += '[[support]]\nset = "left"\ndisplacement = [0, 0, 0]\n[[load]]\nset = "left"\nbody_force = ["load", 0, 0]\n'
@@ -237,7 +237,7 @@ class Messages(Folder):
         self.assertGreater(refused, 20)
 
     def test_the_length_of_a_crack_is_no_matter_of_display(self):
-        """A cut of 10 columns, and what it is after the plate has torn: the same with either display."""
+        """A cut of 10 columns, and its display after the plate has torn: the same with either setting."""
         for lift, expected in (("1e-7", 0.010), ("1e-3", 0.040)):
             lengths = []
             for counted in ("true", "false"):
@@ -246,7 +246,7 @@ class Messages(Folder):
                 lengths.append(summary["probes"]["crack"])
                 self.assertEqual(summary["broken_bonds"] > 0, lift == "1e-3")
             self.assertEqual(*lengths)
-            # A tip lies within a spacing of where the last column is separated.
+            # A tip is within a spacing of the last separated column.
             self.assertAlmostEqual(lengths[0], expected, delta=SPACING)
 
 

@@ -1,4 +1,4 @@
-"""Bodies in motion that several tests follow, and what is read of their results."""
+"""Moving bodies that several tests use, and readers of their results."""
 
 import random
 
@@ -14,7 +14,7 @@ def columns(folder):
 
 
 def fields(folder):
-    """By step: the fields of a results file, and its time."""
+    """By step: the fields of a results file, and their time."""
     with h5py.File(folder / "results.h5") as file:
         return {int(group.attrs["step"]): {"time": group.attrs["time"]} | {
             name: item[...] for name, item in group.items() if name != "history"} for group in file["steps"].values()}  # fmt: skip
@@ -47,7 +47,7 @@ every = 20
 
 
 def random_case(seed):
-    """A small body with whatever it may have, and its time step and end."""
+    """A small body with random features, and its time step and end."""
     rng = random.Random(seed)
     d = rng.choice([1, 2, 3])
     extent = {1: [1.2], 2: [0.9, 0.6], 3: [0.5, 0.4, 0.4]}[d]

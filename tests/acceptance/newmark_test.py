@@ -1,4 +1,4 @@
-"""Implicit steps of mode dynamics: judged by the reference's forces, by closed forms and by explicit steps."""
+"""Implicit steps of mode dynamics, compared with the reference's forces, closed forms and explicit steps."""
 
 import numpy
 
@@ -9,7 +9,7 @@ from tests.reference.results import Results
 
 
 def implicit(text, step, spectral_radius=1, end=None):
-    """A case with such steps in the place of its own."""
+    """A case with implicit steps in place of its own."""
     head, tail = text.split("[dynamics]\n")
     lines = [line for line in tail.splitlines() if not line.startswith(("time_step", "step_share"))]
     lines = [f"end_time = {end}" if end is not None and line.startswith("end_time") else line for line in lines]
@@ -32,7 +32,7 @@ class AgainstTheReference(Folder):
                 for row in range(1, len(rows["time"])):
                     step = int(rows["step"][row])
                     lacks = motion.take(at[step]["displacement"], rows["time"][row] - rows["time"][row - 1])
-                    # The search's 1e-10 is of the forces right after the step's jump, which are larger.
+                    # The search's 1e-10 is relative to the larger forces right after the step's jump.
                     self.assertLess(lacks, 1e-7, f"step {step}")
                     velocity = numpy.where(motion.free, at[step]["velocity"], 0.0)
                     numpy.testing.assert_allclose(velocity, motion.v, rtol=1e-7, atol=1e-7 * 0.2)
@@ -41,7 +41,7 @@ class AgainstTheReference(Folder):
                     self.assertAlmostEqual(rows["external_work"][row], began + motion.work, delta=1e-7 * began)
                     self.assertEqual(rows["broken_bonds"][row], motion.mechanics.is_broken(motion.history).sum())
                 broken += rows["broken_bonds"][-1] > 0
-        self.assertGreater(broken, 3)  # else nothing was seen of damage
+        self.assertGreater(broken, 3)  # otherwise damage was not tested
 
 
 class ClosedForms(Folder):
@@ -70,7 +70,7 @@ class ClosedForms(Folder):
                 folder = self.run_case(implicit(text, step, radius, end=20 * step), name=f"oscillator_{radius}_{step}")
                 rows, at = columns(folder), fields(folder)
                 self.assertTrue((rows["time_step"] == step).all(), "a step was cut")
-                squared_frequency = 2 * rows["stored_energy"][0] / 1e-8 / 0.1  # of the density 2 in 0.05 m3
+                squared_frequency = 2 * rows["stored_energy"][0] / 1e-8 / 0.1  # density 2 in 0.05 m3
                 of_inertia, of_force = (2 * radius - 1) / (radius + 1), radius / (radius + 1)
                 gamma, beta = 0.5 - of_inertia + of_force, (1 - of_inertia + of_force) ** 2 / 4
                 u, v, a = 1e-4, 0.0, -squared_frequency * 1e-4

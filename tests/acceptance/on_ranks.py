@@ -1,4 +1,4 @@
-"""Small bodies, runs of them on ranks, and what their results have to share."""
+"""Small bodies, runs of them on ranks, and the comparison of their results."""
 
 import csv
 import json
@@ -10,7 +10,7 @@ import numpy
 
 from tests.acceptance.folder import Folder
 
-# Root may run them, as in a container; ranks that wait leave the core to other tests.
+# Root may run them, as in a container; waiting ranks yield the core to other tests.
 ENVIRONMENT = {
     "OMPI_MCA_mpi_yield_when_idle": "1",
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
@@ -134,7 +134,7 @@ displacement = ["0.2*load", 0, "0.05*load"]
 [loading]
 steps = 1
 """
-# Triangles that are lost with their bonds.
+# Triangles that break with their bonds.
 SHEET = """
 dimension = 2
 [lattice]
@@ -162,7 +162,7 @@ displacement = [0, 0]
 [[support]]
 set = "pulled"
 """
-# A dilatation per point, which neighbours of ghosts tell.
+# A dilatation per point, which needs the neighbours of ghosts.
 STATES = PLATE.replace('model = "bond"', 'model = "lps"\nplane = "strain"\npoisson_ratio = 0.4') + """
 [quadrature]
 form = "energy"
@@ -170,7 +170,7 @@ volume_correction = "linear"
 """
 STORED = SOLVER.replace("matrix_free", "stored")
 PIECES = STORED.replace("block_jacobi", "rigid_pieces")
-# Thin and long, with a notch, under a load at its end.
+# Thin and long, with a notch, loaded at its end.
 BEAM = """
 dimension = 3
 [lattice]
@@ -187,7 +187,7 @@ displacement = [0, 0, 0]
 set = "end"
 total_force = ["1e-3*load", "1e-3*load", "load"]
 """
-# Parts of it are thinner than the horizon.
+# Some parts are thinner than the horizon.
 SHORT_BAR = BAR.replace("max = [4]", "max = [0.3]").replace(', thickness = 2', ", thickness = 1")
 
 
@@ -203,7 +203,7 @@ class OnRanks(Folder):
         return self.run_case(text, *changes, name=f"on_{ranks}", words=(*on(ranks), *words), **options)
 
     def ended_on(self, ranks, text, *changes, **options):
-        """How a run ended, well or not, and its folder."""
+        """The ending of a run, with any code, and its folder."""
         output = self.run_on(ranks, text, *changes, code=(0, 2, 3), **options)
         return self.ended, output
 
@@ -244,11 +244,11 @@ class Comparison(OnRanks):
             self.assertEqual(names, objects(found))
             for name in names:
                 if name == "checkpoint":
-                    continue  # of seconds, too
+                    continue  # times are ignored, too
                 if not isinstance(expected[name], h5py.Dataset) or name.startswith("iterations/"):
                     continue
                 if name == "case/as_resolved" or name.startswith("case/settings"):
-                    continue  # the folder
+                    continue  # so is the folder
                 if name.endswith("_iterations"):
                     continue  # see expect_like_costs
                 self.expect_same_data(name, expected[name], found[name])
@@ -265,7 +265,7 @@ class Comparison(OnRanks):
         if name.endswith(("balance_error", "/reason", "pin_force")):
             return  # differences of large numbers
         scale = numpy.abs(expected[()]).max(initial=0)
-        if name.startswith("history/") and name[-2:] in ("_x", "_y", "_z"):  # of a vector
+        if name.startswith("history/") and name[-2:] in ("_x", "_y", "_z"):  # components of a vector
             scale = max(numpy.abs(expected.parent[key][()]).max() for key in expected.parent if key[:-2] == name[8:-2])
         if name.startswith(("history/reaction", "history/momentum")):
             kind = name.split("_")[0].split("/")[1]
@@ -274,8 +274,8 @@ class Comparison(OnRanks):
         self.assertLessEqual(difference, 1e-9 * scale, name)
 
     def expect_like_costs(self, one, several):
-        """Parts cost no convergence. How many iterations there are is no statement about results: round-off, which
-        differs from build to build, takes or leaves some."""
+        """Partitions cost no convergence. The number of iterations is not a result: round-off, which
+        differs between builds, changes it by a few."""
         count = lambda folder: sum(int(row["linear_iterations"]) for row in rows(folder, "iterations.csv"))
         self.assertLessEqual(count(several), 1.1 * count(one) + 10)
 
@@ -290,6 +290,6 @@ class Comparison(OnRanks):
 
 
 def entries_of_checkpoint(file):
-    """Names and sizes of what it holds, as they stand at its begin."""
+    """Names and sizes of the files, at the moment of the call."""
     head, rest = file["checkpoint"][()].tobytes().split(b"\n", 1)
     return head, rest[24 : 24 + int.from_bytes(rest[:8], "little")].decode()

@@ -1,5 +1,5 @@
-"""An installed peristat, as a package brings it: its launcher runs cases and draws their pictures from
-any folder, without the sources, and writes nothing beside itself."""
+"""An installed peristat, as in a package: its launcher runs cases and draws their pictures from
+any folder, without the sources, and writes nothing into its own folders."""
 
 import os
 import pathlib
@@ -24,7 +24,7 @@ def lines(*command, **options):
 class Package(Folder):
     @classmethod
     def setUpClass(cls):
-        # Staged, as packages are made: where it is installed and where it is told to be differ.
+        # Staged, as for packages: the staging folder and the prefix differ.
         stage = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="peristat package "))).resolve()
         lines("cmake", "--install", BUILD, "--prefix", "/usr", environment={"DESTDIR": str(stage)})
         cls.prefix = stage / "usr"
@@ -65,16 +65,16 @@ class Package(Folder):
                 self.assertTrue(pathlib.Path(loaded).resolve().is_relative_to(self.prefix), loaded)
 
     def test_no_wide_vector_crosses_between_program_and_library(self):
-        """In a package both are compiled for different processors (docs/installing.md#processors)."""
-        wide = re.compile(r"simd|__vector|Eigen::")  # Eigen's memory has another layout, too
+        """A package compiles both for different processors (docs/installing.md#processors)."""
+        wide = re.compile(r"simd|__vector|Eigen::")  # Eigen's memory layout also differs
         library = lines("nm", "-C", "--defined-only", "--dynamic", BUILD / "libperistat.so")
-        self.assertTrue(any(map(wide.search, library)))  # the library has some
+        self.assertTrue(any(map(wide.search, library)))  # the library uses some itself
         taken = [line for line in lines("nm", "-C", "--undefined-only", BUILD / "libperistat_runner.a") if " U peristat::" in line]
         self.assertGreater(len(taken), 100)
         self.assertEqual([line for line in taken if wide.search(line)], [])
 
     def test_the_library_calls_its_own_copies(self):
-        """A program exports templates that it has compiled, too, perhaps for another processor."""
+        """A program also exports templates that it has compiled, perhaps for another processor."""
         library = BUILD / "libperistat.so"
         own = {words[2] for words in map(str.split, lines("nm", "--dynamic", "--defined-only", library)) if words[1] in "TW"}
         asked = [words[4].partition("@")[0] for words in map(str.split, lines("readelf", "-rW", library)) if len(words) > 4]
@@ -90,7 +90,7 @@ class Package(Folder):
             found = "\n".join(lines("ldd", binary))
             self.assertIn("=>", found)
             self.assertNotIn("not found", found, binary)
-            self.assertNotIn(str(ROOT), found, binary)  # nothing of the build is needed
+            self.assertNotIn(str(ROOT), found, binary)  # nothing of the build folder is needed
 
     def test_the_shipped_cases_come_along(self):
         shipped = lambda folder: {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*.toml")}

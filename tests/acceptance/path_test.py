@@ -1,4 +1,4 @@
-"""Mode path: from event to event. The reference of tests/reference settles every event once more."""
+"""Mode path: from event to event. The reference of tests/reference solves every event independently."""
 
 import json
 
@@ -60,7 +60,7 @@ def crack(*ends):
 
 class Paths(Programmes):
     def broken(self, name="out"):
-        """Ends of the bonds in the order in which they broke, and the load factors."""
+        """Ends of the bonds in breaking order, and the load factors."""
         rows = table(self.folder / name / "broken_bonds.csv")
         loads = numpy.array([row["load_factor"] for row in rows])
         return [(row["step"], row["first_point"], row["second_point"]) for row in rows], loads
@@ -69,7 +69,7 @@ class Paths(Programmes):
         return [row["reason"] for row in table(self.folder / name / "decisions.csv") if row["action"] == action]
 
     def judged(self, text, *settings, name="out"):
-        """Rows of a run that ends with 0 and that the reference has nothing against."""
+        """Rows of a run that ends with 0 and passes the reference's checks."""
         rows = self.rows(text, *settings, name=name)
         judge = Verification(self.folder / name, text)
         self.assertEqual(judge.run(), [])
@@ -119,7 +119,7 @@ class Judged(Paths):
         for stage in (1.0, 2.0, 3.0):
             self.assertIn(stage, stages)
         bonds = {row["stage"]: row["broken_bonds"] for row in rows}
-        self.assertEqual(bonds[1.0], bonds[2.0])  # nothing breaks on the way down
+        self.assertEqual(bonds[1.0], bonds[2.0])  # nothing breaks during unloading
         self.assertGreater(bonds[1.0], 0)
 
     def test_two_notches_that_compete(self):
@@ -127,7 +127,7 @@ class Judged(Paths):
         self.judged(strip(cracks=notches))
 
     def test_three_pieces(self):
-        """Ligaments that are alike break together, and leave a piece that nothing holds."""
+        """Equal ligaments break together, and leave a piece that is no longer held."""
         notches = crack(*(([x, low], [x, high]) for x in (0.005, 0.015) for low, high in ((0, 0.002), (0.004, 0.006))))
         text = strip(cracks=notches, left="-4e-4").replace("[0.012, 0.006]", "[0.020, 0.006]")
         text = text.replace('displacement = ["2e-4*load", "free"]', 'displacement = ["4e-4*load", "free"]')
@@ -200,7 +200,7 @@ class OnePath(Paths):
         self.same_path(strip(TANH, more="[loading]\nteeth = 3\n"), self.variants())
 
     def test_on_rollers(self):
-        """What follows others takes part in the stiffness that dropped bonds take off a tangent."""
+        """Dependent degrees of freedom take part in the stiffness that dropped bonds remove from a tangent."""
         roller = '[[roller]]\nset = "right"\nnormal = [1, 0.2]\ndisplacement = "2e-4*load"\n'
         text = strip().replace('[[support]]\nset = "right"\ndisplacement = ["2e-4*load", "free"]\n', roller)
         self.same_path(text, {"pcg": (2, "solver.linear=pcg")})
@@ -209,7 +209,7 @@ class OnePath(Paths):
         self.assertLess(4 * costs["factorisations"], costs["steps"])
 
     def test_symmetric(self):
-        """Where bonds tie, too."""
+        """Also for tied bonds."""
         notches = crack(([0.006, 0.0], [0.006, 0.001]), ([0.006, 0.005], [0.006, 0.006]))
         self.same_path(strip(cracks=notches, left="-2e-4"), self.variants())
 
@@ -235,7 +235,7 @@ class Preloaded(Paths):
         self.assertLess(numpy.abs(0.1 + 0.9 * other_loads - loads).max(), 1e-8)
 
     def test_what_is_above_its_strength_at_once_is_an_avalanche(self):
-        """All bonds of the strip used to break where none was at its strength yet."""
+        """All bonds of the strip used to break before any had reached its strength."""
         self.first_step = 0
         rows = self.rows(strip().replace("2e-4*load", "2e-4*(0.5+0.5*load)"))
         self.assertEqual(rows[0]["load_factor"], 0)
@@ -245,7 +245,7 @@ class Preloaded(Paths):
 
 
 class Fallen(Paths):
-    """A run that ends where the force has fallen below a share of its peak."""
+    """A run that ends when the force has fallen below a share of its peak."""
 
     def test_it_ends_and_goes_on(self):
         for mode in ("path", "relaxation", "adaptive"):

@@ -1,4 +1,4 @@
-"""Loads that go up and down, rest, and come in several parameters."""
+"""Loads that increase and decrease, rest, and have several parameters."""
 
 import unittest
 
@@ -47,7 +47,7 @@ ROUND_OFF = 1e-12
 
 
 class Programmes(Folder):
-    first_step = 1  # that `history` gives: step 0 has a test of its own
+    first_step = 1  # of the `history`; step 0 has a test of its own
 
     def rows(self, case, *changes, name="out", **options):
         """The history of a run."""
@@ -64,7 +64,7 @@ class Programmes(Folder):
 
 class Cycles(Programmes):
     def is_elastic_since(self, rows, first, force):
-        """From row `first` on all follows one secant: work is stored and given back, nothing is dissipated."""
+        """From row `first` on all rows follow one secant: work is stored and returned, nothing is dissipated."""
         at_first = rows[first]
         stiffness = at_first[force] / at_first["load_factor"]
         for row in rows[first:]:
@@ -77,7 +77,7 @@ class Cycles(Programmes):
         rows = self.rows(BAR, "loading.table=[0,1,0,-0.5,0.8,1]", "loading.steps=5", 'solver.mode="newton"')
         self.assertEqual([row["load_factor"] for row in rows[4::5]], [1, 0, -0.5, 0.8, 1])
         self.assertGreater(rows[4]["dissipated_energy"], 0.01 * rows[4]["stored_energy"])
-        # Pulled it is softer than it was, and pushed it is not.
+        # It is softer in tension than before, and unchanged in compression.
         self.is_elastic_since(rows[:10] + rows[20:], 4, "reaction_x:right")
         unloaded = rows[9]
         self.assertLess(abs(unloaded["reaction_x:right"]), 1e-8 * rows[4]["reaction_x:right"])
@@ -132,7 +132,7 @@ class Parameters(Programmes):
         rows = self.rows(pulled_and_sheared, "loading.table=[0,1,1,0]", "loading.table2=[0,0,1,1]", "loading.steps=2")
         pulled, both, sheared = rows[1], rows[3], rows[5]
         self.assertLess(abs(pulled["reaction_y:right"]), 1e-9 * pulled["reaction_x:right"])
-        # Small displacements: forces add up, but for what turning does.
+        # Small displacements: forces add up, except for the effect of rotations.
         self.assertLess(abs(both["reaction_x:right"] / pulled["reaction_x:right"] - 1), 0.05)
         self.assertLess(abs(sheared["reaction_y:right"] / both["reaction_y:right"] - 1), 0.05)
         self.assertEqual([row["stage"] for row in rows], [0.5, 1, 1.5, 2, 2.5, 3])

@@ -1,4 +1,4 @@
-"""Bodies of all kinds on several MPI ranks are those of one."""
+"""Bodies of all kinds have the same results on several MPI ranks as on one."""
 
 import unittest
 
@@ -20,7 +20,7 @@ from tests.acceptance.on_ranks import (
 from tests.reference.program import ROOT
 
 
-# A sheet with a hole that repeats; along y it is free to contract.
+# A periodic sheet with a hole, which is free to contract along y.
 CELL = """
 dimension = 2
 [lattice]
@@ -60,7 +60,7 @@ steps = 2
 """
 
 
-# Their sets reach over all ranks, overlap, and have points of the support.
+# Their sets extend over all ranks, overlap, and contain points of the support.
 MEANS = """
 [[set]]
 name = "upper"
@@ -94,7 +94,7 @@ displacement = "0.02*load"
 set = "pulled_too"
 weights = [0.2, 1]
 """
-# The means of two sets move alike, and one of them does not turn.
+# The means of two sets move alike, and one of them does not rotate.
 BETWEEN = """
 [[set]]
 name = "low"
@@ -140,7 +140,7 @@ FREE = SLOPED.replace('"0.05*load*(1+x)"', '"free"') + '[[load]]\nset = "top"\nt
 
 
 class Bodies(Comparison):
-    """Shipped cases, coarser, and small bodies: what they are made of is the same on all ranks."""
+    """Shipped cases, coarser, and small bodies: their bodies are identical for any number of ranks."""
 
     def compare_shipped(self, case, *settings, ranks=(2, 3)):
         text = (ROOT / "cases" / f"{case}.toml").read_text()
@@ -160,7 +160,7 @@ class Bodies(Comparison):
 
     def test_several_materials(self):
         self.compare_shipped("regions/bimaterial", "lattice.spacing=0.01")
-        # A third solution would be of round-off, with as many iterations as that gives.
+        # A third solution would consist of round-off, which would decide its iterations.
         self.compare_shipped("regions/composite", "lattice.spacing=1e-3", "solver.relative_tolerance=1e-7")
 
     def test_interfaces_and_random_fields(self):
@@ -221,7 +221,7 @@ class Bodies(Comparison):
         self.compare(PLATE, (2, 3), *half, 'quadrature.surface_correction="energy"', solver=STORED)
         self.compare(SQUARE, (3,), 'symmetry=[{axis="y", at=0}]', "output.stress=true", solver=STORED)
         self.compare(CUBE, (3,), 'symmetry=[{axis="y", at=0}]', "loading.table=[0, 0.2]", solver=STORED)
-        # Thinner than the horizon, between two planes, and a rank may own nothing.
+        # Thinner than the horizon, between two planes, and a rank may own no points.
         thin = PLATE.replace("max = [1, 1.5]", "max = [0.1, 0.5]").replace(', { subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }', "")
         thin = thin.replace("x > 0.6 && y > 1", "y > 0.3")
         one = self.compare(thin, (3,), 'symmetry=[{axis="x", at=0}, {axis="x", at=0.1}]', solver=STORED)
@@ -254,7 +254,7 @@ class Bodies(Comparison):
         output = self.run_on(2, text, words=("--stop-after", 1), code=130)
         self.resume_on(3, output)
         self.expect_same(one, output)
-        # Its state has no images, which that of one rank has.
+        # Its state has no images, unlike that of one rank.
         output = self.run_on(2, text, words=("--stop-after", 1), code=130)
         self.resume_on(1, output, code=2)
 
@@ -264,7 +264,7 @@ class Bodies(Comparison):
         free = PLATE.replace("y > 1", "y > 1 && y < 1.4") + '[[rigid]]\nset = "corner"\nrotation = ["0.02*load"]\n'
         one = self.compare(free, (2, 3), solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["moment_z:corner"]), 0.0)
-        # Two pieces that nothing else ties to one another.
+        # Two pieces with no other connection.
         apart = PLATE.replace('{ subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }',
                               '{ subtract = "box", min = [-1, 0.5], max = [2, 0.8] }')  # fmt: skip
         apart = apart.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]\n',
@@ -275,14 +275,14 @@ class Bodies(Comparison):
             self.compare(text.replace(f'[[support]]\nset = "{pulled}"', turned), (3,), solver=STORED)
 
     def test_rollers(self):
-        """Of all points of a set, on several ranks and not on all of them."""
+        """Over all points of a set, which lies on several ranks but not on all of them."""
         one = self.compare(SLOPED, (2, 4), solver=STORED)
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_y:top"]), 0.0)
         one = self.compare(FREE, (3,), solver=STORED)
         self.assertLess(abs(float(rows(one, "history.csv")[-1]["reaction_y:top"])), 1.0)
 
     def test_relaxation_and_damage_under_rollers_and_linear_constraints(self):
-        """Pseudo masses are those of one rank."""
+        """Pseudo masses equal those of one rank."""
         means = PLATE.replace(TOP, MEANS)
         for text in (FREE, means):
             self.compare_settings(text, 'solver.mode="relaxation"', ranks=(2,), solver=STORED)
@@ -299,7 +299,7 @@ class Bodies(Comparison):
         self.assertIn('take "dynamic"', " ".join(refused.split()))
 
     def test_rollers_that_touch(self):
-        """Nothing else holds the beam: the points that a roller holds in the mean are on two ranks."""
+        """Nothing else holds the beam: the points that a roller holds on average are on two ranks."""
         case = (ROOT / "cases/three_point_bending/rollers.toml").read_text()
         self.compare(case.replace("5e-4", "1.5e-3"), (2, 3), solver=STORED)
         line = CUBE_ON_ROLLERS + '[[roller]]\nname = "edge"\nat = [0.0, 0.4, 0.9]\nto = [0.7, 0.4, 0.9]\nnormal = [0, 0, 1]\ndisplacement = "-0.02*load"\n'
@@ -323,7 +323,7 @@ class Bodies(Comparison):
         self.compare(turned + PULL.replace("RULE", "x > 0.5 && y < 1.3"), (3,), "lattice.spacing=0.1", solver=STORED)
 
     def test_pieces_that_constraints_hold_together(self):
-        """The upper one has no bond to the lower one, and other ranks."""
+        """The upper part has no bond to the lower one, and is on other ranks."""
         pieces = PLATE.replace("spacing = 0.05", "spacing = 0.1").replace('{ subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }',
                                                                           '{ subtract = "box", min = [-1, 0.5], max = [2, 0.8] }')  # fmt: skip
         pieces = pieces.replace('[[support]]\nset = "top"\ndisplacement = [0, "0.05*load"]', "")
@@ -341,11 +341,12 @@ class Bodies(Comparison):
                 self.expect_same(one, output)
 
     def test_rigid_pieces_with_constraints(self):
-        """Pieces are those of the whole body; jumps over periods and rigid sets, which all ranks share, are their own."""
+        """Pieces are those of the whole body. Jumps over periods and rigid sets, which all ranks share, have their own
+        block."""
         turning = PLATE.replace("y > 1", "y > 1 && y < 1.4") + '[[rigid]]\nset = "corner"\nrotation = ["0.02*load"]\n'
         thin = PLATE.replace("max = [1, 1.5]", "max = [0.1, 0.5]").replace("x > 0.6 && y > 1", "y > 0.3")
         thin = thin.replace(', { subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }', "")
-        for text, ranks, planes, share in (  # of the iterations of block Jacobi, which has few in a small body
+        for text, ranks, planes, share in (  # share of the iterations of block Jacobi, which has few in a small body
             (PLATE, (3,), 'symmetry=[{axis="x", at=1}]', 0.5),
             (thin, (8,), 'symmetry=[{axis="x", at=0}, {axis="x", at=0.1}]', 1.5),
             (CELL, (2, 4), "title='cell'", 0.7),

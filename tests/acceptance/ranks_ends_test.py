@@ -1,4 +1,4 @@
-"""How runs on several MPI ranks end, and what they refuse."""
+"""Endings of runs on several MPI ranks, and refused cases."""
 
 import json
 import os
@@ -93,7 +93,7 @@ class Ends(OnRanks):
         self.expect_going_on(self.folder / "out", 1, 3)
 
     def expect_going_on(self, output, *numbers_of_ranks):
-        """What a run has left is readable, and is gone on from."""
+        """The files of a run are readable, and the run can be resumed."""
         with h5py.File(output / "results.h5") as file:
             steps = file["history/step"][()]
             self.assertGreaterEqual(len(steps), 2)
@@ -105,7 +105,7 @@ class Ends(OnRanks):
             self.assertGreaterEqual(len(file["history/step"]), len(steps) + 2 * len(numbers_of_ranks) - 1)
 
     def test_files_that_can_not_grow_end_all(self):
-        """Like a full disk, which faults_test.py has for one rank."""
+        """Like a full disk, which faults_test.py tests for one rank."""
         run = self.start_on_two(fine(0.025, 5000))
         for rank in self.wait_for_ranks(run.pid, rows=3):
             resource.prlimit(rank, resource.RLIMIT_FSIZE, (1 << 14, 1 << 14))
@@ -118,7 +118,7 @@ class Ends(OnRanks):
         self.expect_going_on(self.folder / "out", 3)
 
     def test_a_rank_that_gets_no_more_memory_ends_all(self):
-        """While the parts are made, and while they are searched with."""
+        """During construction of the parts, and during the search."""
         words = [PROGRAM, "run", self.case(fine(0.006, 1)), "--threads", 1, "--output", "out", "--overwrite",
                  *settings("solver.max_iterations=1", "loading.adaptive=false")]  # fmt: skip
         codes = []
@@ -145,7 +145,7 @@ class Ends(OnRanks):
         self.assertIn('"interrupted"', (self.folder / "out/summary.json").read_text())
 
     def wait_for_ranks(self, launcher, rows=0):
-        """Process numbers, once results are there, with so many rows of the history (the first is step 0)."""
+        """Process numbers, once the history has the given number of rows (the first is step 0)."""
         end = time.monotonic() + 60
         while time.monotonic() < end:
             time.sleep(0.05)
@@ -177,7 +177,7 @@ class Refusals(OnRanks):
                 self.assertEqual(said.count("peristat:"), 1)
 
     def test_convolutions(self):
-        """Bonds stand in for them where the material has some."""
+        """Bonds replace them if the material has some."""
         said = self.refusal(PLATE, 'solver.operator="fft"')
         self.assertIn("solver.operator", said)
         self.assertIn('take "bonds" or "auto"', said)
@@ -206,7 +206,7 @@ class Refusals(OnRanks):
         self.assertEqual(said.count("contradict"), 1, said)
 
     def test_the_printed_form(self):
-        """Convolutions alone sum it."""
+        """Only convolutions support it."""
         said = self.refusal(STATES, 'quadrature.form="printed"', 'quadrature.volume_correction="none"')
         self.assertIn("models that have bonds", said)
 

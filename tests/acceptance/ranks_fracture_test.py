@@ -1,4 +1,4 @@
-"""Fracture on ranks is that of one rank."""
+"""Fracture on several ranks equals that on one."""
 
 import unittest
 
@@ -41,7 +41,7 @@ steps = 12
 
 
 class Fracture(Comparison):
-    """Which bonds break, in which step, and all fields are those of one rank."""
+    """The same bonds break in the same steps as on one rank, and all fields agree."""
 
     def broken(self, output):
         return [(row["step"], row["first_point"], row["second_point"]) for row in rows(output, "broken_bonds.csv")]
@@ -77,7 +77,7 @@ class Fracture(Comparison):
                           'symmetry=[{axis="x", at=1.2}]')  # fmt: skip
 
     def test_a_rigid_set_goes_on_with_another_number_of_ranks(self):
-        """The centre that it turns about is the same, to the last bit."""
+        """The centre of rotation is the same, to the last bit."""
         text = TORN.replace('[[support]]\nset = "top"', '[[rigid]]\nset = "top"\nrotation = ["0.01*load"]') + STORED
         options = ('solver.mode="adaptive"', "loading.steps=8")
         one = self.run_on(1, text, *options)
@@ -193,7 +193,7 @@ class Fracture(Comparison):
             self.expect_same(whole, output)
 
 
-# The ring about a tip lies in several parts; the load is of no mode alone.
+# The ring around a tip extends over several parts; the load is of mixed mode.
 TIP = """
 dimension = 2
 [lattice]

@@ -1,4 +1,4 @@
-"""Motions on several MPI ranks are those of one."""
+"""Motions on several MPI ranks equal those on one."""
 
 import unittest
 
@@ -10,7 +10,7 @@ from tests.acceptance.on_ranks import BLOCK, CUBE, PLATE, SHEET, SQUARE, STATES,
 from tests.acceptance.ranks_bodies_test import CELL
 from tests.reference.program import ROOT
 
-# Torn from a pre-crack and a hole by a load that sets in at once; what comes off flies away.
+# Torn from a pre-crack and a hole by a suddenly applied load; fragments fly away.
 TORN = """
 dimension = 2
 [lattice]
@@ -75,7 +75,7 @@ end_time = 3.0
 """
 # Torn at its plane of symmetry, too.
 HALF = 'symmetry=[{axis="x", at=1.2}]'
-# A cell that repeats, whose periods change.
+# A periodic cell whose periods change.
 CELL_IN_MOTION = CELL.split("[loading]")[0]
 for text, moving in (("1e-2*load", "1e-2*sin(2000*t)"), ("2e-3*load", "2*t"), ('[0, "free"]', '["t", 0]'),
                      ("[material]", "[material]\ndensity = 1000"), ("2e4*load", "2e7*t")):  # fmt: skip
@@ -95,7 +95,7 @@ LAW = 'material.damage={law="tanh", onset=0.01, critical=0.03, rate=3, no_fail=[
 NEWMARK = ('dynamics.scheme="newmark"', "dynamics.time_step=1e-4", 'solver.linear="pcg"',
            'solver.preconditioner="block_jacobi"', "solver.linear_tolerance=1e-12",
            "solver.relative_tolerance=1e-12")  # fmt: skip
-# Of other models; they are slow.
+# Other models, in slow motion.
 SQUARE_IN_MOTION = SQUARE.replace('["0.4*load", "0.1*load"]', '["0.1*sin(2*t)", "free"]')
 CUBE_IN_MOTION = CUBE.replace('["0.2*load", 0, "0.05*load"]', '["0.05*t", "free", "free"]')
 STATES_IN_MOTION = STATES.replace('"0.05*load"', '"1e-4*sin(2000*t)"').replace("1e6*load*y", "1e3*y")
@@ -119,7 +119,7 @@ def without_steps(text, density):
 
 
 class Motions(Comparison):
-    """Explicit steps: waves, supports and loads that move, layers that absorb."""
+    """Explicit steps: waves, supports and loads that move, absorbing layers."""
 
     MOVING = (
         PLATE.replace('"0.05*load"', '"1e-3*sin(2000*t)"')
@@ -227,7 +227,7 @@ class Motions(Comparison):
 
 
 class Torn(Comparison):
-    """The same bonds break in the same steps, wherever ranks have parts."""
+    """The same bonds break in the same steps for any partition."""
 
     def broken(self, output):
         return [(row["step"], row["first_point"], row["second_point"]) for row in rows(output, "broken_bonds.csv")]
@@ -283,11 +283,11 @@ class Torn(Comparison):
             row, decision = rows(output, "history.csv")[-1], rows(output, "decisions.csv")[-1]
             codes.add((run.code, row["broken_bonds"], decision["reason"]))
         self.assertEqual(len(codes), 1)
-        self.assertEqual(codes.pop()[:2], (0, "9"))  # its points fly on, by the last step that was stable
+        self.assertEqual(codes.pop()[:2], (0, "9"))  # its points fly on, with the last stable step
 
     def test_tears_that_go_on_with_other_numbers_of_ranks(self):
-        # Lengths have other last bits on other numbers of ranks. Bonds that go on softening by these
-        # alone would be told anew, so that half a plate goes on with as many.
+        # Lengths have other last bits on other numbers of ranks. Bonds that continue to soften by these
+        # alone would be listed again. So half a plate continues with the same number.
         for k, (of, then) in enumerate((((LAW,), 3), ((LAW, *NEWMARK), 3), ((LAW, HALF), 2))):
             with self.subTest(settings=of):
                 options = (*of, "dynamics.history_every=1")
@@ -302,7 +302,7 @@ class Torn(Comparison):
 
 
 class Implicit(Comparison):
-    """Newmark's steps, whose tangent has masses."""
+    """Newmark's steps, whose tangent includes masses."""
 
     def test_a_plate_whose_supports_and_loads_move(self):
         one = self.compare(Motions.MOVING + Motions.STEPS, (2, 3), *NEWMARK, "dynamics.spectral_radius=0.8", solver="")
@@ -344,7 +344,7 @@ class FromEquilibrium(Comparison):
                 self.assertGreater(numpy.abs(file["steps/000000/displacement"][()]).max(), 1e-4)
 
     def test_automatic_choices(self):
-        """One rank has a factor, several have iterations to a tolerance."""
+        """One rank has a factorisation, several iterate to a tolerance."""
         tight = "solver.relative_tolerance=1e-12", "solver.linear_tolerance=1e-12"
         text = dynamics_test.Start.HANGING.replace("LATER", "0.1*t")
         one, several = (self.run_on(ranks, text, *tight) for ranks in (1, 2))
@@ -366,7 +366,7 @@ class FromEquilibrium(Comparison):
 
 
 class OtherModels(Comparison):
-    """Triangles, tetrahedra and states in motion, with their stress."""
+    """Triangles, tetrahedra and state-based bodies in motion, with their stress."""
 
     def compare_slow(self, text, ranks, density, *of):
         text = without_steps(text, density)
@@ -385,7 +385,7 @@ class OtherModels(Comparison):
         self.compare_slow(CUBE_IN_MOTION, (2,), 0.002, "dynamics.end_time=0.5", 'initial=[{velocity=["0.1*x","0.1*y*y","0.1*z"]}]')
 
     def test_states(self):
-        """The second material has another ratio of moduli, so that ranks know other bounds of the stable step."""
+        """The second material has another ratio of moduli, so that ranks have different bounds of the stable step."""
         self.compare_slow(STATES_IN_MOTION, (2, 3), 1000, "dynamics.end_time=1e-3",
                           'region=[{set="corner", material={youngs_modulus=2e9, poisson_ratio=0.1, density=900}}]')  # fmt: skip
 

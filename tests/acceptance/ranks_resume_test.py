@@ -1,4 +1,4 @@
-"""Runs go on with another number of MPI ranks."""
+"""Runs are resumed on another number of MPI ranks."""
 
 import shutil
 import unittest
@@ -89,7 +89,7 @@ class GoesOn(Comparison):
     def test_from_a_damaged_checkpoint(self):
         output = self.stopped(2, self.TEXT)
         with h5py.File(output / "results.h5", "r+") as file:
-            file["checkpoint"][file["checkpoint"].size // 2] ^= 1  # of a number
+            file["checkpoint"][file["checkpoint"].size // 2] ^= 1  # flips a bit of a number
         self.assertIn("its checksum is wrong", self.resume_on(2, output, code=2).errors)
 
 

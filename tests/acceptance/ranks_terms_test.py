@@ -1,5 +1,5 @@
-"""Terms beyond those of bonds at rest on ranks: linear kinematics with points that fail, states that lose their bonds,
-pressures and foundations of every model, at rest and in motion."""
+"""Terms other than bonds at rest on ranks: linear kinematics with failing points, state-based bodies with breaking
+bonds, pressures and foundations of every model, at rest and in motion."""
 
 import unittest
 
@@ -9,7 +9,7 @@ from tests.acceptance.on_ranks import PLATE, SHEET, SOLVER, SQUARE, STATES, STOR
 from tests.acceptance.ranks_bodies_test import CELL, SLOPED, TOP
 
 LINEAR = PLATE.replace('model = "bond"', 'kinematics = "linear"')
-# A notched strip without any symmetry, whose points fail in a row before the notch.
+# A notched strip without any symmetry, whose points fail in a row ahead of the notch.
 STRIP = """
 dimension = 2
 [lattice]
@@ -64,7 +64,7 @@ class Terms(Comparison):
             return [int((file[f"steps/{step}/damage"][()] == 1.0).sum()) for step in file["steps"]]
 
     def goes_on(self, text, *of, first=2, then=3, after=2):
-        """A run that is stopped on some ranks goes on with others."""
+        """A run that is stopped on some ranks is resumed on others."""
         options = of
         whole = self.run_on(1, text, *options).rename(self.folder / f"whole_{len(list(self.folder.iterdir()))}")
         output = self.run_on(first, text, *options, words=("--stop-after", after), code=130)
@@ -123,7 +123,7 @@ class LinearKinematics(Terms):
         self.assertGreater(self.failed(one)[-1], 0)
 
     def test_points_that_fail_at_rest(self):
-        # What a second iteration would correct is round-off, which takes other numbers of products.
+        # A second iteration would only correct round-off, which changes the number of products.
         one = self.compare_settings(PULLED, "solver.relative_tolerance=1e-8", ranks=(2, 4))
         count = self.failed(one)
         self.assertEqual(count[0], 0)
@@ -147,7 +147,7 @@ class LinearKinematics(Terms):
         self.goes_on(IN_MOTION, "dynamics.history_every=1", after=9)
 
 
-# Torn from a pre-crack and a hole; the dilatation of a point goes with its bonds.
+# Torn from a pre-crack and a hole; broken bonds change the dilatation of a point.
 TORN = """
 dimension = 2
 [lattice]
@@ -195,7 +195,7 @@ every = 8
 
 
 class States(Terms):
-    """Bonds of states break as those of bonds do, and the energy that goes with each is counted once."""
+    """Bonds of state-based models break like other bonds, and the energy dissipated with each is counted once."""
 
     def compare_torn(self, text, *of, ranks=(3,)):
         options = of
@@ -240,7 +240,7 @@ class Triangles(Terms):
             self.assertGreater(file["history/dissipated_energy"][-1], 0.0)
 
     def test_softening_at_planes_and_periods(self):
-        """Triangles stand on bonds between images, too, which soften as those that they show."""
+        """Triangles also have sides between images, whose bonds soften like their originals."""
         pulled = 'displacement = ["0.038*load", 0]\n[loading]\nsteps = 4\n'
         half = SHEET.replace("max = [1.2, 1.1]", "max = [1.2, 0.6]").replace("centre = [0.72, 0.63]", "centre = [0.72, 0.6]")
         for text, beyond in ((half, 'symmetry=[{axis="y", at=0.6}]'), (SHEET, 'period=[{axis="y", from=0, to=1.1}]')):
@@ -249,7 +249,7 @@ class Triangles(Terms):
                 self.assertGreater(file["history/dissipated_energy"][-1], 0.0)
             there_and_back = pulled.replace("steps = 4", "table = [0, 0.25, 0.5, 0.75, 1, 0.7, 0.3]")
             self.goes_on(text + there_and_back + STORED, beyond, after=4)
-        # When it is found that all has come to rest, round-off of what is torn off decides.
+        # Round-off of detached parts decides when the body is found to be at rest.
         tearing = half + pulled.replace("0.038", "0.2") + STORED
         options = 'symmetry=[{axis="y", at=0.6}]', 'solver.mode="relaxation"'
         one, several = (self.broken(self.run_on(ranks, tearing, *options)) for ranks in (1, 3))
@@ -257,7 +257,7 @@ class Triangles(Terms):
         self.assertGreater(len(one), 10)
 
 
-# Pressures in a hole and on a side, springs to ground that moves; of the load at rest, of the time in motion.
+# Pressures in a hole and on a side, springs to a moving ground; functions of the load at rest, of time in motion.
 HOLE = 'set=[{name="hole", where="sqrt((x-0.5)^2 + (y-0.7)^2) < 0.28"}, {name="corner", where="x > 0.6 && y > 1"}]'
 PRESSURES = 'load=[{set="hole", pressure="PRESSURE*RISE*(1+y)"}, {side="x+", pressure="PRESSURE*0.1"}]'
 GROUND = ('foundation=[{name="soil", set="corner", stiffness=[MODULUS, MODULUS], displacement=["0.01*RISE", 0]}, '
@@ -321,7 +321,7 @@ TRACTIONS = ('load=[{side="x+", traction=["2e6*load*y", "1e6"]}, {boundary="hole
 
 
 class Collocation(Terms):
-    """Forces without a potential, with the weights of balls that reach over parts and surfaces."""
+    """Forces without a potential, with quadrature weights of balls that extend over parts and surfaces."""
 
     def test_a_plate_under_tractions(self):
         one = self.compare_settings(COLLOCATED, TRACTIONS, "output.stress=true", ranks=(2, 4), solver=GMRES)
@@ -332,7 +332,7 @@ class Collocation(Terms):
                               'region=[{set="corner", material={youngs_modulus=2e9, poisson_ratio=0.3}}]', ranks=(2, 3, 4), solver=GMRES)  # fmt: skip
 
     def test_in_motion(self):
-        """By steps that solve equations, with bonds that break."""
+        """By implicit steps, with breaking bonds."""
         steps = [word for word in NEWMARK if "solver.linear=" not in word] + ['solver.linear="bicgstab"']
         for perturbation, ranks in ((0.0, (2, 3)), (0.1, (4,))):
             self.compare_settings(in_motion(COLLOCATED), f"lattice.perturbation={perturbation}", *steps, ranks=ranks, solver="")

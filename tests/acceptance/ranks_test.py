@@ -1,4 +1,4 @@
-"""Runs on several MPI ranks have the results of one, and the page lists the keys that they have."""
+"""Runs on several MPI ranks have the results of one, and the page lists the supported keys."""
 
 import json
 import re
@@ -52,7 +52,7 @@ class SameResults(Comparison):
         self.compare(SHORT_BAR, (2, 3, 8))
 
     def test_keys_of_the_list(self):
-        """Each on a body of its own, with other values than those of the other tests."""
+        """Each on a body of its own, with values that differ from those in the other tests."""
         for text, settings in (
             (PLATE, ('lattice.origin="nodes"', "lattice.spacing=[0.05, 0.06]", 'material.plane="strain"')),
             (PLATE, ('solver.predictor="none"', "loading.adaptive=false", 'solver.preconditioner="jacobi"')),
@@ -214,7 +214,7 @@ class SameResults(Comparison):
         self.expect_same_displacements(one, several)
 
     def test_rigid_pieces(self):
-        """Of a body whose pieces stand on several ranks, and of one that is thinner than the horizon."""
+        """For a body whose pieces lie on several ranks, and for one that is thinner than the horizon."""
         for text in (BLOCK, BEAM):
             self.compare(text, (2, 3, 4), 'solver.preconditioner="rigid_pieces"')
 
@@ -258,7 +258,7 @@ class SameResults(Comparison):
         self.assertEqual(run.output.count("completed in"), 1)
 
 
-# What acts at load 0: a weight, a temperature, a support that is displaced from the start.
+# Actions at load 0: a weight, a temperature, a support that is displaced from the start.
 LASTING = {
     "weight": ('material={model="bond", youngs_modulus=1e9, density=1000}', 'load=[{gravity=["2e3", "-3e4*(1 + x)"]}]'),
     "temperature": ('material={model="bond", youngs_modulus=1e9, thermal_expansion=1e-5}', 'temperature={change="300*y + 100*load"}'),
@@ -267,7 +267,7 @@ LASTING = {
 
 
 class LoadZero(Comparison):
-    """Step 0 is a row of each run, and its fields are there where something acts at load 0."""
+    """Step 0 is a row of each run, and its fields are written if something acts at load 0."""
 
     def compare_from_zero(self, name, *settings, text=PLATE, ranks=(3,)):
         one = self.compare(text, ranks, *LASTING[name], *settings)

@@ -1,4 +1,4 @@
-"""Bodies of several materials beside the reference, and what is refused of them."""
+"""Bodies of several materials, compared with the reference, and refused cases."""
 
 import itertools
 import unittest
@@ -14,7 +14,7 @@ from tests.reference.program import ROOT
 from tests.reference.results import Results
 from tests.reference.verify import Verification
 
-# Laws of two materials and of the rest: of one kind, of unlike kinds, with and without one.
+# Laws of two materials and of the rest: of one kind, of different kinds, with and without a law.
 UNLIKE = {
     "alike": ("tanh", "tanh", "tanh"),
     "brittle and softening": ("critical_stretch", "tanh", "tanh_continuous"),
@@ -26,7 +26,7 @@ UNLIKE = {
 BAR = ROOT / "cases/regions/bimaterial.toml"
 PLATE = ROOT / "cases/regions/composite.toml"
 
-# A plate whose right part is tougher than the rest, with a crack that runs towards it.
+# A plate whose right part is tougher, with a crack that runs towards it.
 CRACKED = """
 dimension = 2
 
@@ -97,9 +97,9 @@ SAME_LAW = ("region[0].material.damage.onset=0.01", "region[0].material.damage.c
 STRENGTH = ('material.scatter=[{of="strength",weibull_modulus=20,correlation_length=3,seed=5}]',)
 
 # A disk with a stiff core, whose rim moves as in the closed form of a round inclusion in a plate
-# under the same pull in all directions: u = C x inside, (A + B/r^2) x outside, with modulus ratio k
-# and Poisson's ratio nu of both B/a^2 (k/(1-nu) + 1/(1+nu)) = A (1-k)/(1-nu) and C = A + B/a^2, so
-# that for k = 3 and nu = 1/3 B/a^2 = -4/7 A and C = 3/7 A.
+# under equal biaxial tension: u = C x inside, (A + B/r^2) x outside, with modulus ratio k
+# and Poisson's ratio nu of both B/a^2 (k/(1-nu) + 1/(1+nu)) = A (1-k)/(1-nu) and C = A + B/a^2. So
+# for k = 3 and nu = 1/3, B/a^2 = -4/7 A and C = 3/7 A.
 INCLUSION = """
 dimension = 2
 
@@ -138,7 +138,7 @@ set = "rim"
 displacement = ["1e-3*x*(1 - 4/7*12e-3^2/(x^2 + y^2))", "1e-3*y*(1 - 4/7*12e-3^2/(x^2 + y^2))"]
 """
 
-# All points are moved by a homogeneous strain.
+# All points move with a homogeneous strain.
 PATCH = """
 dimension = 2
 
@@ -204,7 +204,7 @@ class Regions(Folder):
         return tables[0], [{"set": "left", "material": tables[1]}, {"set": "right", "material": tables[2]}]
 
     def compare(self, path, amount, size, seen):
-        """check-tangent beside the reference, in a state with damage."""
+        """Compares check-tangent with the reference, in a state with damage."""
         mechanics, sets = mechanics_of(path)
         mechanics.spare(sets)
         reference = mechanics.body.reference
@@ -218,7 +218,7 @@ class Regions(Folder):
             self.assertGreater(value, 0)
             self.assertAlmostEqual(told[key] / value, 1, delta=ROUND_OFF, msg=f"{key}: {told[key]} and {value}")
         self.assertLess(max(told["force_sum"], told["moment_sum"]), ROUND_OFF)
-        # differences over a state with damage, where they stand clear of round-off
+        # differences over a damaged state, where they exceed round-off
         self.assertLess(told["tangent_error"], 1e-6)
         stretch = mechanics.stretch(displacement)
         seen += [numpy.any(mechanics.fails & (stretch > mechanics.law.onset) & (stretch < mechanics.law.critical)),
@@ -309,7 +309,7 @@ class Regions(Folder):
     # ---- closed forms ----------------------------------------------------------------------------
 
     def judged(self, output):
-        """The results, after the reference has judged them."""
+        """The results, checked by the reference."""
         with h5py.File(output / "results.h5") as file:
             resolved = file["case/as_resolved"][()].decode()
         verification = Verification(output, resolved)
@@ -325,13 +325,13 @@ class Regions(Folder):
                 verification = self.judged(output)
                 results, mechanics = verification.results, verification.mechanics
                 x, u = results.reference[:, 0], results.steps[-1].displacement[:, 0]
-                # The strains of either half, three horizons off its ends.
+                # The strains of both halves, three horizons away from their ends.
                 for low, high, modulus in ((0.02, 0.48, soft), (0.52, 0.97, stiff)):
                     inside = (x > low) & (x < high)
                     slope = numpy.polyfit(x[inside], u[inside], 1)[0]
-                    # What the ends disturb falls by an order per horizon.
+                    # The effect of the ends falls by an order of magnitude per horizon.
                     self.assertAlmostEqual(slope / (force / area / modulus), 1, delta=1e-4)
-                # The force of the bonds that cross the interface, and any other section.
+                # The force of the bonds across the interface, and across any other section.
                 for cut in (0.25, 0.5, 0.75):
                     first, second = mechanics.body.bonds.T
                     sign = (x[second] > cut).astype(int) - (x[first] > cut)
@@ -339,7 +339,7 @@ class Regions(Folder):
                     tension = mechanics.body.constants[1] * mechanics.body.weight[1] * stretch
                     self.assertAlmostEqual((numpy.abs(sign) * tension).sum() / force, 1, delta=1e-9)
                 ends[rule] = u[x > 1 - 6e-3].mean()
-                # Within the interface alone, a horizon of 6 mm, it may differ from the joined bars.
+                # Only within the interface, a horizon of 6 mm, may it differ from the joined bars.
                 joined = force / area * (0.5 / soft + (0.5 - 3e-3) / stiff)
                 self.assertLess(abs(ends[rule] - joined), force / area * 6e-3 / soft)
         self.assertLess(ends["arithmetic"], ends["harmonic"])
@@ -347,7 +347,7 @@ class Regions(Folder):
 
     def test_stiff_inclusion(self):
         # The interface is a horizon wide, a quarter of the inclusion's radius: harmonic bonds are
-        # right within 2 %, the others half a horizon stiffer or softer, within 5 %.
+        # accurate to 2 %; the others are half a horizon stiffer or softer, within 5 %.
         for rule, tolerance in (("harmonic", 0.02), ("arithmetic", 0.05), ("weaker", 0.05)):
             with self.subTest(rule=rule):
                 output = self.run_case(INCLUSION, f"interface[0].rule={rule}", name=rule)
@@ -356,10 +356,10 @@ class Regions(Folder):
                 x, u = results.reference[inside], results.steps[-1].displacement[inside]
                 strain = (u * x).sum() / (x * x).sum()
                 self.assertAlmostEqual(strain / (1e-3 * 3 / 7), 1, delta=tolerance)
-                self.assertLess(numpy.abs(u - strain * x).max(), 0.02 * numpy.abs(u).max())  # it is uniform
+                self.assertLess(numpy.abs(u - strain * x).max(), 0.02 * numpy.abs(u).max())  # uniform
 
     def test_cpd_bar_of_two_materials(self):
-        """Two materials in series: strips across the pull, whose lateral strain is prescribed to be none."""
+        """Two materials in series: strips across the load, with zero lateral strain prescribed."""
         case = """
             dimension = 2
             [lattice]
@@ -407,15 +407,15 @@ class Regions(Folder):
         for low, high in ((-28, -8), (8, 28)):
             inside = axis & (x[:, 0] > low) & (x[:, 0] < high)
             moduli.append(1 / numpy.polyfit(x[inside, 0], u[inside], 1)[0])
-        # Confined: E / (1 - nu^2), of a plane body; the constants are those of the isotropic mean of
-        # the lattice, which along the axes is off by some per cent, and edges are softer.
+        # Confined: E / (1 - nu^2) for a plane body. The constants are those of the isotropic mean of
+        # the lattice, which differ by some per cent along the axes, and edges are softer.
         confined = [1e6 / (1 - 0.4**2), 3e6 / (1 - 0.35**2)]
         for found, expected in zip(moduli, confined):
             self.assertAlmostEqual(found / expected, 1, delta=0.1)
         self.assertAlmostEqual(moduli[1] / moduli[0] / (confined[1] / confined[0]), 1, delta=0.02)
 
     def test_fibres_have_the_moduli_that_are_asked_for(self):
-        """The energy of homogeneous strains against that of a lamina, turned by the fibre's angle."""
+        """The energy of homogeneous strains compared with that of a lamina rotated by the fibre's angle."""
         e1, e2, g, angle = 40.0, 10.0, 7.0, numpy.radians(30)
         c11 = (e1 + numpy.sqrt(e1**2 + 4 * g**2 * e1 / e2)) / 2
         c22 = c11 * e2 / e1
@@ -428,7 +428,7 @@ class Regions(Folder):
                 energy = self.results(PATCH % tuple(strain.ravel().tolist())).summary["probes"]["energy"]
                 own = turn @ strain @ turn.T
                 expected = c11 * own[0, 0] ** 2 / 2 + c22 * own[1, 1] ** 2 / 2 + g * own[0, 0] * own[1, 1] + 2 * g * own[0, 1] ** 2
-                # 8 spacings to the horizon: the lattice's sums are within a per cent of integrals.
+                # 8 spacings per horizon: the lattice's sums are within a per cent of integrals.
                 self.assertAlmostEqual(energy / (expected * 1e-12), 1, delta=0.015)
 
     def test_crack_stops_at_a_tougher_region(self):
@@ -445,7 +445,7 @@ class Regions(Folder):
         self.assertLess(farthest["tough"], 18 + 1.6)
         self.assertGreater(farthest["weak"], 28)
 
-    # ---- random fields, and what a run has to repeat ---------------------------------------------
+    # ---- random fields, and reproducibility -------------------------------------------------------
 
     def test_fields_repeat_on_any_number_of_threads(self):
         scatter = ('material.scatter=[{of="stiffness",weibull_modulus=8,correlation_length=4,seed=3}]',
@@ -494,7 +494,7 @@ class Regions(Folder):
         self.assertEqual(list(told), ["material", "right"])
         self.assertAlmostEqual(told["right"]["lattice"]["c1"] / told["material"]["lattice"]["c1"], 4)
 
-    # ---- what is refused --------------------------------------------------------------------------
+    # ---- refused cases -----------------------------------------------------------------------------
 
     def test_wrong_regions_are_refused(self):
         pair = 'interface[0].between=["soft","stiff"]'

@@ -1,4 +1,4 @@
-"""A run that was split is the run that was not: to the last bit on one thread."""
+"""A split run equals the uninterrupted run, to the last bit on one thread."""
 
 import contextlib
 import os
@@ -55,7 +55,7 @@ steps = 10
 [solver]
 mode = "adaptive"
 """  # fmt: skip
-# What is left of it where planes of symmetry, periods, rigid sets and loads other than supports come in.
+# Differences from it for planes of symmetry, periods, rigid sets and loads other than supports.
 HALF = TORN.replace("[0.01, 0.006]", "[0.01, 0.008]") + '[[symmetry]]\naxis = "y"\n'
 CELL = """\
 dimension = 2
@@ -132,7 +132,7 @@ class Resumed(Folder):
         return self.run_case(text, *changes, name="whole", **options)
 
     def stop(self, after, text=TORN, *changes, **options):
-        """A run that has so many steps, and more to go."""
+        """A run with the given number of steps done, and more to go."""
         self.run_case(text, *changes, name="split", words=("--stop-after", after), code=130, **options)
 
     def go_on(self, *changes, **options):
@@ -168,7 +168,7 @@ class Split(Resumed):
                 self.is_as(whole)
 
     def test_killed_at_random_moments(self):
-        """Between any two system calls, once the folder can be gone on from."""
+        """Kills between any two system calls, once the folder can be resumed."""
         started = time.monotonic()
         whole = self.whole()
         duration = time.monotonic() - started
@@ -219,7 +219,7 @@ class Split(Resumed):
                 self.is_as(whole)
 
     def test_other_numbers_of_threads_change_round_off_alone(self):
-        """Until damage begins: from then on round-off decides which of two like bonds breaks first."""
+        """Until damage begins: from then on round-off decides which of two equal bonds breaks first."""
         whole = self.whole(PULLED, "loading.steps=6")
         self.stop(3, PULLED, "loading.steps=6", threads=2)
         self.go_on(threads=3)
@@ -373,7 +373,7 @@ class Refused(Resumed):
         self.refuses("its checkpoint is of another body")
 
     def test_files_that_are_cut_or_changed_anywhere(self):
-        """Whatever a disk has made of results.h5, the run goes on as it would have, or says that it can't."""
+        """For any damage to results.h5, the run continues correctly, or reports that it can't."""
         whole = self.whole()
         kept = self.folder / "kept"
         shutil.copytree(self.out, kept)
@@ -393,7 +393,7 @@ class Refused(Resumed):
                 (self.out / "results.h5").write_bytes(data)
                 ended = self.go_on(code=(0, 2))
                 outcomes.add(ended.code)
-                if ended.code == 0:  # the fields of earlier steps have no checksums; what follows is right
+                if ended.code == 0:  # the fields of earlier steps have no checksums; the later steps are correct
                     for name in ("history.csv", "decisions.csv", "broken_bonds.csv"):
                         rows = (self.out / name).read_text().splitlines()[4:]
                         self.assertEqual(rows, (whole / name).read_text().splitlines()[4:])
@@ -429,7 +429,7 @@ class Faults(Resumed):
 
 class LossOfPower(Resumed):
     def run_until_a_state_has_reached_the_disk(self, *changes):
-        for _ in range(5):  # what others write may keep the disk busy until the run has ended
+        for _ in range(5):  # writes of others may keep the disk busy until the run has ended
             os.sync()
             shutil.rmtree(self.out, ignore_errors=True)
             process = self.start([PROGRAM, "run", self.case(PULLED), "--output", self.out, "--threads", 1, "--quiet",
@@ -441,13 +441,13 @@ class LossOfPower(Resumed):
         self.fail("five runs have ended before anything was sure to be on the disk")
 
     def test_an_older_state_that_had_reached_the_disk_is_taken(self):
-        changes = "loading.steps=160", "lattice.spacing=2e-4"  # some seconds
+        changes = "loading.steps=160", "lattice.spacing=2e-4"  # takes some seconds
         whole = self.whole(PULLED, *changes)
         process = self.run_until_a_state_has_reached_the_disk(*changes)
         process.kill()
         process.wait()
         for name in ("results.h5", "parts/checkpoint.0", "parts/checkpoint.1", "history.csv"):
-            (self.out / name).unlink()  # a file of the last moments, not the one that was safe
+            (self.out / name).unlink()  # a file of the last moments, not the one that was synced
             (self.out / name).touch()
         self.assertIn("an older state, which had reached the disk, is taken instead", self.go_on().errors)
         self.is_as(whole)

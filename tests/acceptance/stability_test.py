@@ -1,4 +1,4 @@
-"""Loads that are found with the states: a control by displacements, and the arc length."""
+"""Loads that are found with the states: displacement control, and the arc length."""
 
 import math
 import unittest
@@ -14,12 +14,12 @@ from tests.same_results import differences
 from tests.shipped_runs import shipped_run
 
 CASES = ROOT / "cases"
-# Of displacements, by residuals of 1e-10.
+# Relative error of displacements, for residuals of 1e-10.
 CLOSE = 1e-8
 
 
 def numbers(folder, *columns):
-    """Of all steps but 0."""
+    """A column over all steps but 0."""
     rows = [row for row in table(folder / "history.csv") if row["step"] > 0]
     return [numpy.array([row[column] for row in rows]) for column in columns]
 
@@ -36,7 +36,7 @@ class ShippedCase(Programmes):
         return ended.folder
 
     def straight_strip(self, rows, force):
-        """End displacement and elongation of the middle half of a clamped strip, 240 points long, of the shipped
+        """End displacement and elongation of the middle half of a clamped strip, 240 points long, with the shipped
         cases' lattice."""
         height = rows * 0.005
         text = f"""\
@@ -84,15 +84,15 @@ other = "near"
         return last["end_y"], last["middle_x"]
 
     def stiffnesses(self, rows):
-        """EA and EI that the points have: by the strain of the middle, and by the deflection F L^3 / (3 EI)."""
+        """EA and EI of the points: from the strain of the middle, and from the deflection F L^3 / (3 EI)."""
         axial = 1e-3 / (self.straight_strip(rows, ["1e-3*load", "0"])[1] / 1.2)
         bending = 1e-3 * 2.395**3 / (3.0 * self.straight_strip(rows, ["0", "1e-3*load"])[0])
         return axial, bending
 
 
 class Arch(ShippedCase):
-    """y = h/2 (1 - cos kx) between clamps, loaded by q cos kx: with the rise a left,
-    q = k^4/2 (EI (h - a) + EA/16 (h^2 - a^2) a), by equilibrium EI (y - y0)'''' + P y'' = q cos kx
+    """y = h/2 (1 - cos kx) between clamps, loaded by q cos kx. With the remaining rise a,
+    q = k^4/2 (EI (h - a) + EA/16 (h^2 - a^2) a), from the equilibrium EI (y - y0)'''' + P y'' = q cos kx
     under the thrust P = EA k^2/16 (h^2 - a^2) of a shallow arch."""
 
     LENGTH, ROWS, SPACING = 4.8, 6, 0.01
@@ -135,7 +135,7 @@ class Arch(ShippedCase):
         self.assertEqual(loads[-1], 1.0)
 
     def test_it_goes_on_from_every_step_as_if_nothing_had_been(self):
-        # Coarse, so that there are few: a located limit point among them.
+        # Coarse, so that there are few steps: a located limit point among them.
         case = CASES / "buckling/arch.toml", "loading.steps=4", "arc_length.largest_step=0.5"
         steps = len(self.rows(*case, name="whole"))
         self.run_case(*case, name="split", words=("--stop-after", 1), code=130)
@@ -148,7 +148,7 @@ class Arch(ShippedCase):
 
 
 class Column(ShippedCase):
-    LENGTH = 3.195  # to the middle of its last points
+    LENGTH = 3.195  # to the centres of its last points
 
     def test_it_buckles_at_eulers_load_and_bends_as_the_elastica(self):
         folder = self.shipped("buckling/column")
@@ -182,7 +182,7 @@ class Column(ShippedCase):
         return math.pi / (2 * a), rest * math.pi / (2 * a)
 
     def modulus_of(self, ratio):
-        """Of the elastica under so many times Euler's load: (2 K / pi)^2."""
+        """Load over Euler's load on the elastica: (2 K / pi)^2."""
         low, high = 0.0, 1 - 1e-12
         for _ in range(60):
             middle = (low + high) / 2
@@ -296,7 +296,7 @@ class Control(Programmes):
 
 
 class SnapBack(Programmes):
-    """A brittle plate, cut from one side, whose far corner is controlled: it snaps back with the first bonds."""
+    """A brittle plate, cut from one side, under control of its far corner: it snaps back with the first bonds."""
 
     TEXT = """\
 dimension = 2
@@ -349,7 +349,7 @@ relative_tolerance = 1e-11
             self.assertIn('solver.mode = "path"', told)
             self.assertIn("a snap-back", told)
             self.assertNotIn("fault of the program", told)
-            # Loads of searches that found nothing are not told as if the body had borne them.
+            # Loads of failed searches are not reported as loads that the body carried.
             reached = {0.0} | {row["load_factor"] for row in rows}
             for row in table(self.folder / f"of_{steps}/decisions.csv"):
                 if row["outcome"] != "converged":
@@ -370,11 +370,11 @@ class BadInput(Programmes):
         held = self.refusal(OPENED, 'control[0].set="right"', "control[0].weights=[1,0]")
         self.assertIn("no free degree of freedom answers", held)
         self.assertIn("case.toml:", held)
-        # Nothing that is loaded moves across: the strip is symmetric to its axis.
+        # No loaded point moves across: the strip is symmetric about its axis.
         still = OPENED.replace("abs(x - 0.01) < 1e-3", "abs(x - 0.01) < 1e-3 && abs(y - 5e-3) < 1e-3")
         self.assertIn("does not answer", self.refusal(still, "control[0].weights=[0,1]"))
         self.assertIn("nor a load depends on load", self.refusal(OPENED.replace("1e-3*load", "0")))
-        for curved in ("load^2", "abs(load)"):  # which do not change at load 0, or both ways alike
+        for curved in ("load^2", "abs(load)"):  # zero slope at load 0, or the same change in both directions
             self.assertIn("must begin in proportion to load", self.refusal(OPENED.replace("1e-3*load", f"1e-3*{curved}")))
 
     def test_what_does_not_go_with_a_control(self):

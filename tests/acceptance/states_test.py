@@ -1,4 +1,5 @@
-"""Model lps as an energy, from the command line: beside the reference of tests/reference/states.py, in all modes."""
+"""Model lps as an energy, from the command line: compared with the reference of tests/reference/states.py, in all
+modes."""
 
 import re
 
@@ -99,7 +100,7 @@ class States(Folder):
         return self.assert_completed(self.command("check-tangent", text, words=("--deformation", deformation))).json()
 
     def points(self, text):
-        """Of a run without any load."""
+        """For a run without any load."""
         held = "".join(f'[[support]]\nset = "{name}"\ndisplacement = {[0] * (3 if "dimension = 3" in text else 2)}\n'
                        for name in ("low", "high"))  # fmt: skip
         return self.results(text + held, name="points")
@@ -133,7 +134,8 @@ class States(Folder):
                 self.assertLess(told["force_sum"], 1e-12)
 
     def judge(self, folder, text, spared=("low", "high"), critical=0.01):
-        """Every state is one of the reference's equilibria, and no bond bears more than it can; returns what broke."""
+        """Every state is an equilibrium of the reference, and no bond exceeds its strength; returns the broken
+        bonds."""
         results = Results(folder)
         whole, rows = solid(results, text), {row["step"]: row for row in results.table("history")}
         free = numpy.ones_like(results.reference, bool)
@@ -162,7 +164,7 @@ class States(Folder):
         return broken
 
     def test_every_state_of_a_torn_plate_is_an_equilibrium(self):
-        # Implicit steps alone can't follow a crack that runs: there few bonds may break.
+        # Implicit steps alone can't follow a running crack: few bonds may break there.
         near = PULLED.replace('["low", "high"]', '["far"]') + '[[set]]\nname = "far"\nwhere = "max(abs(x - 0.45), abs(y - 0.6)/4) > 0.06"\n'
         for mode, case, spared, least in (("newton", near, ("far",), 3), ("adaptive", PULLED, ("low", "high"), 20),
                                           ("relaxation", PULLED, ("low", "high"), 20)):  # fmt: skip
@@ -172,7 +174,7 @@ class States(Folder):
                 self.assertGreaterEqual(len(self.judge(folder, text, spared)), least)
                 rows = columns(folder)
                 self.assertGreater(rows["dissipated_energy"][-1], 0)
-                # Where a bond breaks against the dilatation nothing is dissipated, but for the round-off of two sums.
+                # A bond that breaks against the dilatation dissipates nothing, up to the round-off of two sums.
                 round_off = 1e-15 * rows["dissipated_energy"][-1]
                 self.assertTrue((numpy.diff(rows["dissipated_energy"]) >= -round_off).all())
                 total = rows["stored_energy"] + rows["dissipated_energy"] + rows["drained_energy"] + rows["balance_error"]
@@ -192,7 +194,7 @@ class States(Folder):
                 elastic = SHAKEN.replace(DAMAGE.replace("0.01", "0.006"), "")
                 rows = columns(self.run_case(elastic + f'scheme = "{scheme}"\n{more}', name=f"elastic_{scheme}"))
                 self.assertGreater(rows["stored_energy"].max(), 0.1 * rows["kinetic_energy"][0])
-                # Of linear forces the explicit scheme keeps the modified energy, the implicit one the energy.
+                # For linear forces the explicit scheme conserves the modified energy, the implicit one the energy.
                 kept = rows["stored_energy"] + rows["kinetic_energy"] if scheme == "newmark" else rows["modified_energy"]
                 numpy.testing.assert_allclose(kept, kept[0], rtol=1e-8)
                 numpy.testing.assert_allclose(rows["momentum_y"], 0, atol=1e-12)
@@ -200,7 +202,7 @@ class States(Folder):
                 self.assertGreater(rows["broken_bonds"][-1], 20)
                 self.assertGreater(rows["dissipated_energy"][-1], 0)
                 whole = rows["stored_energy"] + rows["kinetic_energy"] + rows["dissipated_energy"]
-                numpy.testing.assert_allclose(whole, whole[0], rtol=0.05)  # of first order in the step, as with bonds
+                numpy.testing.assert_allclose(whole, whole[0], rtol=0.05)  # first order in the step, as with bonds
                 told[scheme] = rows["broken_bonds"][-1]
         self.assertAlmostEqual(told["verlet"] / told["newmark"], 1, delta=0.3)
 
@@ -235,12 +237,12 @@ class States(Folder):
         self.assertGreater(rows["load_factor"][-1], 0)
 
     def test_goes_with_other_terms_and_constraints(self):
-        # Around the whole body: elsewhere the stiffness of a pressure is not symmetric.
+        # Around the whole body: otherwise the stiffness of a pressure is not symmetric.
         pressed = PLATE + '[[set]]\nname = "all"\nwhere = "x > 0"\n[[load]]\nset = "all"\npressure = 20.0\n'
         told = self.check_tangent(pressed, "x + 1e-2*sin(3*x + y); y + 1e-2*x*y")
         self.assertLess(told["tangent_error"], 1e-8)
         self.assertLess(told["residual_error"], 1e-8)
-        # A support and a roller that hold the same; a set that is rigid and one that moves as such.
+        # A support and a roller that hold the same; a rigid set, and a set that is moved as a rigid body.
         ways = [PULL, PULL.replace('[[support]]\nset = "high"\ndisplacement = ["free", "0.012*load"]',
                                    '[[roller]]\nset = "high"\nnormal = [0, 1]\ndisplacement = "0.012*load"')]  # fmt: skip
         self.assertNotEqual(*ways)

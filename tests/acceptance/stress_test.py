@@ -1,4 +1,4 @@
-"""Strain and stress at points: fields, probes, lines, and what they balance."""
+"""Strain and stress at points: fields, probes, lines, and their balance."""
 
 import json
 
@@ -43,9 +43,9 @@ relative_tolerance = 1e-13
 
 
 def framed(gradient, material, ratio=3.015, half=10, more=""):
-    """A body whose boundary, thicker than the horizon, moves homogeneously: so does all of it."""
+    """A body whose boundary, thicker than the horizon, moves homogeneously, and so does the whole body."""
     d = len(gradient)
-    free = half - 2 * int(ratio) - 2  # what the free points see sees no surface either
+    free = half - 2 * int(ratio) - 2  # the neighbours of free points do not see the surface either
     outside = " || ".join(f"(abs({axis}) > {free * 1e-3})" for axis in "xyz"[:d])
     rows = ["load*(" + " + ".join(f"({value!r})*{axis}" for value, axis in zip(row, "xyz")) + ")" for row in gradient]
     section = {1: "area = 2e-6", 2: "thickness = 3e-3", 3: ""}[d]
@@ -114,7 +114,8 @@ class Homogeneous(Stressed):
             expected = numpy.sqrt(((x - y) ** 2 + (y - z) ** 2 + (z - x) ** 2) / 2)
             self.assertLess(numpy.abs(found["von_mises"][bulk] / expected - 1).max(), EXACT)
             self.assertLess(numpy.abs(found["principal_direction"][bulk] - numpy.eye(2)).max(), 1e-6)
-            # The lattice's Young's modulus is the case's to its anisotropy; Hooke's law in the plane or across it.
+            # The lattice's Young's modulus equals the case's up to its anisotropy; Hooke's law in the plane or across
+            # it.
             nu, E = (1 / 3, 200e9) if plane == "stress" else (1 / 4, 200e9)
             factor = E / (1 - nu**2) if plane == "stress" else E * (1 - nu) / (1 + nu) / (1 - 2 * nu)
             ratio = nu if plane == "stress" else nu / (1 - nu)
@@ -144,7 +145,7 @@ class Turned(Stressed):
 
 class Balance(Stressed):
     def test_virials_of_a_body_are_those_of_what_acts_on_it(self):
-        """The sum of V P is that of force (x) place over all forces on the body, in any equilibrium."""
+        """In any equilibrium the sum of V P equals that of force (x) position over all forces on the body."""
         body_force = '[[load]]\nset = "top"\nbody_force = ["1e8*load", "2e9*load*(1 + 100*x)"]\n'
         cases = {"bonds": plate("", hole=HOLE), "corrected": plate("", hole=HOLE, correction="energy"),
                  "cpd": plate("", material=CPD_2D, hole=HOLE), "solid": plate("", material=CPD_3D, dimension=3, pull="3e-5"),
@@ -163,7 +164,7 @@ class Balance(Stressed):
                     self.assertGreater(rows[-1]["broken_bonds"], 0)
 
     def test_a_slab_as_wide_as_the_horizon_bears_the_reaction(self):
-        """Faces of the slab stand where the state hardly changes along the bar; what is left is the change over a horizon."""
+        """Faces of the slab are where the state hardly changes along the bar; the rest is the change over a horizon."""
         text = plate("", pull="1e-5").replace("-0.012, -0.012", "-0.006, -0.03").replace("0.012, 0.012", "0.006, 0.03")
         self.assertIn("-0.03", text)
         row = self.rows(text + OUTPUT)[-1]
@@ -248,7 +249,7 @@ class Judged(Stressed):
                 self.assertIn("first_piola_stress", worst)
 
     def test_a_body_at_rest_bears_nothing(self):
-        """Not even beside a reference whose complex steps leave 1e-51 Pa."""
+        """Not even compared with a reference whose complex steps leave 1e-51 Pa."""
         for pull in ("0", "1e-60"):
             with self.subTest(pull):
                 name = f"by_{pull}"
@@ -328,7 +329,7 @@ class Probes(Stressed):
         line = table(self.folder / "out/line_section.csv")
         self.assertEqual(list(line[0]), ["step", "load_factor", "point", "distance", "x", "y", "stress_xx", "stress_yy", "stress_xy"])
         last = [one for one in line if one["step"] == 2]
-        self.assertEqual(len(last), 2 * 8)  # two rows half a spacing off, without the hole
+        self.assertEqual(len(last), 2 * 8)  # two rows half a spacing away, without the hole
         self.assertEqual(len(line), 2 * len(last))
         self.assertEqual([one["distance"] for one in last], sorted(one["distance"] for one in last))
         for one in last:

@@ -1,4 +1,4 @@
-"""The body that most tests of the command line are about: 20 x 10 points between two held layers."""
+"""The body of most command-line tests: 20 x 10 points between two held layers."""
 
 LATTICE = """\
 dimension = 2
@@ -16,7 +16,7 @@ side = "x-"
 name = "right"
 side = "x+"
 """
-# Elastic, and pulled a little.
+# Elastic, and stretched slightly.
 PULLED = LATTICE + """\
 [material]
 youngs_modulus = 200e9

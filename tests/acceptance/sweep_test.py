@@ -1,4 +1,4 @@
-"""Sweeps as an analyst types them: the table, the picture, what is skipped, and every ending."""
+"""Sweeps through the command line: the table, the picture, skipped runs, and every ending."""
 
 import contextlib
 import csv
@@ -54,7 +54,7 @@ class Sweep(Folder):
         return self.execute(self.words(case, *arguments, *output))
 
     def assert_ends(self, run, code, *lines):
-        """The exit code, and the ends of the lines that tell of the combinations."""
+        """The exit code, and the ends of the lines on the combinations."""
         self.assert_code(run, code)
         told = [line for line in run.output.splitlines() if line[0].isdigit()]
         self.assertEqual(len(told), len(lines), run.output)
@@ -68,7 +68,7 @@ class Sweep(Folder):
     def summaries(self):
         return sorted((path, path.stat().st_mtime_ns) for path in self.out.glob("*/summary.json"))
 
-    # ---- what belongs to others ----
+    # ---- files of others ----
 
     def test_files_of_others_are_not_replaced(self):
         for name in ["sweep.csv", "sweep.png", "refinement.csv", "refinement.png"]:
@@ -245,7 +245,7 @@ class Sweep(Folder):
         self.assert_ends(run, 0, *8 * ["done"])
         rows = self.rows()
         soft, stiff = (next(row for row in rows if row["region[0].material.youngs_modulus"] == value) for value in ("70e9", "140e9"))
-        # F/A (0.5/E1 + 0.497/E2) of the joined bars, of which the interface's horizon of 6 mm is left out.
+        # F/A (0.5/E1 + 0.497/E2) of the joined bars, without the interface's horizon of 6 mm.
         closed = 100.0 / 1e-4 * (0.5 / 70e9 + 0.497 / 210e9)
         self.assertAlmostEqual(float(soft["probe:end"]) / closed, 1, delta=1e-3)
         self.assertAlmostEqual(float(stiff["probe:end"]) / float(soft["probe:end"]), 0.5, delta=1e-9)
@@ -262,7 +262,7 @@ class Sweep(Folder):
             self.assert_refused(refused, told)
 
     def test_a_refinement_is_extrapolated(self):
-        # A bar whose surface effect falls with the spacing: to F L / (E A), by theory of first order.
+        # A bar whose surface effect falls with the spacing: converges to F L / (E A) with first order, by theory.
         case = ROOT / "cases/bar/tension.toml"
         run = self.sweep("--set", "lattice.spacing=4e-3", "--refine", "4", case=case)
         self.assert_ends(run, 0, *4 * ["done"])
@@ -280,7 +280,7 @@ class Sweep(Folder):
         self.assertLess(float(tip["uncertainty"]), 1.3 * error)
         self.assertEqual(rows["peak_reaction:left"]["behaviour"], "constant")
         self.assertGreater(matplotlib.image.imread(self.out / "refinement.png").std(), 0.01)
-        # What is made of a table goes with it.
+        # Files made from a table are removed with it.
         self.assert_ends(self.sweep("--vary", "loading.steps=1", case=case), 0, "done")
         self.assertFalse((self.out / "refinement.csv").exists())
 
@@ -343,7 +343,7 @@ class Sweep(Folder):
         for column in ("peak_reaction:left", "final_reaction:left", "energy_stored"):  # zeros would be no result
             self.assertEqual(failed[column], "")
         with h5py.File(self.out / "solver.max_iterations=1" / "results.h5") as file:
-            self.assertEqual(list(file["steps"]), [])  # of a body at rest no fields are written
+            self.assertEqual(list(file["steps"]), [])  # no fields are written for a body at rest
         self.assertEqual((completed["status"], completed["steps"]), ("completed", "1"))
         self.assertTrue((self.out / "sweep.png").exists())
         self.assert_ends(self.sweep(*FIRST_FAILS), 3, "exit code 3", "skipped")
@@ -391,7 +391,7 @@ class Sweep(Folder):
             self.assertNotIn("3/3", output)
             self.assertEqual([row["status"] for row in self.rows()], ["completed", "interrupted"])
             summary = json.loads((self.out / "loading.steps=100000" / "summary.json").read_text())
-            self.assertEqual(summary["status"], "interrupted")  # it was told once, and saved
+            self.assertEqual(summary["status"], "interrupted")  # it was interrupted once, and saved
 
     def test_what_was_interrupted_or_killed_is_gone_on_with(self):
         steps = "--vary", "loading.steps=400"
@@ -407,7 +407,7 @@ class Sweep(Folder):
             process.wait(timeout=60)
             time.sleep(0.3)  # until the kernel has ended a run whose sweep was killed
             first = next(path for path in (folder / "parts/000001.h5", folder / "results.h5") if path.exists())
-            with h5py.File(first, "r+") as file:  # a run from the start would write this anew
+            with h5py.File(first, "r+") as file:  # a run from the start would overwrite this
                 fields = file["step"] if "step" in file else file["steps/000001"]
                 fields["damage"][0] = 0.5
             self.assert_ends(self.sweep(*steps), 0, "done")
@@ -424,9 +424,9 @@ class Sweep(Folder):
         self.assert_ends(self.sweep(*words), 0, "done")
         with h5py.File(self.out / "loading.steps=400" / "results.h5") as file:
             self.assertIn("youngs_modulus = 2e+11", file["case/as_resolved"][()].decode())
-            self.assertEqual(len(file["history/step"]), 401)  # step 0 and those of the load
+            self.assertEqual(len(file["history/step"]), 401)  # step 0 and the load steps
 
-    # ---- side by side -----------------------------------------------------------------------------
+    # ---- parallel jobs ------------------------------------------------------------------------------
 
     def test_runs_side_by_side_fill_the_same_table(self):
         self.assert_ends(self.sweep(*STIFFNESS_AND_STEPS), 0, "done", "done", "done", "done")

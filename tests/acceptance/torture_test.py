@@ -1,4 +1,4 @@
-"""A sample of the torture cases (tests/torture/torture.py); all of them are run by hand."""
+"""A sample of the torture cases (tests/torture/torture.py); run all of them by hand."""
 
 import tempfile
 import unittest

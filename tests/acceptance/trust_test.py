@@ -1,4 +1,4 @@
-"""The suite of known answers, by the coarsest lattice of two of its entries."""
+"""The suite of known answers, on the coarsest lattice of some of its entries."""
 
 import re
 import unittest
@@ -18,8 +18,8 @@ class Trust(Folder):
         return self.execute(self.words(*arguments, **options), environment={"PERISTAT_PROGRAM": PROGRAM})
 
     def test_a_steady_crack_resists_with_what_it_was_given(self):
-        """A law whose force falls linearly: within 2 % of G_c; and nothing is run twice. What is dissipated is 2.3 % off
-        along the lattice, where 1 % is asked for: red, by the exit code, too."""
+        """A law whose force falls linearly: within 2 % of G_c; and nothing is run twice. The dissipated energy is 2.3 %
+        off along the lattice, where 1 % is allowed: red, also in the exit code."""
         ended = self.trust("surfing", "--quick", "--threads", 1)
         self.assert_code(ended, 3)
         value = float(re.search(r"surfing/h1_m3.015_0, sqrt\(J / G_c\): ([0-9.]+) of the reference", ended.output)[1])
@@ -31,15 +31,16 @@ class Trust(Folder):
         self.assertNotRegex(again.output, r"h1_m3.015_0: \d+ s")
 
     def test_the_quick_subset(self):
-        """Entries whose coarsest lattice takes seconds: a cantilever whose energy over the area is G_c, strengths that no
-        horizon can give together, and a beam whose toughness by compliance is nearer than its peak."""
+        """Entries whose coarsest lattice takes seconds: a cantilever whose energy over area is G_c, strengths that no
+        horizon can match together, and a beam whose toughness by compliance is closer than its peak."""
         ended = self.trust("double_cantilever", "strength_biaxial", "strength_shear", "senb_03", "--quick")
         self.assert_code(ended, 3)
         value = lambda name, quantity: float(re.search(rf"{name}/h1_m3.015_0, {quantity}: ([0-9.]+)", ended.output)[1])
         self.assertAlmostEqual(value("double_cantilever", "dissipated energy over area"), 1, delta=0.01)
         self.assertAlmostEqual(value("double_cantilever", "load while the crack grows"), 1, delta=0.025)
         self.assertAlmostEqual(value("senb_03", "toughness by compliance"), 1, delta=0.04)
-        # All bonds soften at once: the run bears what the lattice is foretold, up to a step of the strain, a 27th of it there.
+        # All bonds soften at once: the run reaches the lattice's predicted strength, up to a strain step, here a 27th
+        # of it.
         case = self.folder / "strength_biaxial/h1_m3.015_0/case.toml"
         foretold = self.peristat("calibrate", "--strengths", case).json()
         biaxial = foretold["damage"]["strengths"]["biaxial"]["peak"]["mean"] / BIAXIAL
@@ -57,7 +58,7 @@ class Trust(Folder):
             self.assertEqual(len(runs), 1, said)
 
     def test_a_coarse_beam_is_red(self):
-        """20 spacings are too few for a peak within 2 %: it says so, with exit code 3."""
+        """20 spacings are too few for a peak within 2 %: the table says so, with exit code 3."""
         ended = self.trust("senb_05", "--quick", "--threads", 1)
         self.assert_code(ended, 3)
         self.assertIn("**red**", (self.folder / "table.md").read_text())

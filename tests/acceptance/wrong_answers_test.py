@@ -1,4 +1,4 @@
-"""Cases that invite a wrong answer: each ends with the right one, or says why it has none."""
+"""Cases that invite a wrong answer: each ends with the right one, or reports why it has none."""
 
 import math
 import statistics
@@ -34,7 +34,7 @@ displacement = [0, 0]
 set = "right"
 displacement = ["1e-5*load", 0]
 """
-# Nothing is free; at the end the last bonds are stretched by a hundredth more than they bear.
+# Nothing is free; at the end the last bonds are stretched by a hundredth beyond their strength.
 ALL_PRESCRIBED = """\
 [[set]]
 name = "inside"
@@ -47,13 +47,13 @@ displacement = [0, 0]
 
 class Damage(Folder):
     def test_a_jump_that_would_tear_every_bond_at_once_is_followed_step_by_step(self):
-        # One step asks for 22 times the strength: the supports' jump alone breaks all bonds across
-        # it, and the torn body has no residual. No energy may be dissipated that no work has done.
+        # One step goes to 22 times the strength: the supports' jump alone breaks all bonds across
+        # it, and the torn body has no residual. No energy may be dissipated without work.
         for steps in (1, 2, 30):
             rows = self.results(SQUARE, "solver.mode=newton", f"loading.steps={steps}", code=3).table("history")
             for row in rows:
                 self.assertLessEqual(row["dissipated_energy"], 1.05 * row["external_work"])
-            # The limit point is where damage control by 300 small steps finds it, 0.554 to 0.586.
+            # A control by damage in 300 small steps finds the limit point between 0.554 and 0.586.
             reached = rows[-1]["load_factor"]
             self.assertGreater(reached, 0.54)
             self.assertLess(reached, 0.60)
@@ -63,14 +63,14 @@ class Damage(Folder):
         self.assertIn("without damage", said)
 
     def test_points_that_are_loose_from_the_start_are_refused(self):
-        # A row of points, each on two bonds along it: pins would bear the load across it.
+        # A row of points, each with two bonds along it: pins would carry the load across it.
         row = ROW.replace("max = [0.01, 0.002]", "max = [0.01, 0.001]")
         for mode in ("newton", "relaxation", "adaptive"):
             self.run_case(ROW, f"solver.mode={mode}")
             self.assertIn("no bond resists their motion along y", self.refusal(row, f"solver.mode={mode}"))
 
     def test_a_step_that_its_jump_completes_has_its_damage(self):
-        # All points are prescribed: the jump alone is the step. Bonds that it breaks bear nothing.
+        # All points are prescribed: the jump alone is the step. Bonds that it breaks carry nothing.
         text = ROW.replace("1e-5*load", "2e-5*load") + ALL_PRESCRIBED
         rows = self.results(text, "solver.mode=newton").table("history")[1:]
         torn = [row for row in rows if row["stored_energy"] == 0.0]
@@ -117,7 +117,7 @@ class Supports(Folder):
         self.assertEqual(results.summary["status"], "not_converged")
         self.assertEqual(results.summary["steps"], 2)
         self.assertTrue((results.folder / "dossier.txt").exists())
-        # With steps that may be cut the run goes around the one place without a value.
+        # With steps that may be cut, the run avoids the single place without a value.
         self.run_case(text, "loading.steps=10")
 
 
@@ -134,7 +134,7 @@ class Magnitudes(Folder):
         expected = self.results(PULLED).summary["reactions"]["right"][0]
         small = PULLED.replace('"1e-5*load"', '"1e-90*load"')
         force = self.results(small).summary["reactions"]["right"][0]
-        # Linear: at 1e-5 m the stretch is 5e-4, by which finite deformation changes the force.
+        # Linear: at 1e-5 m the stretch is 5e-4, at which finite deformation changes the force.
         self.assertTrue(math.isclose(force / 1e-90, expected / 1e-5, rel_tol=2e-3))
         vanishing = PULLED.replace('"1e-5*load"', '"1e-170*load"')
         summary = self.results(vanishing, code=3).summary
@@ -171,8 +171,8 @@ class Tangents(Folder):
             results = self.results(CASES / "cpd/square.toml", "lattice.spacing=0.1", "loading.steps=4", *changes)
             orders[name] = [cell for cell in list(results.table("convergence")[-1].values())[1:] if cell != ""]
         self.assertTrue(orders["exact"])
-        # Three residuals that begin at some per cent of the first are not quite quadratic yet; what a
-        # linear solver leaves would be of order one and below.
+        # Three residuals that begin at some per cent of the first are not quite quadratic yet; the error of a
+        # linear solver would give an order of one or below.
         for order in orders["exact"] + orders["inexact"]:
             self.assertGreater(order, 1.5)
             self.assertLess(order, 2.4)

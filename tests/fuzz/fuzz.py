@@ -1,15 +1,15 @@
 #!/usr/bin/env -S /usr/bin/python3 -BEs
-"""Fuzzer: spoilt case files, overrides, point files and results folders through every command.
+"""Fuzzer: corrupted case files, overrides, point files and results folders through every command.
 
     /usr/bin/python3 -B tests/fuzz/fuzz.py --minutes 60 --seed 3     an hour with another seed
     /usr/bin/python3 -B tests/fuzz/fuzz.py --only 1234 --seed 3      one input again
     PERISTAT_PROGRAM=build/sanitize/peristat /usr/bin/python3 -B tests/fuzz/fuzz.py     under the sanitizers
 
-The seed and the number of an input make it what it is, whatever ran before. A finding is: an exit
+The seed and the number of an input determine it, whatever ran before. A finding is: an exit
 code other than 0, 2, 3, 4, 5, a signal, no end within the limits, a traceback, nan or inf in output
 or results, or results of a completed run that can't be true. Every fifth input is one of tests/fuzz/properties.py:
-answers that must agree with one another. Each is written below --keep with its
-files, what was said, and a command that repeats it.
+answers that must agree with one another. Each finding is written below --keep with its
+files, the output, and a command that repeats it.
 """
 
 import argparse
@@ -36,7 +36,7 @@ from tests.reference.verify import Verification  # noqa: E402
 
 CORPUS = pathlib.Path(__file__).resolve().parent / "corpus"
 CPU_SECONDS = 20  # check, calibrate and plot must end by themselves
-RUN_SECONDS = 10  # a run may be asked for more work: it is told to stop, and must
+RUN_SECONDS = 10  # a run may have more work than that: it is interrupted, and must end
 STOP_SECONDS = 20
 LARGEST_RUN = 3000  # points; bigger bodies are only checked
 EXPECTED = (0, 2, 3, 4, 5)
@@ -44,7 +44,7 @@ NOT_A_NUMBER = re.compile(r"(?<![\w.\"'])[-+]?(nan|inf|infinity)(?![\w\"'])", re
 
 
 class Finding(Exception):
-    """What is wrong about one input, and the command that showed it."""
+    """The fault of one input, and the command that showed it."""
 
     def __init__(self, text, run=None):
         super().__init__(text)
@@ -54,7 +54,7 @@ class Finding(Exception):
 class Input:
     """One fuzzed input: its files in a folder of its own, and the commands to try on them."""
 
-    EVERY_FIFTH = 5  # input is one with a property; the others are what they are without these
+    EVERY_FIFTH = 5  # every fifth input tests a property; the others do not depend on these
 
     def __init__(self, seed, number, folder):
         self.number = number
@@ -89,12 +89,12 @@ class Input:
             raise Finding("shows its inside", run)
         if run.code != 0 and not run.errors.strip():
             raise Finding(f"exit code {run.code} without a message", run)
-        # A motion tells every state that it writes: thousands in the seconds that a run is given.
+        # A motion prints every state that it writes: thousands in the seconds of a run.
         if len(run.said) > 500_000 and "check-tangent" not in run.command:
             raise Finding(f"says {len(run.said)} characters", run)
 
     def assert_numbers(self, run):
-        """No nan or inf where nobody has typed it; a refusal may tell the value that it refuses."""
+        """No nan or inf that the input does not contain; a refusal may print the refused value."""
         if run.code == 2:
             return
         found = NOT_A_NUMBER.search(run.said)
@@ -129,7 +129,7 @@ class Input:
         self.try_commands()
 
     def try_pair(self):
-        """Halves of two cases."""
+        """Combines halves of two cases."""
         first, second = (self.texts[self.random.choice(self.cases)].splitlines() for _ in range(2))
         self.write_corpus("cloud.toml")
         cut = self.random.randrange(len(first)), self.random.randrange(len(second))
@@ -184,7 +184,7 @@ class Input:
         run = program.execute(command, folder=self.folder, seconds=RUN_SECONDS + 3 * STOP_SECONDS)
         if run.code in (None, 137, -signal.SIGKILL):
             raise Finding("does not stop when told to", run)
-        if run.code in (124, 130):  # interrupted by us: asked for more work than there is time
+        if run.code in (124, 130):  # interrupted by us: more work than time
             return
         self.judge_end(run)
         self.assert_numbers(run)
@@ -217,24 +217,24 @@ class Input:
             if not 0 <= row["max_damage"] <= 1:
                 raise Finding(f"damage {row['max_damage']}", run)
         rows = {int(row["step"]): row for row in results.table("history")}
-        # What is torn keeps the round-off of what it bore, be it in the step that tore it.
+        # Torn parts keep the round-off of their previous forces, also in the step that tears them.
         borne = max((abs(step.force).max() for step in results.steps), default=0.0)
         for step in results.steps:
             moved = abs(step.displacement).max()
             borne = max(borne, abs(rows[step.number]["external_work"]) / moved if moved > 0.0 else 0.0)
         for step in results.steps:
             total = step.force.sum(axis=0)
-            for axis in range(len(total)):  # what the body beyond planes of symmetry pulls with
+            for axis in range(len(total)):  # forces from beyond planes of symmetry
                 name = f"reaction_{'xyz'[axis]}:symmetry_"
                 total[axis] -= sum(value for key, value in rows[step.number].items() if key.startswith(name))
             largest, total = abs(step.force).max(), abs(total).max()
             reactions = [abs(value) for key, value in rows[step.number].items() if key.startswith("reaction_")]
-            beyond = max(reactions, default=0.0)  # of planes and periods also where points bear nothing
+            beyond = max(reactions, default=0.0)  # of planes and periods, also where points carry no force
             if total > 1e-9 * largest * len(step.force) + 1e-12 * (beyond + borne):
                 raise Finding(f"internal forces of step {step.number} sum up to {total:.3g} N of {largest:.3g} N", run)
 
     def judge_by_reference(self, run, results):
-        """Accepted steps by the reference, where it can read the case."""
+        """Checks accepted steps by the reference, if it can read the case."""
         text = (self.folder / "case.toml").read_bytes().decode(errors="replace")
         tables = tomllib.loads(text)
         relaxation = tables.get("relaxation", {})
@@ -242,7 +242,7 @@ class Input:
                      if "material" in table]  # fmt: skip
         calibrated = materials[0].get("model") == "cpd" and not all("c1" in material for material in materials)
         settled = relaxation.get("load") == "moving" or relaxation.get("displacement_tolerance", 0) > 0
-        moves = tables.get("solver", {}).get("mode") == "dynamics"  # tests/reference/motion.py judges such
+        moves = tables.get("solver", {}).get("mode") == "dynamics"  # tests/reference/motion.py checks motions
         if calibrated or settled or moves or len(results.volume) > 500 or len(results.steps) > 200:
             return
         try:
@@ -270,7 +270,7 @@ class Input:
             raise Finding("a case of the corpus does not run", run)
         mutations.spoil_folder(self.random, self.folder / "out")
         if self.random.random() < 1 / 3:
-            with contextlib.suppress(OSError, RuntimeError, KeyError, ValueError):  # too spoilt for more
+            with contextlib.suppress(OSError, RuntimeError, KeyError, ValueError):  # too corrupted for more
                 mutations.spoil_folder(self.random, self.folder / "out")
         self.execute([*program.PLOT, "out"], seconds=10 * CPU_SECONDS, cpu_seconds=2 * CPU_SECONDS)
 

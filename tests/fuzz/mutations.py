@@ -1,4 +1,4 @@
-"""Ways to spoil case files, overrides, point files and results folders.
+"""Mutations of case files, overrides, point files and results folders.
 
 Every mutation takes the random generator first and leaves its inputs alone.
 """
@@ -96,7 +96,7 @@ def replaced_value(random, lines):
 
 
 def scaled_number(random, lines):
-    """A number another one of its own kind: what slips through the checks most easily."""
+    """Replaces a number by another one of its kind, which passes the checks most easily."""
     places = [(k, found) for k, line in enumerate(lines) for found in re.finditer(r"-?\d+\.?\d*(e-?\d+)?", line)]
     if places:
         k, found = random.choice(places)
@@ -134,7 +134,7 @@ def repeated_lines(random, lines):
 
 
 def mutated_text(random, text, others):
-    """A case file spoilt in one to three places, as bytes."""
+    """A case file corrupted in one to three places, as bytes."""
     lines = text.splitlines()
     for _ in range(random.choice((1, 1, 1, 2, 3))):
         kinds = (replaced_value, scaled_number, misspelt_key, added_line, moved_line, dropped_line, repeated_lines)
@@ -168,7 +168,7 @@ def mutated_bytes(random, data):
 
 
 def mutated_neighbours(random, text):
-    """A file of given neighbours spoilt in one to three places, as bytes."""
+    """A file of given neighbours corrupted in one to three places, as bytes."""
     lines = text.splitlines()
     for _ in range(random.choice((1, 1, 2, 3))):
         k = random.randrange(len(lines))
@@ -190,7 +190,7 @@ def mutated_neighbours(random, text):
 
 
 def mutated_points(random, text):
-    """A file of points spoilt in one to three places, as bytes."""
+    """A file of points corrupted in one to three places, as bytes."""
     lines = text.splitlines()
     for _ in range(random.choice((1, 1, 2, 3))):
         k = random.randrange(len(lines))
@@ -223,7 +223,7 @@ def mutated_points(random, text):
 
 
 def spoil_folder(random, folder):
-    """Damages a results folder in place; returns what was done."""
+    """Damages a results folder in place; returns a description."""
     folder = pathlib.Path(folder)
     files = sorted(path for path in folder.rglob("*") if path.is_file())
     if not files:

@@ -1,8 +1,8 @@
-"""Small cases whose answers are known to agree with one another, whatever the numbers: what they catch is a
-wrong answer with exit code 0.
+"""Small cases whose answers must agree with one another, whatever the numbers. They find wrong answers with
+exit code 0.
 
 Every function takes the input (tests/fuzz/fuzz.py), makes its cases with the input's random generator, runs
-them, and raises Finding where a property does not hold. Bodies have some ten points and take milliseconds.
+them, and raises Finding if a property does not hold. Bodies have some ten points and take milliseconds.
 """
 
 import copy
@@ -12,8 +12,8 @@ import math
 import re
 
 MODES = ("newton", "adaptive", "relaxation")
-ROUND_OFF = 1e-6  # share by which what is computed in two ways may differ: solvers stop at 1e-8 and better
-# Share of a work that a single step sums up by the mean of its ends: strains here are below 1e-3.
+ROUND_OFF = 1e-6  # largest relative difference of two ways to compute a value: solvers stop at 1e-8 or below
+# Relative error of a step's work by the trapezoidal rule: strains here are below 1e-3.
 ONE_STEP = 1e-2
 
 BAR = """dimension = 1
@@ -88,18 +88,18 @@ class Body:
         return (BAR if self.dimension == 1 else PLATE).format(**numbers)
 
     def in_units(self, length, stress):
-        """The same body, told in units of length and stress that are so many times smaller."""
+        """The same body in units of length and stress that are smaller by these factors."""
         other = copy.copy(self)
         other.spacing, other.modulus = length * self.spacing, stress * self.modulus
         other.area *= length ** (2 if self.dimension == 1 else 1)
         return other
 
     def along(self, expression):
-        """A vector with an expression along the bar."""
+        """A vector with a component along the bar, given by an expression."""
         return "[" + ", ".join([f'"{expression}"', '"0"'][: self.dimension]) + "]"
 
     def driven(self, scale):
-        """What loads it, with its size multiplied by an expression, by name."""
+        """Loadings by name, with their size multiplied by an expression."""
         stress = self.strain * self.modulus
         force, gravity = stress * self.section, stress / (1000.0 * self.length)
         own = {
@@ -114,7 +114,7 @@ class Body:
 
 
 def state(made, folder):
-    """What a run ended with: energies, the largest displacement, reactions."""
+    """The end of a run: energies, the largest displacement, reactions."""
     summary = json.loads((made.folder / folder / "summary.json").read_text())
     energy = summary["energy"]
     return {
@@ -136,7 +136,7 @@ def run(made, text, folder, *words, codes=(0,)):
 
 
 def require_balance(made, ended, found, share):
-    """What is put in is stored, dissipated or drained."""
+    """The external work is stored, dissipated or drained."""
     away = abs(found["stored"] + found["lost"] - found["work"])
     if away > share * max(abs(found["stored"]), abs(found["lost"]), abs(found["work"])):
         made.finding(f"stored {found['stored']:.9g} J and lost {found['lost']:.9g} J of {found['work']:.9g} J of work", ended)
@@ -151,7 +151,7 @@ def require_same(made, body, ended, one, other, words, share):
 
 
 def elastic_in_one_step_and_in_many(made):
-    """An elastic body comes to the same in any number of steps."""
+    """An elastic body reaches the same state in any number of steps."""
     body = Body(made.random)
     name, load = made.random.choice(sorted(body.driven("load").items()))
     mode, many = made.random.choice(MODES), made.random.randint(2, 9)
@@ -164,7 +164,7 @@ def elastic_in_one_step_and_in_many(made):
 
 
 def at_once_and_ramped(made):
-    """What acts from the start ends where it ends if it grows, and does the same work."""
+    """A load that acts from the start leads to the same state, with the same work, as a load that grows."""
     body = Body(made.random)
     name = made.random.choice(sorted(body.driven("")))
     mode, steps = made.random.choice(MODES), made.random.randint(1, 4)
@@ -177,11 +177,12 @@ def at_once_and_ramped(made):
     require_same(made, body, ended, *states, f"{name} that grows and at once, mode {mode}", 1e-4)
 
 
-UNITS = 1e-9  # share: the digits of a state change by round-off alone where its units do, by powers of four
+UNITS = 1e-9  # relative: scaling of units by powers of four changes a state's digits by round-off only
 
 
 def in_other_units(made):
-    """A body bears the same in metres and in other units of length and stress: nothing in the program has a size of its own."""
+    """A body carries the same load in metres and in other units of length and stress: the program has no length or
+    stress scale of its own."""
     body = Body(made.random)
     name = made.random.choice(sorted(body.driven("load")))
     length, stress = (4.0 ** made.random.randint(-8, 8) for _ in range(2))
@@ -205,7 +206,7 @@ def in_other_units(made):
 
 
 def dead_load_in_modes_that_find_loads(made):
-    """A dead load is borne before a mode that follows a path begins; at the end its work balances."""
+    """A dead load is applied before a mode that follows a path begins; at the end its work balances."""
     body = Body(made.random)
     force = body.strain * body.modulus * body.section
     mode = made.random.choice(("arc_length", "path"))
@@ -260,16 +261,16 @@ steps = 12
 [solver]
 mode = "adaptive"
 """
-STRENGTH = 0.1  # share: corners beside the clamped layers
+STRENGTH = 0.1  # relative: effect of the corners beside the clamped layers
 
 
 def strength_is_what_the_body_bears(made):
-    """A plain plate bears its strength, whatever its fracture energy."""
+    """A plain plate carries its strength, whatever its fracture energy."""
     strength = 3e6
     energy = made.random.choice((30.0, 60.0, 110.0))
     text = TENSION.format(energy=energy, strength=strength, pull=f"{2.0 * strength / 30e9 * 0.16:.6g}")
-    ended = run(made, text, "out", codes=(0, 2, 3))  # 3: the peak is behind it
-    if ended.code == 2:  # a law that this lattice can't have
+    ended = run(made, text, "out", codes=(0, 2, 3))  # 3: past the peak
+    if ended.code == 2:  # this lattice does not allow the law
         return
     with open(made.folder / "out/history.csv", newline="") as table:
         borne = max(abs(float(row["reaction_x:right"])) for row in csv.DictReader(table)) / 0.08
@@ -277,7 +278,7 @@ def strength_is_what_the_body_bears(made):
         made.finding(f"bears {borne:.4g} Pa with a strength of {strength:g} Pa, fracture energy {energy:g} J/m2", ended)
 
 
-# Keys that have no effect without another one. Tables of modes, [arc_length], are none of them: a case may have
+# Keys that have no effect without another one. Tables of modes such as [arc_length] are excluded: a case may have
 # them for the mode that --set chooses.
 WITHOUT_SWITCH = (
     "[material.damage]\ncritical = 1e-3\n",
@@ -293,7 +294,7 @@ WITHOUT_SWITCH = (
 
 
 def key_without_its_switch(made):
-    """A key that has no effect is refused, or makes a difference that `check` tells."""
+    """A key without effect is refused, or makes a difference that `check` prints."""
     body = Body(made.random)
     added = made.random.choice(WITHOUT_SWITCH)
     if body.dimension == 2:
@@ -309,7 +310,7 @@ def key_without_its_switch(made):
 
 
 def what_misses_the_body(made):
-    """A crack that cuts nothing, a shape or a set beside the body: refused, or told."""
+    """A crack that cuts nothing, or a shape or set outside the body, is refused or reported."""
     body = Body(made.random)
     far, size = 3 * body.length, body.length
     missing = {
@@ -329,7 +330,7 @@ def what_misses_the_body(made):
 
 
 def outputs_over_inputs(made):
-    """No output takes the place of an input or of a file of somebody else."""
+    """No output replaces an input or another file of the user."""
     body = Body(made.random)
     case = body.text + body.driven("load")["force"]
     made.write("case.toml", case)

@@ -1,1 +1,1 @@
-"""Compares the numbers that README, pages and headers of cases print with runs of the program."""
+"""Compares numbers in README, pages and headers of cases with runs of the program."""

@@ -6,13 +6,13 @@ from tests.printed.page import numbers
 
 
 class PrintedTest(unittest.TestCase):
-    """Compares values with the numbers that stand in `self.page` where a phrase has {}."""
+    """Compares values with the numbers that `self.page` has at the {} of a phrase."""
 
     page = ""
 
     def prints(self, phrase, *values, page=None, within=None):
-        """Within half a unit of the last digit printed: what rounding leaves of a result that repeats
-        itself to round-off. `within` widens that to a share of the number; say where it comes from.
+        """The tolerance is half a unit of the last printed digit, because a result repeats itself to round-off.
+        `within` widens it to a share of the number; say where the share comes from.
         """
         page = page or self.page
         printed = numbers(page, phrase)
@@ -23,7 +23,7 @@ class PrintedTest(unittest.TestCase):
             self.assertLessEqual(abs(number.value - value), tolerance * (1 + 1e-9), told)
 
     def prints_range(self, phrase, *values, page=None):
-        """The phrase has two numbers, and all values lie from the one to the other (to their rounding)."""
+        """The phrase has two numbers, and all values lie between them (to their rounding)."""
         low, high = numbers(page or self.page, phrase)
         self.assertTrue(values)
         for value in values:

@@ -22,7 +22,7 @@ class Printed:
 
 @functools.cache
 def text_of(path):
-    """The page on one line; comments of a case without their marks."""
+    """The page on one line; comments of a case without their # signs."""
     text = (ROOT / path).read_text()
     if path.endswith(".toml"):
         text = re.sub(r"^# ?", "", text, flags=re.MULTILINE)
@@ -30,7 +30,7 @@ def text_of(path):
 
 
 def numbers(path, phrase):
-    """The numbers that stand in the page where `phrase` has {}; the phrase stands there once."""
+    """The numbers that the page has at the {} of `phrase`; the phrase must occur exactly once."""
     pattern = f"({_NUMBER})".join(re.escape(part) for part in " ".join(phrase.split()).split("{}"))
     found = [match.groups() for match in re.finditer(pattern, text_of(path))]
     if len(found) != 1:

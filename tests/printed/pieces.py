@@ -1,12 +1,12 @@
-"""Pieces that a body has broken into, as far as they have kept their bonds."""
+"""Pieces of a broken body, counted by their intact bonds."""
 
 import h5py
 import numpy as np
 
 
 def pieces(folder, horizon, damage=0.5, least=10):
-    """Numbers of points, descending, of the pieces of at least so many points whose damage is below a value, which
-    unbroken bonds hold together."""
+    """Sizes in points, descending, of the pieces with at least `least` points. Pieces consist of points with damage
+    below a value that unbroken bonds connect."""
     with h5py.File(folder / "results.h5") as file:
         places = file["points/reference"][...]
         damages = list(file["steps"].values())[-1]["damage"][...]

@@ -1,4 +1,4 @@
-"""Runs whose results are compared with what pages print; each command runs once in a process."""
+"""Runs whose results are compared with printed numbers; each command runs once per process."""
 
 import functools
 import json
@@ -23,11 +23,11 @@ class Run:
         self.convergence = table(folder / "convergence.csv")
 
     def reaction(self, support, axis="x"):
-        """Of the last step [N]."""
+        """Reaction at the last step [N]."""
         return self.summary["reactions"][support]["xyz".index(axis)]
 
     def reactions(self, support, axis):
-        """Of all steps [N]."""
+        """Reactions at all steps [N]."""
         return [row[f"reaction_{axis}:{support}"] for row in self.history]
 
     def peak(self, support, axis):
@@ -49,12 +49,12 @@ class Run:
             return list(file["steps"].values())[-1][name][...]
 
     def points(self, name):
-        """What the results tell of the points."""
+        """A dataset of the points in the results."""
         with h5py.File(self.folder / "results.h5") as file:
             return file["points"][name][...]
 
     def accepted_residuals(self):
-        """Relative residual in which each accepted step ended."""
+        """Final relative residual of each accepted step."""
         last = {row["step"]: row["relative_residual"] for row in self.iterations}
         return [last[row["step"]] for row in self.history]
 

@@ -1,8 +1,8 @@
-"""What lies beyond planes of symmetry and periodic sides (docs/case-file.md), as points that are really there.
+"""The body beyond planes of symmetry and periodic sides (docs/case-file.md), as explicit points.
 
-The body is continued as far as its own points see. A copy X' = M X + t of a point X moves with u' = M u + n . jump, M
-the mirror, t whole multiples of what repeats, n how many periods it is away from it per axis, jump what the
-displacement gains over a period.
+The body is continued as far as its own points see. A copy X' = M X + t of a point X moves with u' = M u + n . jump:
+M is the mirror, t the shift by whole multiples of the repeat length, n the number of periods between them per axis,
+and jump the displacement's increase over a period.
 """
 
 import itertools
@@ -17,8 +17,8 @@ SAME_PLACE = 1e-7  # of the spacing
 
 
 class Along:
-    """A map of one axis onto itself: x' = mirror x + shift, so many periods away. The shift is by_planes times the
-    places of the planes."""
+    """A map of one axis: x' = mirror x + shift, `periods` periods away. The shift is by_planes times the positions of
+    the planes."""
 
     def __init__(self, mirror=1, shift=0.0, periods=0, by_planes=(0, 0)):
         self.mirror, self.shift, self.periods, self.by_planes = mirror, shift, periods, by_planes
@@ -30,7 +30,7 @@ def planes_across(axis, case):
 
 
 def maps_along(axis, case, reach):
-    """All maps of an axis whose copies a body between its planes or sides may see; the first one moves nothing."""
+    """All maps of an axis whose copies a body between its planes or sides may see; the first is the identity."""
     planes = planes_across(axis, case)
     period = next((table for table in case.get("period") if table["axis"] == axis), None)
     if len(planes) == 1:
@@ -49,9 +49,9 @@ def maps_along(axis, case, reach):
 
 
 class Beyond:
-    """Own points and after them the copies that an own point may see.
+    """Own points, followed by the copies that an own point may see.
 
-    places, source (own point that each stands for), mirror, shift and periods (count x dimension).
+    places, source (own point of each), mirror, shift and periods (count x dimension).
     """
 
     def __init__(self, case, reference, spacing, reach):
@@ -75,7 +75,7 @@ class Beyond:
 
     @staticmethod
     def are_seen(copies, reference, reach):
-        """Which copies an own point lies no further away from than reach."""
+        """The copies within `reach` of an own point."""
         low, high = reference.min(axis=0) - reach, reference.max(axis=0) + reach
         seen = ((copies >= low) & (copies <= high)).all(axis=1)
         for k in numpy.flatnonzero(seen):
@@ -83,11 +83,11 @@ class Beyond:
         return seen
 
     def key(self, place):
-        """The same for places that differ by round-off, whichever side of a rounding they fall on: see number."""
+        """Integer key of a position. Positions that differ by round-off may have neighbouring keys: see number."""
         return tuple(numpy.rint(place / (SAME_PLACE * self.spacing)).astype(numpy.int64).tolist())
 
     def number(self, place):
-        """Of the point at a place; None: there is none."""
+        """Number of the point at a position; None: there is none."""
         here = numpy.array(self.key(place))
         for off in itertools.product((0, -1, 1), repeat=len(here)):
             found = self.at.get(tuple((here + off).tolist()))
@@ -96,7 +96,7 @@ class Beyond:
         return None
 
     def spread(self, displacement, jump):
-        """Of own points to all, with the jumps over the periods (axes x components)."""
+        """Displacements of all points from those of own points, with the jumps over the periods (axes x components)."""
         return displacement[self.source] * self.mirror + self.periods @ jump
 
     def twin(self, first, second):
@@ -110,7 +110,7 @@ class Beyond:
         return [axis for axis, letter in enumerate(self.axes) if planes_across(letter, self.case)]
 
     def planes(self):
-        """Name of each plane, its axis, and by how much more than itself the points beyond it move with it."""
+        """Name of each plane, its axis, and how much more the points beyond it move with it than the plane itself."""
         found = []
         for axis, letter in enumerate(self.axes):
             count = len(planes_across(letter, self.case))
@@ -137,7 +137,7 @@ class Beyond:
         return {table["axis"]: float(table["to"]) - float(table["from"]) for table in self.case.get("period")}
 
     def given_jump(self, load):
-        """Jumps over the periods (axes x components) [m] as the case gives them, and which of them it leaves free."""
+        """Jumps over the periods (axes x components) [m] as the case gives them, and which of them are free."""
         jump, free = numpy.zeros((len(self.axes),) * 2), numpy.zeros((len(self.axes),) * 2, bool)
         for table in self.case.get("period"):
             axis = self.axes.index(table["axis"])
@@ -148,7 +148,7 @@ class Beyond:
         return jump, free
 
     def told_jump(self, row):
-        """Jumps over the periods as a row of the history tells them."""
+        """Jumps over the periods from a row of the history."""
         jump = numpy.zeros((len(self.axes),) * 2)
         for axis, length in self.lengths().items():
             for c, component in enumerate(self.axes):

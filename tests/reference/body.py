@@ -1,4 +1,4 @@
-"""Points, their interactions and the weights of these (docs/theory.md)."""
+"""Points, their interactions and the weights of interactions (docs/theory.md)."""
 
 import itertools
 import math
@@ -16,7 +16,7 @@ HORIZON_TOLERANCE = 1e-8
 
 
 def pairs_within(reference, radius, first_points=None):
-    """All pairs i < j no further apart than the radius, i one of the first points if these are counted."""
+    """All pairs i < j no farther apart than the radius; i is one of the first `count` points if a count is given."""
     count, pairs = len(reference) if first_points is None else first_points, []
     for first in range(0, count, 256):
         rows = reference[first : min(first + 256, count)]
@@ -28,7 +28,7 @@ def pairs_within(reference, radius, first_points=None):
 
 
 def measure(arms):
-    """Length, area or volume of interactions from their arms (a list of vectors), with sign."""
+    """Signed length, area or volume of interactions from their arms (a list of vectors)."""
     dimension = arms[0].shape[-1]
     if len(arms) == 1:
         return numpy.sqrt((arms[0] ** 2).sum(axis=-1))
@@ -46,7 +46,7 @@ def arms_of(tuples, places):
 
 
 def cliques(bonds, count, size, first_points=None):
-    """All tuples of `size` points that are bonded with one another, ascending; see pairs_within."""
+    """All tuples of `size` mutually bonded points, ascending; see pairs_within."""
     linked = [set() for _ in range(count)]
     for i, j in bonds.tolist():
         linked[i].add(j)
@@ -59,7 +59,7 @@ def cliques(bonds, count, size, first_points=None):
 
 
 def lattice_ball(dimension, ratio, edges=1.0):
-    """Neighbours of a lattice's bulk point, in spacings; edges of cells that are not square."""
+    """Neighbours of a lattice's bulk point, in spacings; `edges` are those of cells that are not square."""
     edges = numpy.broadcast_to(edges, (dimension,))
     reaches = (ratio * (1 + HORIZON_TOLERANCE) / edges).astype(int)
     grid = numpy.array(list(itertools.product(*(range(-reach, reach + 1) for reach in reaches))), float) * edges
@@ -68,7 +68,7 @@ def lattice_ball(dimension, ratio, edges=1.0):
 
 
 def influence_of_sides(name, tuples, places):
-    """Product of the influences of all pairs of a tuple's points; places in horizons."""
+    """Product of the influences of all pairs of a tuple's points; positions in horizons."""
     factor = numpy.ones(len(tuples))
     for a, b in itertools.combinations(range(tuples.shape[1]), 2):
         arm = places[tuples[:, a]] - places[tuples[:, b]]
@@ -87,7 +87,7 @@ def micromodulus_factor(dimension, material, horizon, cross_section):
 
 
 def constant_factor(dimension, plane, horizon, cross_section):
-    """c / E of the influence function 1."""
+    """c / E for the influence function 1."""
     if dimension == 1:
         return 2 / (cross_section * horizon**2)
     if dimension == 2 and plane == "stress":
@@ -98,12 +98,12 @@ def constant_factor(dimension, plane, horizon, cross_section):
 
 
 def shape_norm(shape, vectors):
-    """Largest component or sum of components."""
+    """Maximum norm or sum norm."""
     return abs(vectors).max(axis=1) if shape == "box" else abs(vectors).sum(axis=1)
 
 
 def turned_back(vectors, angle):
-    """Vectors along axes that are turned by an angle about z."""
+    """Rotates vectors along the axes by an angle about z."""
     result = vectors.copy()
     if vectors.shape[1] > 1:
         x, y = vectors[:, 0], vectors[:, 1]
@@ -112,7 +112,7 @@ def turned_back(vectors, angle):
 
 
 def mean_of_reach(shape, dimension, power):
-    """Mean over all directions of norm^-power: Gauss's rule over the angles, between the norm's kinks."""
+    """Mean over all directions of norm^-power, by Gauss quadrature over the angles, between the norm's kinks."""
     if shape == "ball" or dimension == 1:
         return 1.0
     nodes, weights = numpy.polynomial.legendre.leggauss(40)
@@ -127,7 +127,7 @@ def mean_of_reach(shape, dimension, power):
         return (of_flat * shape_norm(shape, around) ** -power).sum() / (math.pi / 2)
     total = 0.0
     for (cosine, sine), weight in zip(around, of_flat):
-        edge = math.atan2(1.0, max(cosine, sine))  # where the height is as large as the largest flat component
+        edge = math.atan2(1.0, max(cosine, sine))  # where the height equals the largest in-plane component
         for polar, of_polar in (over(0.0, edge), over(edge, math.pi / 2)):
             directions = numpy.stack([numpy.sin(polar) * cosine, numpy.sin(polar) * sine, numpy.cos(polar)], 1)
             total += weight * (of_polar * numpy.sin(polar) * shape_norm(shape, directions) ** -power).sum()
@@ -144,14 +144,14 @@ def confined_modulus_factor(dimension, plane):
 
 
 class Body:
-    """Everything that is constant: interactions as arrays of point numbers, with their weights.
+    """All constant data: interactions as arrays of point numbers, with their weights.
 
-    bonds, triangles, tetrahedra: (points, weight, reference measure), the measures with sign. Weights
-    are relative to the constants of the first material.
+    bonds, triangles, tetrahedra: (points, weight, reference measure), the measures with sign. Weights are relative
+    to the constants of the first material.
 
-    sets: flags of the points by name, for regions; factors: random ones of the points, by name. The arrays have more
-    points than these: after the `own` ones those beyond planes of symmetry and periods. Interactions are those that own
-    points have a part in; `share` is the part of each that belongs to the body.
+    sets: flags of the points by name, for regions; factors: random factors of the points, by name. The arrays cover
+    the `own` points, followed by those beyond planes of symmetry and periods. Interactions are those with at least
+    one own point; `share` is the part of each that belongs to the body.
     """
 
     def __init__(self, case, reference, volume, horizon_ratio=None, sets=None, factors=None):
@@ -190,7 +190,7 @@ class Body:
     def lengths(self):
         return self.measure[1]
 
-    # ---- bonds alone -----------------------------------------------------------------------------
+    # ---- bonds ------------------------------------------------------------------------------------
 
     def _make_bonds(self):
         material, quadrature = self.materials.tables[0], self.case["quadrature"]
@@ -247,7 +247,7 @@ class Body:
         self.tuples[1], self.weight[1] = pairs, weight
 
     def _given_pairs(self):
-        """Neighbours from a file and the means of their shares, in the numbers of these points."""
+        """Neighbours from a file and the means of their shares, by the numbers of these points."""
         if self.case.is_lattice or "neighbours" not in self.case["points"]:
             return None
         places, _, _ = read_points(self.case)
@@ -262,7 +262,7 @@ class Body:
         return 2 * self._bulk_volume() / (own[i] + own[j])
 
     def _bulk_volume(self):
-        """V_H of a point inside the lattice; for a cloud a lattice of its mean spacing."""
+        """V_H of a point inside the lattice; for a cloud, of a lattice with its mean spacing."""
         correction, name = self.case["quadrature"]["volume_correction"], self.case["material"]["influence"]
         ratio = self.horizon / self.spacing
         edges = self.case.spacings / self.spacing if self.case.is_lattice else 1.0
@@ -293,7 +293,8 @@ class Body:
         return 1 / numpy.sqrt(inverse_square)
 
     def _sum_over(self, index, value):
-        """At every point: what lies beyond has what its source has, whose neighbours alone are all there."""
+        """Sums at every point. Points beyond have the sum of their source, because only own points have all of their
+        neighbours."""
         return numpy.bincount(index, value, minlength=len(self.volume))[self.source]
 
     # ---- continuum-kinematics-inspired ----------------------------------------------------------
@@ -301,7 +302,7 @@ class Body:
     def _make_cpd(self):
         tables = self.materials.tables
         assert all("c1" in table for table in tables), "the reference does not calibrate"
-        # Where the first material has none the weights are relative to 1.
+        # If the first material has none, the weights are relative to 1.
         self.constants = {n: float(tables[0].get(f"c{n}", 0.0)) for n in (1, 2, 3)}
         for n in (2, 3):
             if any(table.get(f"c{n}", 0.0) for table in tables):
@@ -331,7 +332,7 @@ class Body:
             else:
                 number = sum(self._sum_over(tuples[:, k], factor) for k in range(order + 1))
                 self.factor_sums[order] = number
-                # A point's last interaction must not keep its weight by being the only one.
+                # The last interaction of a point must not keep its full weight by normalisation.
                 number = numpy.where((number > 0) & (number < 1), (1 + number**2) / 2, number)
                 ordered = math.factorial(order) * number
                 effective = numpy.divide(own_volume**order, ordered, out=numpy.zeros(len(ordered)), where=ordered > 0)
@@ -346,7 +347,7 @@ class Body:
             self.tuples[order], self.weight[order] = tuples[factor > 0], (self.weight[order] * factor)[factor > 0]
 
     def _flatness(self, tuples, places, cells):
-        """g(|M| / M0): 0 for what is flat, 1 from three quarters of a cell on."""
+        """g(|M| / M0): 0 for flat interactions, 1 from three quarters of a cell on."""
         order = tuples.shape[1] - 1
         cell = (cells ** (order / self.dimension))[tuples].mean(axis=1)
         share = numpy.clip(2 * numpy.abs(measure(arms_of(tuples, places))) / cell - 0.5, 0, 1)
@@ -386,8 +387,8 @@ class Body:
     # ---- bonds by their points -------------------------------------------------------------------
 
     def _number_bonds(self):
-        """Numbers of bonds by their points; bonds of two points beyond, which triangles and tetrahedra may stand on,
-        have that of the bond of own points that they are copies of."""
+        """Numbers of bonds by their points. Bonds between two points beyond, which are sides of triangles and
+        tetrahedra, have the number of the bond between own points of which they are copies."""
         self.bond_number = {code: k for k, code in enumerate(self.codes(self.bonds).tolist())}
         for tuples in self.tuples.values():
             for a, b in itertools.combinations(range(tuples.shape[1]), 2):
@@ -401,7 +402,7 @@ class Body:
         return pairs[..., 0] * len(self.volume) + pairs[..., 1]
 
     def twin(self, first, second):
-        """Number of the bond that is the same as this one, seen from the second point's source; None: no bond."""
+        """Number of the same bond as seen from the second point's source; None: no bond."""
         first, second = self.beyond.twin(first, second)
         return None if second is None else self.bond_number.get(min(first, second) * len(self.volume) + max(first, second))
 
@@ -432,7 +433,7 @@ def segments_meet(p, q, start, end):
 
 
 def segments_meet_polygon(vertices, start, end):
-    """Cuts through the inside of the polygon; bonds that merely touch it are not looked for."""
+    """Whether bonds cross the inside of the polygon; bonds that only touch it do not count."""
     normal = numpy.zeros(3)
     for a, b in zip(vertices, numpy.roll(vertices, -1, axis=0)):
         normal += numpy.cross(a - vertices[0], b - vertices[0])

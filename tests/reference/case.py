@@ -1,4 +1,4 @@
-"""A case file as docs/case-file.md explains it: defaults, expressions, sets."""
+"""A case file as docs/case-file.md defines it: defaults, expressions, sets."""
 
 import copy
 import functools
@@ -46,7 +46,7 @@ class Case:
 
     @property
     def place(self):
-        """The table that tells where the points come from."""
+        """The table that defines the points."""
         return self["lattice"] if self.is_lattice else self["points"]
 
     @property
@@ -57,11 +57,11 @@ class Case:
 
     @property
     def spacings(self):
-        """Of the lattice along its axes [m]."""
+        """Spacing of the lattice along its axes [m]."""
         return numpy.broadcast_to(numpy.asarray(self["lattice"]["spacing"], float), (self.dimension,))
 
     def spacing(self, volume):
-        """Edge of a square of a lattice's cell's volume, or of a cloud's mean volume [m]."""
+        """Edge of a square with the volume of a lattice's cell, or with a cloud's mean volume [m]."""
         if self.is_lattice:
             return float(numpy.prod(self.spacings) ** (1 / self.dimension))
         return float((numpy.mean(volume) / self.cross_section) ** (1 / self.dimension))
@@ -74,12 +74,12 @@ class Case:
 
     @property
     def spacing_in_expressions(self):
-        """A number, or one per axis if they differ; a cloud's mean spacing is not known here."""
+        """A number, or one per axis if they differ; a cloud's mean spacing is unknown here."""
         spacings = self.spacings
         return spacings if len(set(spacings)) > 1 else float(spacings[0])
 
     def loads(self, stage, load):
-        """Load parameters by their names; the first one may have been found."""
+        """Load parameters by name; the first one may have been found by the run."""
         values = {"load": load}
         for name in ("table2", "table3", "table4"):
             if name in self["loading"]:
@@ -87,7 +87,7 @@ class Case:
         return values
 
     def at_stage(self, table, stage):
-        """Value of a table, which has one entry per stage."""
+        """Value of a table with one entry per stage."""
         if isinstance(table, str):
             number = numpy.arange(self["loading"]["steps"] + 1.0)
             table = evaluate(table, numpy.zeros((len(number), 0)), {"step": number})
@@ -95,7 +95,7 @@ class Case:
 
     @property
     def has_damage(self):
-        """Whether any of the materials fails."""
+        """Whether any of the materials can fail."""
         materials = [self["material"]] + [t["material"] for t in self.get("region")]
         materials += [t["material"] for t in self.get("interface") if "material" in t]
         return any(table.get("damage", {}).get("law", "none") != "none" for table in materials)
@@ -116,7 +116,8 @@ def read_points(case):
 
 
 class NotUnderstood(Exception):
-    """What the program can read and the reference can't: an expression of muParser alone, or cells that results don't tell."""
+    """The program can read this input and the reference can't: an expression in muParser syntax only, or cells
+    that results do not record."""
 
 
 FUNCTIONS = {name: getattr(numpy, name) for name in "sin cos tan sinh cosh tanh exp sqrt abs sign log2 log10".split()}
@@ -126,7 +127,7 @@ FUNCTIONS |= {"min": lambda *values: functools.reduce(numpy.minimum, values), "a
 
 
 def read_neighbours(case):
-    """Pairs of points, numbered from 0 as in their file, and the shares that they count of each other."""
+    """Pairs of points, numbered from 0 as in their file, and the shares with which they count for each other."""
     lines = (case.folder / case["points"]["neighbours"]).read_text().splitlines()
     rows = [line.replace(",", " ").split() for line in lines if line.strip() and not line.startswith("#")]
     shares = {}
@@ -140,9 +141,9 @@ def read_neighbours(case):
 
 
 def evaluate(expression, reference, loads=0.0, spacing=0.0):
-    """An expression of place and load parameters at every point; only what Python and the program share.
+    """An expression of position and load parameters at every point, in the syntax that Python and the program share.
 
-    loads: values of the load parameters by their names, or of `load` alone; spacing: a number, or one per axis
+    loads: values of the load parameters by name, or of `load` alone; spacing: a number, or one per axis
     """
     count = len(reference)
     if not isinstance(expression, str):
@@ -160,7 +161,7 @@ def evaluate(expression, reference, loads=0.0, spacing=0.0):
 
 
 def face_forces(places):
-    """Area vector of a face, of the normal whose sign is +, shared out to its corners."""
+    """Area vector of a face, for the normal with sign +, distributed to its corners."""
     if len(places) == 1:
         return [numpy.ones(1)]
     if len(places) == 2:
@@ -175,7 +176,7 @@ def face_forces(places):
 
 
 class Conditions:
-    """What holds and loads the points."""
+    """Supports and loads of the points."""
 
     def __init__(self, case, reference, volume, sets):
         self.case, self.reference, self.volume, self.sets = case, reference, volume, sets
@@ -187,8 +188,8 @@ class Conditions:
         self.cell_held = self.middle_of_cell()
 
     def middle_of_cell(self, forces=None):
-        """Degrees of freedom at which a cell that nothing holds is held: those of the point next to its middle, but for
-        what planes of symmetry hold. Of points as near as one another that with the largest force."""
+        """Degrees of freedom at which an unsupported cell is held: those of the point next to its centre, except those
+        that planes of symmetry hold. Among equally near points, the one with the largest force is chosen."""
         mask = numpy.zeros(self.reference.shape, bool)
         is_held = self.prescribed.any() or any(self.case.get(name) for name in ("rigid", "roller", "constraint"))
         if self.case.get("period") and not is_held:
@@ -229,7 +230,7 @@ class Conditions:
         return value
 
     def amounts(self, table):
-        """A load's key, and what its value is multiplied with at each point."""
+        """A load's key, and the factor of its value at each point."""
         members = self.sets[table["set"]] if "set" in table else numpy.ones(len(self.volume), bool)
         if "gravity" in table:
             inside = members if "set" in table else self.is_in_body()
@@ -240,9 +241,9 @@ class Conditions:
         return ("total_force", volume / volume.sum()) if "total_force" in table else ("body_force", volume)
 
     def follower_force(self, load, displacement):
-        """Pressures on the exposed faces of cells [N]: minus the pressure times the gradient of the volume that the
-        faces and the origin span, less what the rims of an open boundary add to it; a corner moves with the points
-        around it by the smallest weights that are exact for linear fields."""
+        """Pressures on the exposed faces of cells [N]: minus the pressure times the gradient of the volume between the
+        faces and the origin, less the contribution of the rims of an open boundary. A corner moves with the points
+        around it by the least weights that are exact for linear fields."""
         total = numpy.zeros(displacement.shape, numpy.asarray(displacement).dtype)
         for table in self.case.get("load"):
             if "pressure" not in table:
@@ -263,7 +264,7 @@ class Conditions:
         return numpy.linalg.pinv(sums)[:, 0]
 
     def faces(self, table):
-        """Corners in the reference, faces as corner numbers with the sign of their normal, points around corners."""
+        """Reference corners, faces as corner numbers with the sign of their normal, points around corners."""
         dimension = self.reference.shape[1]
         low = self.reference.min(axis=0)
         inside = self.is_in_body()
@@ -300,7 +301,7 @@ class Conditions:
         return corners, faces, around
 
     def of_material(self, quantity):
-        """That of every point's material."""
+        """The property of every point's material."""
         values = numpy.full(len(self.volume), float(self.case["material"].get(quantity, numpy.nan)))
         for region in self.case.get("region"):
             values[self.sets[region["set"]]] = region["material"][quantity]
@@ -313,7 +314,7 @@ class Conditions:
         return inside
 
     def traction_areas(self, table, members):
-        """Per point: the loaded faces of cells, each shared by the points below it as far as the depth reaches."""
+        """Per point: the loaded faces of cells, each shared by the points below it within the depth."""
         inside = self.is_in_body()
         cell = numpy.rint((self.reference - self.reference.min(axis=0)) / self.spacing).astype(int)
         body = {tuple(c): k for k, c in enumerate(cell) if inside[k]}
@@ -343,7 +344,7 @@ class Conditions:
         return area
 
     def eigenstretch(self, load):
-        """Per point; nothing if there is none."""
+        """Change per point; None if there is none."""
         strained, temperature = self.case.get("eigenstrain"), self.case.get("temperature", {})
         if not strained and not temperature:
             return None

@@ -1,10 +1,10 @@
-"""Random clouds of points as cases: a file of points and a case file beside it."""
+"""Random clouds of points as cases: a file of points and its case file."""
 
 import json
 
 import numpy
 
-# Stretches of the deformations below reach some 10 %, so that these laws leave whole, softening and
+# Stretches of the deformations below reach about 10 %, so that these laws give intact, softening and
 # broken bonds.
 LAWS = {
     "none": None,
@@ -44,7 +44,7 @@ def toml(tables):
 
 
 def random_places(random, count, dimension):
-    """Points about one apart: a lattice as square as it goes, shaken, in random order."""
+    """Points with a mean distance of about one: a lattice as square as possible, perturbed, in random order."""
     side = int(numpy.ceil(count ** (1 / dimension)))
     grid = numpy.stack(numpy.meshgrid(*[numpy.arange(side)] * dimension, indexing="ij"), -1).reshape(-1, dimension)
     places = grid[:count] + random.uniform(-0.35, 0.35, (count, dimension))
@@ -83,7 +83,7 @@ def random_cloud(random, folder, dimension, *, count, horizon, **tables):
 
 
 def random_deformation(random, dimension, size, amount):
-    """Current coordinates as expressions of x, y, z: linear and quadratic, of about this stretch."""
+    """Current coordinates as expressions of x, y, z, linear and quadratic, with about the given stretch."""
     axes = "xyz"[:dimension]
     expressions = []
     for axis in axes:

@@ -1,12 +1,12 @@
-"""J, stress intensity factors and T-stress about a crack's tip (docs/theory.md, Fracture quantities)."""
+"""J, stress intensity factors and T-stress at a crack tip (docs/theory.md, Fracture quantities)."""
 
 import numpy
 
-STEP = 1e-3  # of the shift that the derivative of the energies is taken by, over the spacing
+STEP = 1e-3  # shift for the derivative of the energies, over the spacing
 
 
 class Elasticity:
-    """Plane stress, or plane strain and space."""
+    """Elastic constants for plane stress, or for plane strain and space."""
 
     def __init__(self, modulus, poisson, is_thin):
         self.shear = modulus / (2 * (1 + poisson))
@@ -23,7 +23,7 @@ def frame(tip, dimension):
 
 
 def displacement(mode, at, elasticity, still):
-    """Of the modes 0, 1, 2 with the factor 1, or (3) of a force of 1 N/m on the tip, in the tip's frame."""
+    """Fields of the modes 0, 1, 2 with the factor 1, or (3) of a force of 1 N/m on the tip, in the tip's frame."""
     x, y = at[:, 0], at[:, 1]
     r, angle = numpy.hypot(x, y), numpy.arctan2(y, x)
     sine, cosine, k = numpy.sin(angle / 2), numpy.cos(angle / 2), elasticity.kolosov
@@ -61,7 +61,7 @@ class CrackTip:
         self.length = mechanics.case.cross_section if self.dimension == 2 else numpy.ptp(self.at[near, 2]) + self.spacing
 
     def energies(self, u):
-        """Per point."""
+        """Energy density per point."""
         shares = numpy.zeros(len(u))
         for order, part in self.mechanics.energies(u, self.history).items():
             for k in range(order + 1):

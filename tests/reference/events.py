@@ -1,15 +1,16 @@
-"""Whether a run of mode `path` goes from event to event as docs/theory.md says.
+"""Checks that a run of mode `path` goes from event to event as docs/theory.md defines it.
 
-From the last state and the history of its bonds alone follow the bonds that drop next. A plain body
-(bonds, supports and dead loads) is moreover settled here, by a Newton's method of its own: that tells
-what was drained, where the next strength is met, and what an avalanche breaks."""
+The last state and the history of its bonds determine the bonds that drop next. For a plain body
+(bonds, supports and dead loads) the state is also solved for here, by a separate Newton's method. This gives the
+drained energy, the load at which the next strength is reached, and the bonds that an avalanche breaks."""
 
 import numpy
 
-TIE = 1e-7  # utilisations nearer than this are the same
-AT_STRENGTH = 1 - 1e-9  # share of what is borne at which a state is accepted
-SHARE = 2e-9  # by which both sides may differ in that, teeth included
-# Of energies: states are known by residuals of 1e-10 of their loads, energies to that squared, but for what supports do.
+TIE = 1e-7  # utilisations that differ by less are tied
+AT_STRENGTH = 1 - 1e-9  # share of the strength at which a state is accepted
+SHARE = 2e-9  # relative difference allowed between both programs, including the saw teeth
+# Relative error of energies: residuals are 1e-10 of the loads, and energies err by its square, except for the work
+# of supports.
 OF_ENERGY = 1e-8
 OF_RELEASED = 1e-7
 PLAIN_TABLES = {"support", "load", "lattice", "points", "material", "crack", "set", "probe"}
@@ -17,21 +18,21 @@ SETTINGS = {"title", "dimension", "quadrature", "loading", "solver", "relaxation
 
 
 class Events:
-    """Judges the rows of a run; complaints go to its verification."""
+    """Checks the rows of a run; complaints go to its verification."""
 
     def __init__(self, verification):
         self.of, self.mechanics, self.case = verification, verification.mechanics, verification.case
-        self.broken_at = {}  # load factors of the bonds that are listed, by the step that they led to
+        self.broken_at = {}  # load factors of the listed bonds, by the step that they led to
         for row in verification.results.table("broken_bonds"):
             self.broken_at.setdefault(int(row["step"]), []).append(row["load_factor"])
         self.top = self.stage = self.load = 0.0
         self.least_scale = self.released = self.batch_work = 0.0
         self.response = None  # row of the last state on the response, and its energy
         self.drained = 0.0
-        self.is_whole = True  # every row since the start was seen
+        self.is_whole = True  # every row since the start is known
         self.settled_here = self.avalanches = self.unknown = 0
 
-    # ---- what a state tells ----------------------------------------------------------------------
+    # ---- events from states -----------------------------------------------------------------------
 
     def utilisation(self, everywhere, history):
         mechanics = self.mechanics
@@ -40,7 +41,7 @@ class Events:
         return mechanics.stretch(everywhere) / borne
 
     def batch(self, utilisation):
-        """Bonds that drop together, and by how much the gap after them is wider than a tie."""
+        """Bonds that drop together, and by how much the gap to the next one exceeds a tie."""
         tolerance = self.case["loading"].get("event_tolerance", 0.002)
         order = numpy.argsort(-utilisation, kind="stable")
         sorted_down = utilisation[order]
@@ -59,7 +60,7 @@ class Events:
     # ---- rows ------------------------------------------------------------------------------------
 
     def judge(self, step, row, old, history):
-        """A row beside the one before it."""
+        """Checks a row against the previous one."""
         self.judge_strengths(step, row, history)
         follows = old.number + 1 == step.number
         self.is_whole &= follows
@@ -85,7 +86,7 @@ class Events:
             self.of.complain(step, f"stability {row['stability']}")
 
     def judge_drops(self, step, row, old, history):
-        """What has dropped since is what ties with the most utilised bond there."""
+        """The bonds dropped since then are those tied with the most utilised bond."""
         utilisation = self.utilisation_of_old(old)
         most = utilisation.max()
         changed = numpy.flatnonzero(history != old.history)
@@ -111,7 +112,7 @@ class Events:
         self.mechanics.eigenstretch = kept
         return utilisation
 
-    # ---- a plain body, settled here --------------------------------------------------------------
+    # ---- a plain body, solved here ----------------------------------------------------------------
 
     @property
     def is_plain(self):
@@ -122,7 +123,7 @@ class Events:
         return self.mechanics.energy(u, history, held=True)
 
     def tangent(self, u, history):
-        """Of bonds with the damage held [N/m], a square matrix."""
+        """Stiffness of the bonds with the damage held [N/m], a square matrix."""
         body = self.mechanics.body
         arms = self.mechanics.reference_arms[1][0] + u[body.bonds[:, 1]] - u[body.bonds[:, 0]]
         lengths = numpy.sqrt((arms**2).sum(axis=1))
@@ -140,15 +141,15 @@ class Events:
         return total.reshape(size, size)
 
     def solve(self, matrix, right, free):
-        """What nothing holds stays about where it is."""
+        """Keeps floating parts about where they are."""
         part = matrix[numpy.ix_(free, free)]
         return numpy.linalg.solve(part + 1e-11 * numpy.abs(numpy.diag(part)).max() * numpy.eye(len(part)), right)
 
     def settle(self, u, past, history, loads):
-        """The equilibrium under the same loads, or nothing if Newton's method does not find it.
+        """The equilibrium under the same loads, or None if Newton's method does not find it.
 
-        What was stable before bonds dropped does not end in an unstable one: then the energy is
-        followed downhill.
+        A state that was stable before bonds dropped does not end in an unstable one; if Newton's method leads there,
+        the energy is followed downhill.
         """
         free = (~self.of.conditions.prescribed).ravel()
         near = self.settle_nearby(u, history, loads)
@@ -157,12 +158,12 @@ class Events:
         return near
 
     def spectrum(self, u, history, free):
-        """Eigenvalues, those within round-off of zero as zero, and eigenvectors of the tangent."""
+        """Eigenvalues, with round-off set to zero, and eigenvectors of the tangent."""
         values, vectors = numpy.linalg.eigh(self.tangent(u, history)[numpy.ix_(free, free)])
         return numpy.where(numpy.abs(values) < 1e-9 * values[-1], 0.0, values), vectors
 
     def settle_downhill(self, u, history, loads):
-        """Newton's method with the moduli of the eigenvalues, its steps halved until the energy falls."""
+        """Newton's method with the moduli of the eigenvalues; steps are halved until the energy decreases."""
         free = (~self.of.conditions.prescribed).ravel()
         external = self.of.conditions.force(loads)
         potential = lambda at: self.energy(at, history) - (external * at).sum()
@@ -194,7 +195,7 @@ class Events:
         return None
 
     def way(self, u, history, stage):
-        """Lowest and highest stage at which linearly all bonds bear what they are stretched to."""
+        """Lowest and highest stage at which all bonds are admissible, by linear extrapolation."""
         conditions, free = self.of.conditions, (~self.of.conditions.prescribed).ravel()
         step = 2.0**-13
         ahead = stage + step if stage + step <= numpy.floor(stage) + 1 else stage - step
@@ -231,7 +232,7 @@ class Events:
             settled = self.settle(u, past, after, old.loads)
             if settled is None:
                 self.unknown += 1
-                self.is_whole = False  # what was drained is not known from here on
+                self.is_whole = False  # the drained energy is unknown from here on
                 return
             work = float((external * (settled - u)).sum())
             drained += work + self.energy(u, after) - self.energy(settled, after)
@@ -251,7 +252,7 @@ class Events:
             self.judge_way(step, row, u, past, utilisation)
 
     def judge_ledger(self, step, row, old, settled, external, others, dead_work):
-        """Work by the trapezoidal rule from where the body has settled, and its error as numerical work."""
+        """Work by the trapezoidal rule from the settled state, and its error as numerical work."""
         u, history = settled
         loads = self.of.conditions.force(step.loads)
         forces = [self.mechanics.gradient(v, history, held=True) - f for v, f in ((u, external), (step.displacement, loads))]
@@ -259,7 +260,7 @@ class Events:
         work = float((pull * (step.displacement - u)).sum())
         stored = self.energy(step.displacement, history) - self.energy(u, history)
         scale = row["stored_energy"] + abs(row["dissipated_energy"]) + abs(row["external_work"])
-        # A way that is too curved is gone in several steps, whose sum errs by less.
+        # A strongly curved path is taken in several steps, whose sum has a smaller error.
         written = row["external_work"] - old.external_work - dead_work
         if abs(written - stored) > 1.1 * abs(work - stored) + OF_ENERGY * scale:
             self.of.complain(step, f"work of {written:.8g} J, by the trapezoidal rule {work:.8g}, stored are {stored:.8g}")
@@ -273,12 +274,12 @@ class Events:
         self.of.compare(step, "numerical work", row["numerical_work"] - old.numerical_work, batch_work, scale, OF_ENERGY)
 
     def judge_way(self, step, row, u, past, utilisation):
-        """The next strength is met above, or else at the nearer end of what is admissible."""
+        """The next strength is reached above, or else at the nearer end of the admissible range."""
         begin = numpy.ceil(self.stage) - 1 if self.stage > 0 else 0.0
         low, high = self.way(u, past, self.stage)
         change = row["stage"] - self.stage
         if abs(utilisation.max() - 1) < 1e-4 or begin > self.stage + low:
-            return  # next to where it turns, or where the segment of the programme begins
+            return  # near a turning point, or the start of a segment of the programme
         if low > high:
             self.of.complain(step, "no load is admissible here, but the path goes on")
             return
@@ -290,7 +291,7 @@ class Events:
     # ---- under the given loads -------------------------------------------------------------------
 
     def judge_response(self, step, row):
-        """The energy that the response has released: what its potential falls by at the same load."""
+        """Energy released by the response: the decrease of its potential at constant load."""
         if not row["stage"] >= self.top:
             if row["released_energy"] != self.released:
                 self.of.complain(step, "energy is released off the response")

@@ -26,17 +26,17 @@ class Foundations:
         return numpy.stack([evaluate(c, place, load, self.conditions.spacing) * numpy.ones(len(place)) for c in components], 1)
 
     def forces(self, displacement, load):
-        """On each point, by name [N]."""
+        """Force on each point, by name [N]."""
         return {table["name"]: self.stiffness[table["name"]] * (self.ground(table, load) - displacement) for table in self.tables}
 
     def force(self, displacement, load):
         return sum(self.forces(displacement, load).values(), numpy.zeros(displacement.shape))
 
     def energy(self, displacement, load):
-        """Per point [J]."""
+        """Energy per point [J]."""
         return sum((0.5 * self.stiffness[table["name"]] * (self.ground(table, load) - displacement) ** 2
                     for table in self.tables), numpy.zeros(displacement.shape)).sum(axis=1)  # fmt: skip
 
     def work(self, old, new):
-        """Of the ground from one step to another, by half of what it adds to the energy of each [J]."""
+        """Work of the ground's motion from one step to another: half of the energy that it adds in both states [J]."""
         return sum((self.energy(u, new.loads) - self.energy(u, old.loads)).sum() / 2 for u in (old.displacement, new.displacement))

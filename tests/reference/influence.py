@@ -11,7 +11,7 @@ POWERS = {
     "septic": {0: 1, 4: -35, 5: 84, 6: -70, 7: 20},
     "inverse": {-1: 1},
 }
-EVERYWHERE = ("constant", "gaussian", "inverse")  # those that do not end at the horizon
+EVERYWHERE = ("constant", "gaussian", "inverse")  # functions that do not vanish beyond the horizon
 ROUND_OFF = 1e-8
 
 

@@ -2,7 +2,7 @@
 
 import numpy
 
-# Composite Gauss-Legendre quadrature: 40 panels of 12 nodes take a sigmoid as steep as rate 50 over
+# Composite Gauss-Legendre quadrature: 40 panels of 12 nodes integrate a sigmoid as steep as rate 50 over
 # the range to 1e-15.
 NODES, WEIGHTS = numpy.polynomial.legendre.leggauss(12)
 PANELS = 40
@@ -11,7 +11,7 @@ SHARES = numpy.tile(WEIGHTS / 2 / PANELS, PANELS)
 
 
 class Law:
-    """Laws of bonds: numbers for all of them, or arrays with an entry for each."""
+    """Laws of bonds: numbers for all bonds, or arrays with an entry for each."""
 
     PARTS = ("name", "onset", "critical", "rate", "peak", "hardening")
 
@@ -21,7 +21,7 @@ class Law:
 
     @classmethod
     def of_table(cls, table):
-        """By its table in the case file."""
+        """Law from its table in the case file."""
         name, critical = table["law"], float(table["critical"])
         return cls(name, critical if name == "critical_stretch" else float(table["onset"]), critical,
                    float(table.get("rate", 3.0)), float(table.get("peak", 0.0)), float(table.get("hardening", 0.5)))  # fmt: skip
@@ -36,15 +36,15 @@ class Law:
         return [getattr(self, part) for part in self.PARTS]
 
     def of(self, bonds):
-        """Those of some of the bonds."""
+        """The laws of some of the bonds."""
         return Law(*(part[bonds] if numpy.ndim(part) else part for part in self.parts))
 
     def spread(self, count):
-        """An entry for each."""
+        """Expands numbers to an entry per bond."""
         return Law(*(numpy.broadcast_to(part, count) for part in self.parts))
 
     def columns(self):
-        """To go with several stretches of each bond."""
+        """The laws shaped for several stretches per bond."""
         return Law(*(part[:, None] for part in self.parts))
 
     def published(self, stretch):
@@ -57,7 +57,7 @@ class Law:
         return numpy.where(self.name == numpy.array("tanh"), published, (published - end) / (start - end))
 
     def enveloped(self, stretch):
-        """Of the laws that are given by their force: that over the stretch."""
+        """Integrity of the laws that are given by their force: force over stretch."""
         is_blended = self.name == numpy.array("blended")
         peak = numpy.where(is_blended, self.peak, self.onset)
         highest = self.onset + numpy.where(is_blended, self.hardening, 0.0) * (peak - self.onset)
@@ -74,11 +74,11 @@ class Law:
             return self.tanh(stretch)
         if not is_tanh.any():
             return self.enveloped(stretch)
-        with numpy.errstate(all="ignore"):  # each of the two is nonsense for the other's laws
+        with numpy.errstate(all="ignore"):  # each of the two is meaningless for the other's laws
             return numpy.where(is_tanh, self.tanh(stretch), self.enveloped(stretch))
 
     def integrity(self, stretch):
-        """1 up to the onset, 0 from the critical stretch on; of a complex number by its real part."""
+        """1 up to the onset, 0 from the critical stretch on; for complex numbers, by the real part."""
         real = numpy.real(stretch)
         value = numpy.where(real >= self.critical, 0.0, 1.0).astype(numpy.asarray(stretch).dtype)
         between = (real > self.onset) & (real < self.critical)
@@ -101,7 +101,7 @@ class Law:
         return value
 
     def between(self, start, end):
-        """The integral of r T(r), T being smooth in between."""
+        """The integral of r T(r) over a range in which T is smooth."""
         span = end - start
         at = start[:, None] + span[:, None] * FRACTIONS
         return span * (at * self.columns().softening(at) @ SHARES)

@@ -4,8 +4,8 @@ L u = f - (terms of tractions), linear in u; all in the reference configuration.
 eta = u_j - u_i, d the dimension, K = 1/r up to the horizon, m = int K r^2, k = K weight / m over intact bonds:
     theta_i = d sum k xi.M_i eta,  M_i = [d sum k xi xi]^-1,
     (L u)_i = -sum k [d (lambda - mu) xi (theta_i + theta_j) + 2 d (d + 2) mu xi (xi.eta) / r^2] + theta_i c_theta
-and the broken bonds are the missing part of the ball, in which u goes on linearly with this theta and the
-traction [Yu, You, Trask 2021, 4.1 to 4.9, 5.3 to 5.5, 6.2 to 6.4]. Nothing is shared with the program.
+The broken bonds are the missing part of the ball, into which u is extrapolated linearly with this theta and the
+traction [Yu, You, Trask 2021, 4.1 to 4.9, 5.3 to 5.5, 6.2 to 6.4]. No code is shared with the program.
 """
 
 import itertools
@@ -13,27 +13,27 @@ import math
 
 import numpy
 
-CLOSED_BALL = 1 + 1e-8  # bonds as long as the horizon are inside
-SMALLEST_EIGENVALUE = 1e-11  # of the largest: kept of the moments of weights
-CONSTRAINT = 1e-11  # how far weights may miss a moment
-SMALLEST_SHAPE = 1e-10  # of the largest eigenvalue: kept of the inverse in M
-NO_NORMAL = 1e-10  # of the sum of lengths: shorter sums have no direction
+CLOSED_BALL = 1 + 1e-8  # includes bonds as long as the horizon
+SMALLEST_EIGENVALUE = 1e-11  # relative to the largest; smaller ones of the moment matrix are dropped
+CONSTRAINT = 1e-11  # largest error of a moment of the weights
+SMALLEST_SHAPE = 1e-10  # relative to the largest eigenvalue; smaller ones are dropped in M
+NO_NORMAL = 1e-10  # share of the sum of lengths; shorter sums have no direction
 
 
 def lame(modulus, poisson, plane="strain"):
-    """lambda, mu [Pa] of Young's modulus and Poisson's ratio; plane: "strain" (also 3D) or "stress"."""
+    """lambda, mu [Pa] from Young's modulus and Poisson's ratio; plane: "strain" (also 3D) or "stress"."""
     factor = {"strain": 1 - 2 * poisson, "stress": 1 - poisson}[plane]
     return modulus * poisson / ((1 + poisson) * factor), modulus / (2 * (1 + poisson))
 
 
 def harmonic_mean(first, second):
-    """2ab/(a + b), and 0 of two zeros."""
+    """2ab/(a + b), and 0 for two zeros."""
     both = numpy.asarray(first + second, float)
     return numpy.divide(2 * first * second, both, out=numpy.zeros_like(both), where=both != 0)
 
 
 def critical_stretch(fracture_energy, lame_lambda, mu, horizon):
-    """Of a plane, from the fracture energy [J/m2] (6.3), with beta = beta' = 3 horizon / (4 pi)."""
+    """Critical stretch in a plane from the fracture energy [J/m2] (6.3), with beta = beta' = 3 horizon / (4 pi)."""
     return math.sqrt(math.pi * fracture_energy / (3 * horizon * (lame_lambda + mu)))
 
 
@@ -41,7 +41,8 @@ def critical_stretch(fracture_energy, lame_lambda, mu, horizon):
 
 
 def exponents(dimension, degree):
-    """Of the monomials (n, d) that weights are exact for: from degree 2 in a plane, 1 in space, up to the given one."""
+    """Exponents of the monomials (n, d) that weights integrate exactly: from degree 2 (plane) or 1 (space) to
+    `degree`."""
     lowest = 4 - dimension
     every = itertools.product(range(degree + 1), repeat=dimension)
     return numpy.array([power for power in every if lowest <= sum(power) <= degree])
@@ -57,7 +58,7 @@ def moment(power):
 
 
 def quadrature_weights(vectors, horizon, degree=5):
-    """Least weights that integrate all s^power / |s|^3 exactly over the ball.
+    """Least-norm weights that integrate all s^power / |s|^3 exactly over the ball.
 
     vectors: (..., neighbours, d), all neighbours in the ball, intact or not. Returns weights (..., neighbours)
     [area or volume], and the largest error of a moment on the unit ball (...)."""
@@ -75,9 +76,9 @@ def quadrature_weights(vectors, horizon, degree=5):
 
 
 def weights_of_points(vectors, starts, horizon, degree=5):
-    """The same for many points, whose vectors (bonds, d) stand behind each other and begin at starts.
+    """The same for many points, whose concatenated vectors (bonds, d) begin at `starts`.
 
-    Points with the same neighbours share them. Returns weights (bonds) and errors (points)."""
+    Points with the same neighbours share weights. Returns weights (bonds) and errors (points)."""
     counts = numpy.diff(numpy.append(starts, len(vectors)))
     weights, errors = numpy.zeros(len(vectors)), numpy.zeros(len(starts))
     for count in numpy.unique(counts):
@@ -97,7 +98,7 @@ def weights_of_points(vectors, starts, horizon, degree=5):
 
 
 def neighbours(places, radius, rows):
-    """Bonds (first, second) from each of the rows (numbers of points, rising) to all points in the closed ball."""
+    """Bonds (first, second) from each of the rows (point numbers, ascending) to all points in the closed ball."""
     pairs = []
     for block in numpy.array_split(rows, len(rows) // 200 + 1):
         low, high = places[block].min(axis=0) - 1.1 * radius, places[block].max(axis=0) + 1.1 * radius
@@ -113,11 +114,11 @@ def neighbours(places, radius, rows):
 
 
 def missing_ball(vectors, shares, normal, lame_lambda, mu, form="full"):
-    """What the broken bonds of one point do: c_theta (d), and C (d, d), so that C T stands beside its forces.
+    """The effect of one point's broken bonds: c_theta (d), and C (d, d), where C T is added to its forces.
 
-    shares: K weight / m of these bonds. normal: outward unit vector; zero where there is none, and then tractions
-    and the stress that follows from them drop. form: "full", or "paper", which keeps of xi xi xi what stays
-    when the ball is mirrored along its normal: (4.6). In space the two tangential strains are alike."""
+    shares: K weight / m of these bonds. normal: outward unit vector; if it is zero, tractions and the stress that
+    follows from them are dropped. form: "full", or "paper", which keeps those parts of xi xi xi that are invariant
+    under reflection of the ball along its normal: (4.6). In space the two tangential strains are equal."""
     d = len(normal)
     across = numpy.outer(normal, normal)
     along = numpy.eye(d) * (normal @ normal) - across
@@ -131,7 +132,7 @@ def missing_ball(vectors, shares, normal, lame_lambda, mu, form="full"):
     def force(shear_times_strain):
         return -2 * d * (d + 2) * numpy.einsum("abc,bc->a", odd, shear_times_strain)
 
-    # mu E is T_n/2 - lambda theta/2 along the normal; what is left of mu theta is shared by the tangents.
+    # mu E is T_n/2 - lambda theta/2 along the normal; the tangents share the rest of mu theta.
     of_dilatation = -lame_lambda / 2 * across + (mu + lame_lambda / 2) / (d - 1) * along
     of_normal_traction = across / 2 - along / (2 * (d - 1))
     c_theta = -2 * d * (lame_lambda - mu) * (shares @ vectors) + force(of_dilatation)
@@ -148,16 +149,17 @@ def _third_moment(vectors, shares):
 
 
 class Solid:
-    """Points of three kinds: of the body (with equations), of the collar (displacements are given; 2 horizons deep)
-    and ghosts, which carry nothing but weights (1 horizon deep behind surfaces with tractions).
+    """Points of three kinds: body (with equations), collar (given displacements; 2 horizons deep) and ghosts, which
+    only
 
-    `points`: numbers of the body's points, to which forces and tractions belong; `rows`: those of all points that
-    have a dilatation (the body and what its intact bonds reach), to which bonds belong."""
+    contribute weights (1 horizon deep behind surfaces with tractions).
+    `points`: numbers of the body's points, which have forces and tractions; `rows`: numbers of all points with a
+    dilatation (the body and the ends of its intact bonds), which have bonds."""
 
     def __init__(self, places, horizon, body, lame_lambda, mu, *, collar=None, broken=(), normals=None, form="full",
                  degree=5, volume=1.0):  # fmt: skip
         """places (n, d); body, collar: masks (n); lame_lambda, mu: numbers or per point [Pa]; broken: pairs of
-        points, cut in both directions; normals: (n, d) in the place of the numerical ones; volume per point."""
+        points, cut in both directions; normals: (n, d) in place of the numerical ones; volume per point."""
         self.places, self.horizon = numpy.asarray(places, float), horizon
         count, self.dimension = self.places.shape
         body = numpy.asarray(body, bool)
@@ -204,7 +206,7 @@ class Solid:
         return self.carries[first] & self.carries[second] & ~numpy.isin(codes, cut)
 
     def _sum(self, values):
-        """Over the bonds of each row."""
+        """Sums over the bonds of each row."""
         return numpy.add.reduceat(values, self.starts, axis=0)
 
     def _shape(self):
@@ -213,7 +215,7 @@ class Solid:
         return numpy.linalg.pinv(self.dimension * self._sum(outer), rcond=SMALLEST_SHAPE, hermitian=True)
 
     def _normals(self):
-        """Away from the intact bonds (4.9); zero where their sum has no direction."""
+        """Normal away from the intact bonds (4.9); zero if their sum has no direction."""
         intact = (self.weights * self.intact)[:, None] * self.vectors
         total, size = -self._sum(intact), self._sum(numpy.linalg.norm(intact, axis=1))
         length = numpy.linalg.norm(total, axis=1)
@@ -235,22 +237,22 @@ class Solid:
 
     @property
     def has_surface(self):
-        """Of each point of the body: whether one of its bonds is broken."""
+        """For each point of the body, whether any of its bonds is broken."""
         return self._sum((~self.intact).astype(int))[self.row[self.points]] > 0
 
     @property
     def c_normal(self):
-        """Force beside T_n = 1 (points, d)."""
+        """Force due to T_n = 1 (points, d)."""
         return numpy.einsum("iab,ib->ia", self.c_traction, self.normals[self.row[self.points]])
 
     @property
     def c_tangent(self):
-        """Plane: force beside T_p = 1, p the normal turned by +90 degrees (points, d)."""
+        """In a plane: force due to T_p = 1, where p is the normal turned by +90 degrees (points, d)."""
         normal = self.normals[self.row[self.points]]
         return numpy.einsum("iab,ib->ia", self.c_traction, numpy.stack([-normal[:, 1], normal[:, 0]], 1))
 
     def _relative(self, displacement):
-        """eta of intact bonds, 0 of others: what ghosts are said to move is never read."""
+        """eta of intact bonds, 0 of others: displacements of ghosts are never used."""
         displacement = numpy.asarray(displacement, float)
         relative = numpy.zeros_like(self.vectors)
         relative[self.intact] = displacement[self.second[self.intact]] - displacement[self.first[self.intact]]
@@ -267,7 +269,7 @@ class Solid:
         return self.dimension * self._sum(self.share * (self.vectors * turned).sum(axis=1))
 
     def strain(self, displacement):
-        """Of every row (rows, d, d)."""
+        """Strain of every row (rows, d, d)."""
         gradient = self.gradient(displacement)
         return (gradient + gradient.transpose(0, 2, 1)) / 2
 
@@ -278,7 +280,7 @@ class Solid:
         return pressure[:, None, None] * numpy.eye(self.dimension) + 2 * self.mu[self.rows, None, None] * strain
 
     def forces(self, displacement):
-        """L u of the points of the body (points, d) [N/m3], with c_theta, without tractions."""
+        """L u at the points of the body (points, d) [N/m3], with c_theta, without tractions."""
         d = self.dimension
         theta = self.dilatation(displacement)
         of_second = numpy.where(self.intact, theta[self.row[self.second]], 0)
@@ -290,18 +292,18 @@ class Solid:
         return -self._sum(self.share[:, None] * (volumetric + bond))[own] + theta[own, None] * self.c_theta
 
     def traction_terms(self, tractions):
-        """T_n c_n + T_p c_p of the points of the body (points, d), from T at each of them (points, d) [Pa]."""
+        """T_n c_n + T_p c_p at the points of the body (points, d), from T at each of them (points, d) [Pa]."""
         return numpy.einsum("iab,ib->ia", self.c_traction, tractions)
 
     def residual(self, displacement, body_force=0.0, tractions=None):
-        """L u + T_n c_n + T_p c_p - f of the points of the body (points, d) [N/m3]: zero in equilibrium."""
+        """L u + T_n c_n + T_p c_p - f at the points of the body (points, d) [N/m3]: zero in equilibrium."""
         of_tractions = 0 if tractions is None else self.traction_terms(tractions)
         return self.forces(displacement) + of_tractions - body_force
 
     def energy_density(self, displacement):
-        """w of every row [J/m3]: half of what is printed as W_delta.
+        """w of every row [J/m3]: half of the printed W_delta.
 
-        Forces are its derivative on a whole lattice of one material alone."""
+        Forces are its derivative only on a whole lattice of a single material."""
         d = self.dimension
         along = (self.direction * self._relative(displacement)).sum(axis=1)
         bonds = d * (d + 2) / 2 * self._sum(self.share * self.mean_mu * along**2)
@@ -313,19 +315,19 @@ class Solid:
         return (self.volume[self.rows] * self.energy_density(displacement)).sum()
 
     def stretches(self, displacement):
-        """s of every bond (6.2), 0 of bonds that are not intact."""
+        """s of every bond (6.2), 0 for bonds that are not intact."""
         relative, length = self._relative(displacement), numpy.linalg.norm(self.vectors, axis=1)
         moved = numpy.linalg.norm(self.vectors + relative, axis=1)
         return ((2 * self.vectors + relative) * relative).sum(axis=1) / (length * (moved + length))
 
     def damage(self):
-        """Broken share of the bonds between points that carry displacements, of the points of the body (6.4)."""
+        """Broken share of the bonds between points with displacements, for the points of the body (6.4)."""
         inside = self.carries[self.second]
         broken = self._sum((inside & ~self.intact).astype(float)) / self._sum(inside.astype(float))
         return broken[self.row[self.points]]
 
     def operators(self):
-        """Of forces = A u + B theta, theta = D u: (row, column, value) of blocks each, repeated places add up.
+        """Blocks of forces = A u + B theta, theta = D u: (row, column, value) of each; repeated positions add up.
 
         A: (points, all points, (d, d)); B: (points, rows, (d)); D: (rows, all points, (d))."""
         d, place = self.dimension, numpy.full(len(self.places), -1)
@@ -357,5 +359,5 @@ class Solid:
 
 
 def _both_ends(row, second, first, values, sign):
-    """Values at the far ends of bonds, and with a sign at their near ends."""
+    """Scatters values to the far ends of bonds and, with a sign, to their near ends."""
     return numpy.append(row, row), numpy.append(second, first), numpy.concatenate([values, sign * values])

@@ -1,4 +1,4 @@
-"""Materials of points and what bonds between them have (docs/theory.md, Regions)."""
+"""Materials of points and of the bonds between them (docs/theory.md, Regions)."""
 
 import itertools
 import math
@@ -15,7 +15,7 @@ BETWEEN = {
 
 
 class Materials:
-    """Tables of the materials, the number of each point's, and the rules between them."""
+    """Tables of the materials, each point's material number, and the rules between materials."""
 
     def __init__(self, case, sets, count, factors=None):
         self.case, self.factors = case, factors or {}
@@ -34,7 +34,7 @@ class Materials:
         return len(self.tables) == 1 and not self.factors and "fibre" not in self.tables[0]
 
     def interface(self, a, b):
-        """The table between two materials by their numbers."""
+        """The table for the interface between two materials, by their numbers."""
         of_all = {}
         for table in self.case.get("interface"):
             if "between" not in table:
@@ -44,7 +44,7 @@ class Materials:
         return of_all
 
     def _by_pair(self, pairs, value):
-        """value(table) of bonds in a material, and by the rule between two."""
+        """value(table) of bonds within a material, combined by the rule for bonds between two."""
         first, second = numpy.sort(self.number[pairs], axis=1).T
         result = numpy.empty(len(pairs))
         for a, b in itertools.combinations_with_replacement(range(len(self.tables)), 2):
@@ -68,7 +68,7 @@ class Materials:
     # ---- bonds -----------------------------------------------------------------------------------
 
     def bond_constants(self, pairs, direction, of_modulus):
-        """c of bonds; of_modulus is c / E of isotropic ones."""
+        """c of bonds; of_modulus is c / E for isotropic bonds."""
 
         def value(table):
             if "fibre" in table:
@@ -79,8 +79,8 @@ class Materials:
         return self._by_pair(pairs, value) * self.factor("stiffness", pairs)
 
     def constants(self, tuples, name):
-        """C1, C2 or C3 of interactions: of points of two materials their mean by the rule, of more the
-        mean of what each two have."""
+        """C1, C2 or C3 of interactions. For points of two materials it is their mean by the rule; for points of more,
+        the mean over all pairs of points."""
         kinds = numpy.sort(self.number[tuples], axis=1)
         result = numpy.empty(len(tuples))
         for row in numpy.unique(kinds, axis=0):
@@ -99,7 +99,7 @@ class Materials:
     # ---- damage ----------------------------------------------------------------------------------
 
     def law(self, pairs, direction):
-        """The laws of bonds, and which of them have none."""
+        """The laws of bonds, and the mask of bonds without a law."""
         first, second = numpy.sort(self.number[pairs], axis=1).T
         count = len(pairs)
         law = Law(numpy.full(count, "none", "U20"), *(numpy.full(count, value) for value in (numpy.inf, numpy.inf, 3.0, 0.0, 0.0)))
@@ -142,7 +142,7 @@ class Materials:
 
     @property
     def no_fail(self):
-        """Sets whose points' bonds never fail, by any of the materials."""
+        """Sets whose points' bonds never fail, over all materials."""
         tables = self.tables + [t["material"] for t in self.case.get("interface") if "material" in t]
         return [name for table in tables if damage_of(table) for name in damage_of(table)["no_fail"]]
 
@@ -166,7 +166,7 @@ def like(one, other):
 
 
 def alignment(fibre, direction):
-    """Squares of the cosines of the angle to the fibres."""
+    """Squared cosines of the angle to the fibres."""
     if "angle" in fibre:
         angle = math.radians(fibre["angle"])
         along = numpy.array([math.cos(angle), math.sin(angle)])
@@ -177,7 +177,7 @@ def alignment(fibre, direction):
 
 
 def directed_constant(table, direction, of_modulus):
-    """A polynomial of the cosine's square, found by quadrature from the stiffness that is asked for."""
+    """A polynomial of the squared cosine, found by quadrature from the required stiffness."""
     fibre, plane = table["fibre"], direction.shape[1] == 2
     e1, e2 = float(table["youngs_modulus"]), float(fibre["transverse_modulus"])
     poisson = 1 / 3 if plane else 1 / 4
@@ -196,7 +196,7 @@ def directed_constant(table, direction, of_modulus):
         cosine, weights = numpy.polynomial.legendre.leggauss(16)
         mean, (across, mixed) = (lambda values: values @ weights / 2), (3 / 8, 1 / 2)
     t = cosine**2
-    # isotropic bonds of E = 1 have the constant of_modulus and the stiffness iso
+    # isotropic bonds with E = 1 have the constant of_modulus and the stiffness iso
     iso = 9 / 8 if plane else 6 / 5
     unit = iso / mean(t**2)
     matrix = [[unit * mean(t**k * weight) for k in range(3)]

@@ -7,11 +7,11 @@ import numpy
 from tests.reference.body import arms_of, measure
 from tests.reference.laws import Law
 
-STEP = 1e-30  # of complex steps: its square vanishes beside 1, so that there is no truncation
+STEP = 1e-30  # of complex steps: its square vanishes relative to 1, so there is no truncation error
 
 
 def add_at(total, index, values):
-    """total[index] += values, also where an index repeats; many times faster than numpy.add.at."""
+    """total[index] += values, also for repeated indices; many times faster than numpy.add.at."""
     for axis in range(total.shape[1]):
         total[:, axis] += numpy.bincount(index, values[:, axis].real, minlength=len(total))
         if total.dtype == complex:
@@ -56,21 +56,21 @@ def measure_gradients(current):
 
 
 class Mechanics:
-    """A body with its law of damage; displacements u are those of all its points, forces those on its own."""
+    """A body with its law of damage. Displacements u cover all of its points, forces only its own points."""
 
     def __init__(self, body, elastic=False):
         self.body, self.case = body, body.case
-        self.eigenstretch = None  # per point; every evaluation is under it
+        self.eigenstretch = None  # per point; included in every evaluation
         self.reference_arms = {k: arms_of(t, body.reference) for k, t in body.tuples.items()}
         direction = self.reference_arms[1][0] / body.measure[1][:, None]
         law = Law.elastic() if elastic else body.materials.law(body.bonds, direction)
         self.law = law.spread(len(body.bonds))
-        # Where any bond fails, one without a law is one that never does.
+        # If any bond can fail, bonds without a law get one that never fails.
         self.fails = (self.law.name != "none") | ~numpy.full(len(body.bonds), self.case.has_damage and not elastic)
-        self.told_history, self.told_work = numpy.zeros((2, len(body.bonds)))  # moments of the law that are known
+        self.told_history, self.told_work = numpy.zeros((2, len(body.bonds)))  # moments of the law at written histories
 
     def spare(self, sets):
-        """Bonds of the points of no-fail sets stay elastic."""
+        """Bonds of points in no-fail sets stay elastic."""
         for name in self.body.materials.no_fail:
             self.fails &= ~sets[name][self.body.source][self.body.bonds].any(axis=1)
 
@@ -78,7 +78,7 @@ class Mechanics:
         return numpy.zeros(len(self.body.bonds))
 
     def change(self, order, u):
-        """m/M - 1 beyond what the interaction would have if nothing held it."""
+        """m/M - 1 relative to the stress-free state."""
         change = relative_change(self.reference_arms[order], arms_of(self.body.tuples[order], u))
         if self.eigenstretch is None:
             return change
@@ -91,12 +91,12 @@ class Mechanics:
         return self.change(1, u)
 
     def grown(self, history, u):
-        """The histories after this state has been accepted."""
+        """The histories after this state is accepted."""
         stretch = self.stretch(u)
         return numpy.where(self.fails & (stretch > self.law.onset), numpy.maximum(history, stretch), history)
 
     def integrity(self, history):
-        """T of the histories; 1 before any damage."""
+        """T at the histories; 1 before any damage."""
         value = numpy.ones(len(history))
         worn = history > 0
         value[worn] = self.law.of(worn).integrity(history[worn])
@@ -106,11 +106,11 @@ class Mechanics:
         return history >= self.law.critical
 
     def _is_loading(self, stretch, history):
-        """Where the bond takes up more; a broken one does not."""
+        """Whether the bond can damage further; a broken bond can't."""
         return self.fails & ~self.is_broken(history) & (numpy.real(stretch) > numpy.maximum(history, self.law.onset))
 
     def _bond_potential(self, stretch, history, held=False):
-        """phi / C1: what a bond takes up."""
+        """phi / C1: energy of the bond."""
         value = self.integrity(history) * stretch**2 / 2
         if held:
             return value
@@ -133,7 +133,7 @@ class Mechanics:
         return value
 
     def _kept(self, order, history):
-        """Share of the stiffness that triangles and tetrahedra keep: product over their bonds."""
+        """Stiffness share that triangles and tetrahedra keep: the product over their bonds."""
         integrity, number = self.integrity(history), self.body.bond_number
         tuples = self.body.tuples[order]
         kept = numpy.ones(len(tuples))
@@ -145,7 +145,7 @@ class Mechanics:
     # ---- sums over the body ----------------------------------------------------------------------
 
     def energies(self, u, history, held=False):
-        """What every interaction takes up [J], by order, the whole of it."""
+        """Full energy of every interaction [J], by order."""
         energy = {}
         for order in self.reference_arms:
             change = self.change(order, u)
@@ -161,11 +161,11 @@ class Mechanics:
         return self.sum_of(self.energies(u, history, held))
 
     def sum_of(self, energies):
-        """Of what interactions take up, by order, what belongs to the body [J]."""
+        """The part of the energy of interactions that belongs to the body [J], by order."""
         return sum((self.body.share[order] * part).sum() for order, part in energies.items())
 
     def slope(self, u, history, component, rate, held=False):
-        """Derivative of the energy along a motion of all points in one component: a complex step of it."""
+        """Derivative of the energy along a motion of all points in one component, by a complex step."""
         if not rate.any():
             return 0.0
         moved = u.astype(complex)
@@ -173,24 +173,23 @@ class Mechanics:
         return self.energy(moved, history, held).imag / STEP
 
     def slopes_by_jumps(self, u, history, held=False):
-        """Derivative of the energy by the jumps over the periods [N], axes x components."""
+        """Derivative of the energy with respect to the jumps over the periods [N], axes x components."""
         periods, axes = self.body.beyond.periods, range(self.body.dimension)
         return numpy.array([[self.slope(u, history, c, periods[:, axis], held) for c in axes] for axis in axes])
 
     def pull_of_periods(self, u, history, held=False):
         """Force over each period [N], axes x components."""
         pull = self.slopes_by_jumps(u, history, held)
-        pull[:, self.body.beyond.mirrored_axes()] = 0.0  # what acts beyond a plane of symmetry is the opposite
+        pull[:, self.body.beyond.mirrored_axes()] = 0.0  # forces beyond a plane of symmetry are opposite
         return pull
 
     def pull_of_planes(self, u, history):
-        """Force of what lies beyond each plane of symmetry [N] by its name, and the plane's axis: what it takes to move
-        the plane, with all that is mirrored in it."""
+        """Force from beyond each plane of symmetry [N] by name, and the plane's axis: the force needed to move the
+        plane with everything that is mirrored in it."""
         return {name: (self.slope(u, history, axis, rate), axis) for name, axis, rate in self.body.beyond.planes()}
 
     def heating_work(self, old, new, before, after):
-        """Half of what an eigenstretch going from before to after adds to the energy in each of two states, each
-        (u, history)."""
+        """Half of the energy that a change of the eigenstretch adds, in each of two states (u, history)."""
         work = 0.0
         if before is None and after is None:
             return work
@@ -205,7 +204,7 @@ class Mechanics:
         return self._sums(u, history, absolute, held)[: self.body.own]
 
     def gradient_of_shares(self, u, history=None, held=False):
-        """On own points and on those beyond [N], of the parts of interactions that belong to the body."""
+        """Forces on own points and on those beyond [N], of the parts of interactions that belong to the body."""
         return self._sums(u, history, held=held, shared=True)
 
     def _sums(self, u, history=None, absolute=False, held=False, shared=False):
@@ -233,7 +232,7 @@ class Mechanics:
         return numpy.abs(total) if absolute else total
 
     def tangent(self, u, history=None):
-        """Second derivative [N/m], a square matrix: complex steps of the gradient."""
+        """Second derivative [N/m], a square matrix, by complex steps of the gradient."""
         size = u.size
         matrix = numpy.empty((size, size))
         for column in range(size):
@@ -243,7 +242,8 @@ class Mechanics:
         return matrix
 
     def bears(self):
-        """Largest sum of the magnitudes of a point's forces if all its interactions were whole and changed by 1 [N]."""
+        """Largest sum over a point of the magnitudes of its forces if all its interactions were intact and changed by 1
+        [N]."""
         total = numpy.zeros(self.body.reference.shape)
         for order, reference in self.reference_arms.items():
             slope = (self.body.constants[order] * self.body.weight[order])[:, None]
@@ -252,10 +252,10 @@ class Mechanics:
                 add_at(total, self.body.tuples[order][:, 0], slope * numpy.abs(pull))
         return total.max()
 
-    # ---- what damage has done --------------------------------------------------------------------
+    # ---- effects of damage ------------------------------------------------------------------------
 
     def dissipated(self, history):
-        """By bonds [J]; what triangles and tetrahedra lose depends on when they lose it."""
+        """Energy dissipated by bonds [J]; the loss of triangles and tetrahedra depends on its history."""
         grown = (history > 0) & (history != self.told_history)
         self.told_history[grown], self.told_work[grown] = history[grown], self.law.of(grown).moment(history[grown])
         worn = history > 0

@@ -1,5 +1,5 @@
-"""A motion in time once more: velocity Verlet and generalised alpha on the reference's own bonds (docs/theory.md, Motion
-in time)."""
+"""Independent time integration: velocity Verlet and generalised alpha on the reference's own bonds (docs/theory.md,
+Motion in time)."""
 
 import numpy
 
@@ -10,7 +10,7 @@ from tests.reference.results import Results
 
 
 class Motion:
-    """States of a body of one material, without images, at the time steps that a results folder tells."""
+    """States of a body of one material, without images, at the time steps recorded in a results folder."""
 
     def __init__(self, folder, case_text):
         self.case, self.results = Case(case_text), Results(folder)
@@ -49,7 +49,7 @@ class Motion:
         :param rate: of a drag, per component [1/s]
         """
         before, load, gradient = self.u, self.load, self.gradient
-        # Means over the step of e^(-rate s) and of its integral: 1 and 1/2 without a drag.
+        # Means over the step of e^(-rate s) and of its integral: 1 and 1/2 without drag.
         x = numpy.broadcast_to(numpy.asarray(rate * dt, float), self.u.shape)
         dragged = numpy.where(x > 0, x, 1.0)
         phi1 = numpy.where(x > 0, -numpy.expm1(-dragged) / dragged, 1.0)
@@ -66,7 +66,7 @@ class Motion:
         self.work += (pull * (self.u - before)).sum()
 
     def follow(self, dt, end):
-        """Yields itself at every step of a constant size, the last one as short as it has to be."""
+        """Yields itself at every step of a constant size; the last step may be shorter."""
         yield self
         while self.time < end:
             is_last = end - self.time <= dt * (1 + 1e-9)
@@ -83,12 +83,12 @@ class Motion:
 
     @property
     def modified(self):
-        """The energy that the scheme conserves where forces are linear, but for its dt^2/8."""
+        """The energy that the scheme conserves for linear forces, up to its dt^2/8 term."""
         return (self.force * self.acceleration()).sum()
 
 
 class ImplicitMotion(Motion):
-    """Judges the places that implicit steps have found, and goes on from them [Chung and Hulbert 1993]."""
+    """Checks the positions found by implicit steps, and continues from them [Chung and Hulbert 1993]."""
 
     def __init__(self, folder, case_text, spectral_radius):
         super().__init__(folder, case_text)
@@ -99,7 +99,7 @@ class ImplicitMotion(Motion):
         self.a = self.acceleration()
 
     def take(self, u, dt):
-        """Goes to a place, and tells the largest force that its balance lacks, over the largest force."""
+        """Advances to a position, and returns the largest residual force over the largest force."""
         before, force, load, gradient = self.u, self.force, self.load, self.gradient
         self.time, self.number = self.time + dt, self.number + 1
         self.u, self.history = u, self.mechanics.grown(self.history, u)

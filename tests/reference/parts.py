@@ -1,4 +1,4 @@
-"""Parts of boxes within balls by nested integrals, and what bonds of a lattice count by them (docs/theory.md)."""
+"""Parts of boxes within balls by nested integrals, and the volume shares of a lattice's bonds (docs/theory.md)."""
 
 import functools
 import itertools
@@ -10,11 +10,11 @@ NODES, WEIGHTS = numpy.polynomial.legendre.leggauss(40)
 
 
 def part(lower, upper, radius):
-    """Measure and first moments of a box within the ball of a radius about the origin."""
+    """Measure and first moments of the part of a box within a ball about the origin."""
     if len(lower) == 1:
         low, high = max(lower[0], -radius), min(upper[0], radius)
         return (high - low, numpy.array([(high**2 - low**2) / 2])) if low < high else (0.0, numpy.zeros(1))
-    # Sections across the last axis kink where their radius meets a corner, an edge or a side.
+    # Sections across the last axis have kinks where their radius meets a corner, an edge or a side.
     choices = [[low**2, high**2] + ([0.0] if low <= 0 <= high else []) for low, high in zip(lower[:-1], upper[:-1])]
     squares = [sum(of_axes) for of_axes in itertools.product(*choices)] + [0.0]
     heights = [sign * math.sqrt(radius**2 - square) for square in squares if square <= radius**2 for sign in (-1, 1)]
@@ -33,8 +33,8 @@ def part(lower, upper, radius):
 
 @functools.cache
 def part_of_cell(step, edges, ratio):
-    """Share of the cell so many steps away, and distance of that part's centroid over the horizon; all in the edge of
-    a square or cube as large."""
+    """Share of the cell at a lattice offset, and distance of that part's centroid over the horizon; lengths in the edge
+    of a square or cube of the same volume."""
     middle, half = numpy.array(step) * edges, numpy.array(edges) / 2
     if numpy.linalg.norm(middle + half) <= ratio:
         return 1.0, float(numpy.linalg.norm(middle)) / ratio

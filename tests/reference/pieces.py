@@ -1,8 +1,8 @@
-"""Points that nothing holds any more (docs/theory.md, Fragments)."""
+"""Points that are no longer held (docs/theory.md, Fragments)."""
 
 import numpy
 
-# Above the program's own limit, so that a point that is pinned for sure counts here as well.
+# Larger than the program's own limit, so that a clearly pinned point counts here as well.
 DEPENDENT = 1e-5
 
 
@@ -17,7 +17,7 @@ def symmetric_sums(index, direction, count):
 
 
 def loose_points(places, bonds, prescribed, beyond):
-    """Own points on fewer independent directions than the dimension, stripped until none is left."""
+    """Own points whose bonds span fewer directions than the dimension, stripped until none is left."""
     count = beyond.own
     is_shifted = (beyond.source[bonds[:, 1]] == bonds[:, 0]) & (beyond.mirror[bonds[:, 1]] == 1).all(axis=1)
     bonds = bonds[~is_shifted]  # a point and its own copy move alike
@@ -37,7 +37,7 @@ def loose_points(places, bonds, prescribed, beyond):
 
 
 class Copies:
-    """Copies of points, an entry for each: x' = mirror x + shift + periods . jump."""
+    """Copies of points, one entry each: x' = mirror x + shift + periods . jump."""
 
     def __init__(self, mirror, shift, periods):
         self.mirror, self.shift, self.periods = mirror, shift, periods
@@ -69,7 +69,7 @@ class Copies:
 
 
 class Links:
-    """Bonds both ways, ordered by where they start: the copy of `end` that an own point `start` sees."""
+    """Directed bonds, ordered by their start: the copy of `end` that an own point `start` sees."""
 
     def __init__(self, count, bonds, beyond, skip):
         source = beyond.source[bonds[:, 1]]
@@ -83,14 +83,14 @@ class Links:
         self.first = numpy.searchsorted(self.start, numpy.arange(count + 1))
 
     def of(self, points):
-        """Numbers of those that start at some points."""
+        """Numbers of the bonds that start at given points."""
         low, many = self.first[points], self.first[points + 1] - self.first[points]
         return numpy.repeat(low - numpy.cumsum(many) + many, many) + numpy.arange(many.sum())
 
 
 def pieces(count, bonds, beyond, skip):
-    """Connected parts of what is there without bounds: the number of the part of every own point (-1: skipped), the copy
-    of every own point that is in it, and pairs of copies of one point that are both in it: the point and the other copy."""
+    """Connected parts of the infinite body: the part number of every own point (-1: skipped), the copy of every own
+    point that is in its part, and pairs of copies of one point that are both in it: the point and the other copy."""
     links = Links(count, bonds, beyond, skip)
     still = numpy.zeros((count, beyond.places.shape[1]))
     part, placed, parts = numpy.full(count, -1), Copies(still + 1, still.copy(), still.copy()), 0
@@ -112,7 +112,7 @@ def pieces(count, bonds, beyond, skip):
 
 
 def motions_at(places, centre, size):
-    """Columns: velocities of places by the infinitesimal rigid motions."""
+    """Columns: velocities at positions for the infinitesimal rigid motions."""
     count, dimension = places.shape
     arm = (places - centre) / size
     columns = [numpy.tile(axis, (count, 1)) for axis in numpy.eye(dimension)]
@@ -125,7 +125,7 @@ def motions_at(places, centre, size):
 
 
 def may_move(members, copies, twice, places, jump, prescribed, free_jump, sums):
-    """Whether a piece has a rigid motion, with changes of the jumps that are free, that nothing forbids.
+    """Whether a piece has a rigid motion, with changes of the free jumps, that no constraint forbids.
 
     members: points, ascending; copies: of these; twice: points and other copies of them.
     """
@@ -139,7 +139,7 @@ def may_move(members, copies, twice, places, jump, prescribed, free_jump, sums):
     free = numpy.argwhere(free_jump)
 
     def own_motions(points, copies):
-        """Of the own points, when these copies move with the piece."""
+        """Motion of the own points when these copies move with the piece."""
         of_jumps = numpy.zeros((*copies.periods.shape, len(free)))
         for column, (axis, component) in enumerate(free):
             of_jumps[:, component, column] = -copies.periods[:, axis]
@@ -148,7 +148,7 @@ def may_move(members, copies, twice, places, jump, prescribed, free_jump, sums):
 
     moved = own_motions(members, copies)
     rows = [moved[prescribed[members]]]
-    for weights in sums:  # what a piece shares with others may be made up by these
+    for weights in sums:  # other members may compensate for a piece in a shared sum
         of = numpy.flatnonzero((weights * ~prescribed).any(axis=1))
         if numpy.isin(of, members).all():
             rows.append(numpy.einsum("pa,pam->m", weights[of], moved[numpy.searchsorted(members, of)])[None])
@@ -161,10 +161,10 @@ def may_move(members, copies, twice, places, jump, prescribed, free_jump, sums):
 
 
 def unheld_points(displacement, bonds, prescribed, beyond, jump, free_jump, sums=()):
-    """Own points that are loose, and those of pieces of the others that may move rigidly.
+    """Loose own points, and the points of pieces of the others that can move rigidly.
 
-    displacement: of all points; bonds: those that are whole; prescribed: own points x dimension; sums: weights of
-    displacements, sums of which are given.
+    displacement: of all points; bonds: intact ones; prescribed: own points x dimension; sums: weights of
+    displacements with prescribed sums.
     """
     places = beyond.places + displacement
     unheld = loose_points(places, bonds, prescribed, beyond)

@@ -28,19 +28,19 @@ class Ended:
 
 
 def settings(*changes):
-    """Words of the command line that change keys of a case, `key=value`."""
+    """Command-line arguments that change keys of a case, `key=value`."""
     return [word for change in changes for word in ("--set", change)]
 
 
 def limited_by_shell(limits, command):
-    """The command under limits of the shell, or redirected by it: `ulimit -f 8`, `exec >/dev/full`."""
+    """The command under limits of the shell, or with shell redirections: `ulimit -f 8`, `exec >/dev/full`."""
     return ["bash", "-c", f'{limits}; exec "$@"', "bash", *command]
 
 
 def execute(command, folder=None, seconds=120, limited=True, cpu_seconds=None, environment=None):
-    """Runs a command in a process group of its own, which is killed when time is up.
+    """Runs a command in a process group of its own, which is killed when its time is up.
 
-    seconds is wall time, for what hangs; cpu_seconds processor time, which other load leaves alone.
+    seconds is wall time, against hangs; cpu_seconds is processor time, which other load does not affect.
     The environment is added to that of this process.
     """
     def set_limits():

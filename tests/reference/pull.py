@@ -1,4 +1,4 @@
-"""What a lattice bears under a homogeneous stress whose strain grows (docs/theory.md, Fracture data)."""
+"""Strength of a lattice under a homogeneous stress whose strain grows (docs/theory.md, Fracture data)."""
 
 import itertools
 import math
@@ -7,11 +7,11 @@ import numpy
 
 
 class Pull:
-    """Of interactions whose energy per volume is stiffness / 2 times their relative change squared, with the product of
+    """Interactions whose energy per volume is stiffness / 2 times their relative change squared, times the product of
     the integrities of their sides. A bond is its own side."""
 
     def __init__(self, direction, stiffness):
-        """stiffness: w r / (2 V) of every bond [m4]: times c T s n n^T it is its part of the stress."""
+        """stiffness: w r / (2 V) of every bond [m4]; c T s n n^T times this is its part of the stress."""
         self._set_directions(direction)
         self.kinds = [(self.dyad, numpy.arange(len(self.dyad))[:, None], stiffness)]
 
@@ -21,7 +21,7 @@ class Pull:
 
     @classmethod
     def of_cpd(cls, tear):
-        """Of all interactions of a planar lattice; stiffness in Pa."""
+        """Interactions of all orders in a planar lattice; stiffness in Pa."""
         pull, sides, first = cls.__new__(cls), [], 0
         for places, _ in tear.kinds:
             pairs = itertools.combinations(range(places.shape[1]), 2)
@@ -38,12 +38,12 @@ class Pull:
 
     def _set_directions(self, direction):
         rows, columns = numpy.triu_indices(direction.shape[1])
-        self.share = numpy.where(rows == columns, 1.0, math.sqrt(2))  # of the strain's entries, as a vector
+        self.share = numpy.where(rows == columns, 1.0, math.sqrt(2))  # factor of the strain's entries in vector form
         self.entries = rows, columns
         self.dyad = direction[:, rows] * direction[:, columns] * self.share
 
     def secant(self, integrity):
-        """Stress over strain at these integrities of the sides."""
+        """Stress over strain at the given integrities of the sides."""
         return sum((measure.T * (stiffness * integrity[side].prod(axis=1))) @ measure for measure, side, stiffness in self.kinds)
 
     def _stress_and_tangent(self, strain, integrity, slope):
@@ -57,7 +57,7 @@ class Pull:
         return stress, tangent
 
     def peak(self, law, form, finest=1e-9, coarsest=0.02):
-        """Largest stress over c (of cpd: in Pa), in multiples of `form`."""
+        """Largest stress over c (for cpd: in Pa), in multiples of `form`."""
         form = form[self.entries] * self.share
         strain = numpy.linalg.solve(self.secant(numpy.ones(len(self.dyad))), form)
         stress = law.onset / (self.dyad @ strain).max() * (1 - 1e-9)
@@ -65,7 +65,7 @@ class Pull:
         return self._march(law, form, start, coarsest, finest, numpy.inf)
 
     def _march(self, law, form, here, step, finest, end):
-        """From a state on, in steps of its strain along the form; about each summit again in finer ones."""
+        """Steps the strain along the form from a state on, and again in finer steps about each maximum."""
         best, before = here[2], here
         while here[0] < end:
             there = self._settle(law, form, here[0] * (1 + step), here)
@@ -78,7 +78,7 @@ class Pull:
         return best
 
     def _settle(self, law, form, along, since):
-        """The state whose strain along the form is this one."""
+        """The state with a given strain along the form."""
         _, strain, stress, history = since
         strain, scale = strain * along / since[0], numpy.trace(self.secant(numpy.ones(len(self.dyad))))
         for _ in range(30):
@@ -98,12 +98,12 @@ class Pull:
 
     @staticmethod
     def _has_stiffened(along, stress, since):
-        """Integrities fall, and with them stress over strain: a state that bears more is no equilibrium, but what the
-        pseudoinverse makes of a lattice that has lost its stiffness."""
+        """Stress over strain, like the integrities, can only decrease. A state with a larger stress is no equilibrium,
+        but an artefact of the pseudoinverse for a lattice that has lost its stiffness."""
         return stress * since[0] > since[2] * along * (1 + 1e-9)
 
     def _settle_by_secants(self, law, form, along, since):
-        """With damage that grows from try to try."""
+        """Iterates with damage that grows in each iteration."""
         history = since[3]
         for _ in range(10000):
             strain, *_ = numpy.linalg.lstsq(self.secant(law.integrity(history)), form, rcond=1e-11)

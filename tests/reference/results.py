@@ -1,4 +1,4 @@
-"""What a results folder holds (docs/results.md)."""
+"""Contents of a results folder (docs/results.md)."""
 
 import csv
 import json
@@ -42,7 +42,7 @@ class Results:
             ids = file["points/set_ids"]
             names = [name.decode() if isinstance(name, bytes) else str(name) for name in ids.attrs.get("sets", [])]
             self.sets = {name: ids[:, k] == 1 for k, name in enumerate(names)}
-            self.image_kinds = ()  # mirrors and shifts of what stands beyond planes and periods
+            self.image_kinds = ()  # mirrors and shifts of images beyond planes and periods
             if "points/images" in file:
                 self.image_kinds = (file["points/images/mirror"][...], file["points/images/shift"][...])
             names = [name for name in ("stiffness", "strength") if f"points/{name}_factor" in file]
@@ -63,7 +63,7 @@ def number_or_text(text):
 
 
 def not_finite(folder):
-    """Where a results folder holds a number that is none: names of files and datasets."""
+    """Names of files and datasets in a results folder with values that are not finite."""
     folder, found = pathlib.Path(folder), []
     words = {"nan", "-nan", "inf", "-inf", "infinity", "-infinity"}
     for path in sorted(folder.glob("*.csv")):

@@ -1,28 +1,28 @@
-"""A ring under pressure in the continuum limit of bonds in plane stress: Lamé's solution, and at any strain the
-solution of the ring's ordinary differential equation with the energy of its bonds as an integral over directions.
+"""A ring under pressure in the continuum limit of bonds in plane stress: Lamé's solution, and for finite strain the
+solution of the ring's ordinary differential equation, with the energy of its bonds as an integral over directions.
 
-With rings of stretches (a, b) along radius and circumference a bond at the angle t to the radius has the stretch
-s = sqrt(a2 cos2 t + b2 sin2 t) - 1, and c s2 L / 2 summed over half of all bonds in a plane disk is
+With the principal stretches (a, b) along radius and circumference, a bond at the angle t to the radius has the
+stretch s = sqrt(a2 cos2 t + b2 sin2 t) - 1, and c s2 L / 2 summed over half of all bonds in a plane disk is
 
     W = 3 E / (4 pi) int_0^2pi s2 dt,
 
-9/16 E e2 for a uniaxial small strain e, as it has to be at Poisson's ratio 1/3.
+which is 9/16 E e2 for a uniaxial small strain e, as required at Poisson's ratio 1/3.
 """
 
 import numpy
 
-ANGLES = numpy.arange(64) * 2 * numpy.pi / 64  # the trapezoidal rule is exact to round-off for what is periodic
+ANGLES = numpy.arange(64) * 2 * numpy.pi / 64  # the trapezoidal rule is exact to round-off for periodic functions
 COS, SIN = numpy.cos(ANGLES) ** 2, numpy.sin(ANGLES) ** 2
 
 
 def lame(radius, inner, outer, pressure, modulus, poisson=1 / 3):
-    """Displacement along the radius, plane stress."""
+    """Radial displacement, plane stress."""
     factor = pressure * inner**2 / (modulus * (outer**2 - inner**2))
     return factor * ((1 - poisson) * radius + (1 + poisson) * outer**2 / radius)
 
 
 def stresses(a, b, modulus):
-    """dW/da, dW/db and d2W/da2: first Piola-Kirchhoff stresses and the stiffness along the radius."""
+    """dW/da, dW/db and d2W/da2: first Piola-Kirchhoff stresses and the radial stiffness."""
     length = numpy.sqrt(a * a * COS + b * b * SIN)
     scale = 3 * modulus / (4 * numpy.pi) * 2 * numpy.pi / len(ANGLES)
     relative = 1 - 1 / length  # s / (1 + s)
@@ -44,7 +44,7 @@ def radial_stretch(stress, b, modulus, start=1.0):
 
 
 def stress_outside(bore, inner, outer, pressure, modulus, steps):
-    """Shoots from the bore's present radius: P at the outer radius, and present radii on the way."""
+    """Shoots from the bore's current radius: P at the outer radius, and current radii on the way."""
     radii = numpy.linspace(inner, outer, steps + 1)
     width = radii[1] - radii[0]
     start = 1.0
@@ -69,8 +69,8 @@ def stress_outside(bore, inner, outer, pressure, modulus, steps):
 
 
 def finite_elements(inner, outer, pressure, modulus, elements):
-    """The same by linear finite elements along the radius: the least of the energy W 2 pi R dR - p pi r(inner)2, with
-    the midpoint rule, by Newton's method. Reference radii and displacements of the nodes."""
+    """The same by linear finite elements along the radius: minimises the energy W 2 pi R dR - p pi r(inner)2 with
+    the midpoint rule, by Newton's method. Returns reference radii and displacements of the nodes."""
     radii = numpy.linspace(inner, outer, elements + 1)
     widths, middles = numpy.diff(radii), (radii[1:] + radii[:-1]) / 2
     places = radii + lame(radii, inner, outer, pressure, modulus)

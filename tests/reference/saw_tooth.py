@@ -1,4 +1,4 @@
-"""Laws of damage that fall by drops alone, as mode `path` follows them (docs/theory.md, Saw-tooth)."""
+"""Damage laws that fall only by drops, as mode `path` follows them (docs/theory.md, Saw-tooth)."""
 
 import functools
 
@@ -6,9 +6,9 @@ import numpy
 
 from tests.reference.laws import Law
 
-# Strengths are where a band is met, whose least width is searched: both sides know them to some 1e-10.
+# Strengths are where a band is met, whose minimum width is searched for: both programs know them to about 1e-10.
 SAME_STRENGTH = 1e-8
-JUST_ABOVE = 1 + 1e-9  # at the least band itself round-off tells whether the teeth suffice
+JUST_ABOVE = 1 + 1e-9  # at the minimum band itself round-off decides whether the teeth suffice
 
 
 class Teeth:
@@ -16,11 +16,11 @@ class Teeth:
 
     def __init__(self, strengths, integrities, ends):
         self.strengths, self.integrities = numpy.array(strengths), numpy.array(integrities)
-        self.ends = numpy.array(ends)  # stretches of the law between which each drop goes
+        self.ends = numpy.array(ends)  # stretches of the law between which each drop occurs
 
 
 class Smooth:
-    """A law with the critical stretch 1, by a table of T and of the integral of r T(r) between its ends."""
+    """A law with the critical stretch 1, from tables of T and of the integral of r T(r) between its ends."""
 
     CELLS = 4000
 
@@ -35,7 +35,7 @@ class Smooth:
         self.tables = [table.tolist() for table in (integrity, slope, moment, places * integrity)]
 
     def between(self, values, slopes, stretch):
-        """By cubics."""
+        """Cubic interpolation."""
         at = (stretch - self.onset) / self.cell
         k = min(max(int(at), 0), self.CELLS - 1)
         t = at - k
@@ -49,7 +49,7 @@ class Smooth:
         return self.between(*self.tables[2:], stretch) - self.integrity(stretch) * stretch**2 / 2
 
     def strength(self, start, end):
-        """At which a drop from one secant to the other dissipates what the law does between them."""
+        """Stretch at which a drop from one secant to the other dissipates as much as the law between them."""
         lost = self.integrity(start) - self.integrity(end)
         if not lost > 0:
             return start
@@ -57,12 +57,12 @@ class Smooth:
         return min(max((2 * dissipated / lost) ** 0.5, start), end)
 
     def above(self, start, end):
-        """Force by which the end of a secant is above the law, over the law's largest."""
+        """Excess force at the end of a secant over the law, relative to the law's largest force."""
         strength = self.strength(start, end)
         return (self.integrity(start) - self.integrity(strength)) * strength / self.largest_force
 
     def in_band(self, band, most):
-        """Teeth, or nothing if there are more than that many."""
+        """Teeth, or None if there are more than the given number."""
         strengths, integrities, ends = [], [], [self.onset]
         while ends[-1] < 1.0:
             if len(strengths) == most:
@@ -71,7 +71,7 @@ class Smooth:
             allowed = band * max(0.1, 1 - self.integrity(start))  # the first teeth are the finest
             if self.above(start, end) > allowed:
                 end = last_of(start, 1.0, lambda at: self.above(start, at) <= allowed)[0]
-            if not end > start * (1 + 1e-9):  # the law itself falls by more than the band
+            if not end > start * (1 + 1e-9):  # the law itself drops by more than the band
                 end = min(1.0, start + 1e-3 * (1.0 - self.onset))
             strengths.append(self.strength(start, end))
             integrities.append(self.integrity(start))
@@ -81,7 +81,7 @@ class Smooth:
 
 
 def last_of(low, high, holds):
-    """Numbers close together between which what holds at the low end ceases to."""
+    """Two close numbers between which a condition that holds at the low end stops holding."""
     for _ in range(50):
         middle = (low + high) / 2
         low, high = (middle, high) if holds(middle) else (low, middle)
@@ -90,7 +90,7 @@ def last_of(low, high, holds):
 
 @functools.cache
 def teeth_of(name, onset, rate, peak, hardening, most):
-    """With as narrow a band as so many teeth allow; stretches over the critical one."""
+    """Secants with the narrowest band that a number of teeth allows; stretches over the critical one."""
     if name == "critical_stretch":
         return Teeth([1.0], [1.0], [1.0])
     smooth = Smooth(name, onset, rate, peak, hardening)
@@ -102,8 +102,8 @@ def teeth_of(name, onset, rate, peak, hardening, most):
 
 
 class SawTooth:
-    """In the place of a Law: the history of a bond is the strength of the secant it is on, the
-    critical stretch of a broken one. Numbers are those of bonds."""
+    """Replaces a Law: the history of a bond is the strength of its current secant, or the critical stretch
+    of a broken bond. Numbers are those of bonds."""
 
     def __init__(self, law, most):
         failing = law.critical < numpy.inf
@@ -121,7 +121,7 @@ class SawTooth:
         self.onset = numpy.where(failing, self.strengths[self.kind, 0], 1.0) * self.critical
 
     def of(self, bonds):
-        """Those of some of the bonds."""
+        """The laws of some of the bonds."""
         part = SawTooth.__new__(SawTooth)
         part.__dict__.update(self.__dict__)
         part.name, part.critical, part.onset, part.kind = (of[bonds] for of in (self.name, self.critical, self.onset, self.kind))
@@ -129,28 +129,28 @@ class SawTooth:
 
     @property
     def is_toothed(self):
-        """Whether any law falls smoothly."""
+        """Whether any law softens smoothly."""
         return bool((self.name[self.critical < numpy.inf] != "critical_stretch").any())
 
     def tooth(self, stretch):
-        """Number of the secant on which a bond with this history is."""
+        """Number of the current secant of a bond with this history."""
         share = numpy.real(stretch) / self.critical
         return (self.strengths[self.kind] < (share * (1 - 1e-12))[:, None]).sum(axis=1)
 
     def told(self, bonds, history):
-        """The history that is meant by what is written, and by how much that is off."""
+        """The exact history for a written one, and the difference."""
         law = self.of(bonds)
         candidates = numpy.column_stack([law.strengths[law.kind], numpy.ones(len(history))])
         off = numpy.abs((history / law.critical)[:, None] - candidates)
         off[:, :-1] = numpy.where(off[:, :-1] < numpy.inf, off[:, :-1], numpy.inf)
-        # The last strength may be a hair below the critical stretch, which is exact.
+        # The last strength may be slightly below the critical stretch, which is exact.
         off[:, -1] = numpy.where(off[:, -1] < 1e-12, -1.0, numpy.inf)
         nearest = off.argmin(axis=1)
         rows = numpy.arange(len(history))
         return candidates[rows, nearest] * law.critical, numpy.maximum(off[rows, nearest], 0.0)
 
     def after(self, history):
-        """The histories that a drop leads to."""
+        """The histories after a drop."""
         tooth = self.tooth(history) + 1
         columns = numpy.column_stack([self.strengths[self.kind], numpy.full(len(history), numpy.inf)])
         share = columns[numpy.arange(len(history)), numpy.minimum(tooth, columns.shape[1] - 1)]

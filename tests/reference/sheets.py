@@ -1,4 +1,4 @@
-"""Moduli and data of fracture of a material as constants and stretches of its bonds (docs/theory.md)."""
+"""Moduli and fracture data of a material as constants and stretches of its bonds (docs/theory.md)."""
 
 import itertools
 import math
@@ -15,7 +15,7 @@ MEAN_OF_FOURTH_POWER = {1: 1.0, 2: 3 / 8, 3: 1 / 5}
 
 def bulk_bonds(case, horizon_ratio=None):
     """Directions, lengths and weights over the volume of the bonds of a point deep inside the lattice:
-    those of the midpoint of a patch, made like every other body."""
+    the centre of a patch that is built like every other body."""
     from tests.reference.body import Body
     from tests.reference.case import Case
 
@@ -44,7 +44,7 @@ def bulk_bonds(case, horizon_ratio=None):
 
 
 class Bulk:
-    """What c / E and G / (c W) are, W the work of a bond of the modulus 1."""
+    """c / E and G / (c W), where W is the work of a bond of modulus 1."""
 
     def __init__(self, case, horizon_ratio=None):
         from tests.reference.body import confined_modulus_factor, micromodulus_factor
@@ -62,12 +62,12 @@ class Bulk:
         self.crossing = MEAN_OF_MAGNITUDE[d] * second / 2
 
     def strength(self, damage):
-        """Largest stress over c under a pull, the mean over directions of a square or cubic lattice."""
+        """Largest stress over c under uniaxial tension, averaged over directions of a square or cubic lattice."""
         pull, law = Pull.of_bulk(self), Law.of_table(damage)
         return sum(weight * pull.peak(law, uniaxial(normal)) for normal, weight in zip(*sector(len(self.direction[0])), strict=True))
 
     def crossing_of(self, normal):
-        """The same for a plane of this normal instead of the mean."""
+        """The same for a plane with a given normal instead of the mean."""
         cosine = self.direction @ (numpy.asarray(normal) / numpy.linalg.norm(normal))
         return (self.weight * self.length**2 * abs(cosine)).sum() / 2
 
@@ -77,7 +77,7 @@ def sector(dimension):
 
 
 def root(rising, low, high):
-    """By bisection, until no number is left between the two."""
+    """Bisection to adjacent floating-point numbers."""
     while low < (middle := (low + high) / 2) < high:
         low, high = (middle, high) if rising(middle) < 0 else (low, middle)
     return middle
@@ -92,7 +92,7 @@ def peak_force(damage):
     if damage["law"] == "critical_stretch":
         return law.critical
     low, high = law.onset, law.critical
-    for _ in range(12):  # a finer and finer grid about the largest
+    for _ in range(12):  # successively finer grids around the maximum
         at = numpy.linspace(low, high, 2001)
         force = at * law.integrity(at)
         k = int(force.argmax())
@@ -101,22 +101,22 @@ def peak_force(damage):
 
 
 def with_critical(damage, work):
-    """The critical stretch at which the law takes that work."""
+    """The critical stretch at which the law dissipates a given work."""
     start = damage.get("peak", damage["onset"])
     missing = lambda critical: total_work(damage | {"critical": critical}) - work
     return damage | {"critical": root(missing, start * (1 + 1e-9), 4 * (start + work / start))}
 
 
 def with_stretches(damage, of_work, pull=None):
-    """The table with stretches in the place of fracture energy and strength.
+    """The table with stretches in place of fracture energy and strength.
 
-    of_work: G / W [J/m2]; pull: the body's, for a strength [Pa]."""
+    of_work: G / W [J/m2]; pull: of the body, for a strength [Pa]."""
     damage = dict(damage)
     strength = damage.pop("strength", 0.0)
     work = damage.pop("fracture_energy", 0.0) / of_work
     if not strength:
         return of_bonds(damage, work, 0.0)
-    # The force of bonds that gives the body its strength, by secants.
+    # Bond force that gives the body its strength, by secant iteration.
     peaks = [strength / pull({"law": "critical_stretch", "critical": 1.0})]
     excess = []
     while True:
@@ -129,7 +129,7 @@ def with_stretches(damage, of_work, pull=None):
 
 
 def of_bonds(damage, work, peak):
-    """work: of a bond of the modulus 1, peak: its largest force; 0: not asked for."""
+    """work: of a bond of modulus 1, peak: its largest force; 0: not required."""
     damage = dict(damage)
     if not work and not peak:
         return damage
@@ -152,7 +152,7 @@ def of_bonds(damage, work, peak):
 
 
 def resolve_cpd(case, tables, spacing):
-    """Stretches of bonds that take G/W each, with the G/W of the law that they give."""
+    """Stretches of bonds that take G/W each, and the G/W of the resulting law."""
     for table in tables:
         if "fracture_energy" not in table.get("damage", {}):
             continue
@@ -178,9 +178,10 @@ def resolve_cpd(case, tables, spacing):
 
 
 def resolve(case, spacing=None, horizon_ratio=None):
-    """Writes what bonds have into the tables of the materials, in the place of the data of a sheet.
+    """Writes bond parameters into the tables of the materials, in place of data-sheet values.
 
-    horizon_ratio: of an elastic stand-in, whose constants are of its own horizon; stretches stay those of the body."""
+    horizon_ratio: of an elastic substitute, whose constants belong to its own horizon; stretches stay those of the
+    body."""
     tables = [case["material"]] + [t["material"] for t in case.get("region")]
     tables += [t["material"] for t in case.get("interface") if "material" in t]
     asks = lambda t: "calibration" in t or {"fracture_energy", "strength"} & set(t.get("damage", {}))

@@ -1,10 +1,10 @@
 """The linear peridynamic solid as an energy, in NumPy: dilatations, energies, forces and the whole matrix.
 
-With xi = x_j - x_i, r = |xi|, eta = u_j - u_i, d the dimension, kappa = K(r) V_i V_j nu over all bonds, broken or cut
-or not, M_i = sum kappa r^2; over those that are left
+With xi = x_j - x_i, r = |xi|, eta = u_j - u_i, d the dimension, kappa = K(r) V_i V_j nu over all bonds, broken or
+cut or not, M_i = sum kappa r^2; over the remaining bonds
     theta_i = (d / M_i) sum kappa xi.eta,
     Pi = sum_i V_i [(lambda - mu) theta_i^2 / 2 + d (d + 2) mu / (2 M_i) sum kappa (xi.eta)^2 / r^2].
-Small bodies only: rates of all bonds are dense. Nothing is shared with the program.
+For small bodies only: the derivatives of all bonds are dense. No code is shared with the program.
 """
 
 import numpy
@@ -41,7 +41,7 @@ class StateSolid:
         self.number = {pair: k for k, pair in enumerate(zip(self.first.tolist(), self.second.tolist()))}
 
     def stretches(self, displacement):
-        """In the deformed configuration."""
+        """Stretches in the deformed configuration."""
         now = self.places + displacement
         return numpy.linalg.norm(now[self.second] - now[self.first], axis=1) / self.length - 1
 
@@ -54,7 +54,7 @@ class StateSolid:
         return copy
 
     def rates(self):
-        """d(xi.eta)/du of the bonds that are left (bonds, n, d), their shares, and which point has which bond."""
+        """d(xi.eta)/du of the remaining bonds (bonds, n, d), their shares, and the point of each bond."""
         first, second = self.first[self.left], self.second[self.left]
         vectors, every = self.places[second] - self.places[first], numpy.arange(len(first))
         rates = numpy.zeros((len(first), *self.places.shape))
@@ -72,7 +72,7 @@ class StateSolid:
         return dilatation.T @ (of_points[:, None] * dilatation) + rates.T @ (of_bonds[:, None] * rates)
 
     def energies(self, displacement):
-        """Per point [J]."""
+        """Energy per point [J]."""
         d = self.dimension
         rates, share, ends = self.rates()
         along = rates @ displacement.ravel()
@@ -87,7 +87,7 @@ class StateSolid:
 
 
 def solid_of(material, places, volume, horizon, **more):
-    """Of the table of a material."""
+    """lambda and mu from the table of a material."""
     is_stress = places.shape[1] == 2 and material.get("plane", "stress") == "stress"
     constants = lame(material["youngs_modulus"], material["poisson_ratio"], "stress" if is_stress else "strain")
     return StateSolid(places, volume, horizon, *constants, kernel=material.get("influence", "inverse"), **more)

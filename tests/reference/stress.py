@@ -1,17 +1,17 @@
-"""Strain and stress of the points of a body (docs/theory.md, Strain and stress), independently of the program: virials are
-complex steps of the energy of every interaction along a homogeneous deformation of its arms."""
+"""Strain and stress at the points of a body (docs/theory.md, Strain and stress), independently of the program. Virials
+are complex steps of the energy of every interaction along a homogeneous deformation of its arms."""
 
 import numpy
 
 from tests.reference.mechanics import STEP
 
-ROUND_OFF = 1e-10  # of the largest stress of a whole bond; see AGREEMENT in verify.py
-FLAT = 1e-10  # smallest second moment of a neighbourhood over the largest, below which it gives no gradient
+ROUND_OFF = 1e-10  # relative to the largest stress of an intact bond; see AGREEMENT in verify.py
+FLAT = 1e-10  # smallest over largest second moment of a neighbourhood below which it has no gradient
 
 
 def virials(mechanics, u, history=None):
-    """Equal share of dE/dF of its interactions at every point [J], points x dimension x dimension. The reference arms of
-    all interactions of a point are there, so that nothing is missing but what the body lacks."""
+    """Equal share of dE/dF of its interactions at every point [J], points x dimension x dimension. The reference arms
+    of all interactions of a point are present; only those that the body lacks are missing."""
     body = mechanics.body
     history = mechanics.no_history() if history is None else history
     d = body.dimension
@@ -29,7 +29,7 @@ def virials(mechanics, u, history=None):
 
 
 def gradients(mechanics, u, history):
-    """Displacement gradient of the unbroken bonds of every point by least squares, and where there is one."""
+    """Displacement gradient from the unbroken bonds of every point by least squares, and the points that have one."""
     body = mechanics.body
     whole = ~mechanics.is_broken(history)
     bonds, weight = body.bonds[whole], body.weight[1][whole]
@@ -50,7 +50,7 @@ def gradients(mechanics, u, history):
 
 
 def fields(mechanics, u, history):
-    """What results hold of strain and stress, of the body's own points."""
+    """Strain and stress as results hold them, for the body's own points."""
     body = mechanics.body
     own, d = getattr(body, "own", len(body.volume)), body.dimension
     gradient, known = (values[:own] for values in gradients(mechanics, u, history))
@@ -78,21 +78,21 @@ def von_mises(stress, body):
     d = body.dimension
     inside[:, :d, :d] = stress
     if d == 2 and not body.is_cpd and body.case["material"]["plane"] == "strain":
-        inside[:, 2, 2] = (stress[:, 0, 0] + stress[:, 1, 1]) / 4  # Poisson's ratio of bonds
+        inside[:, 2, 2] = (stress[:, 0, 0] + stress[:, 1, 1]) / 4  # Poisson's ratio of bond-based models
     a, b, c = numpy.linalg.eigvalsh(inside).T
     return numpy.sqrt(((a - b) ** 2 + (b - c) ** 2 + (c - a) ** 2) / 2)
 
 
 def noise(body):
-    """Stress of a stretch as small as a complex step [Pa]. The virials err by its square, some 1e-51 Pa of a body at rest,
-    which compared with a zero, or with what underflow leaves, would be a difference of 1."""
+    """Stress of a stretch as small as a complex step [Pa]. The virials err by its square: a body at rest has about
+    1e-51 Pa, which would be a relative difference of 1 from zero, or from the remains of an underflow."""
     return STEP * body.constants[1] * body.weight[1].max() * body.horizon / body.volume.min()
 
 
 def judge(verification, step, mechanics, u, history, force):
-    """Compares what a step has of strain and stress.
+    """Compares a step's strain and stress.
 
-    force: of a whole bond [N], whose stress over a cell is what rounding is measured by.
+    force: of an intact bond [N]; its stress over a cell is the scale of round-off.
     """
     if "first_piola_stress" not in step.fields:
         return

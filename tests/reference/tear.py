@@ -1,5 +1,5 @@
-"""What a plane tear takes from a lattice of cpd: its halves move apart, and every interaction across
-does the work of its force (docs/theory.md, Damage)."""
+"""Energy of a plane tear in a lattice of cpd: its halves move apart, and every interaction across
+the plane does the work of its force (docs/theory.md, Damage)."""
 
 import itertools
 import math
@@ -10,7 +10,7 @@ from tests.reference.laws import Law
 
 
 def directions(dimension):
-    """Normals and weights of their mean."""
+    """Normals and their weights in the mean."""
     if dimension == 2:
         nodes, weights = numpy.polynomial.legendre.leggauss(12)
         angle = (nodes + 1) * math.pi / 8
@@ -34,7 +34,7 @@ class Tear:
         places = numpy.concatenate([numpy.zeros((1, dimension)), ball])
         pairs = pairs_within(places, ratio * spacing)
         volume = ball_volume(dimension, ratio * spacing, cross_section)
-        self.kinds = []  # places of the points, energy for a relative change squared over two, per volume
+        self.kinds = []  # positions of the points, energy per volume for half a squared relative change
         for order, constant in constants.items():
             if not constant:
                 continue
@@ -49,12 +49,12 @@ class Tear:
             self.kinds.append((found, math.factorial(order) * effective * factor * size * constant / (order + 1)))
 
     def energy(self, damage, normal):
-        """Per area of a plane of this normal."""
+        """Energy per area of a plane with this normal."""
         law = Law.of_table(damage)
         return sum(self._of_kind(law, *kind, numpy.asarray(normal)) for kind in self.kinds)
 
     def of_bonds(self, damage, normal):
-        """The part of the bonds alone."""
+        """The part of the bonds only."""
         return self._of_kind(Law.of_table(damage), *self.kinds[0], numpy.asarray(normal))
 
     def mean(self, damage):
@@ -88,7 +88,7 @@ class Tear:
         opening = lambda s: numpy.where(across, numpy.sqrt(rise**2 + (s * s + 2 * s) * length**2) - rise, numpy.inf)
         end = opening(law.critical).min(axis=1)
         marks = [law.onset, law.critical] + ([law.peak] if law.name == "blended" else [])
-        # Between what makes a kink the integrand is smooth.
+        # The integrand is smooth between kinks.
         stops = numpy.concatenate([numpy.zeros((len(end), 1)), *map(opening, marks)], axis=1)
         stops = numpy.sort(numpy.minimum(stops, end[:, None]), axis=1)
         panels = 2 + math.ceil(law.rate)

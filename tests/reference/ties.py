@@ -1,5 +1,5 @@
-"""Rigid sets, rollers and linear constraints (docs/theory.md), judged without generalised coordinates: whether the
-displacements are as they may be, and whether the forces that hold them are of the kind that may."""
+"""Rigid sets, rollers and linear constraints (docs/theory.md), checked without generalised degrees of freedom: whether
+the displacements satisfy them, and whether the constraint forces are of the allowed kind."""
 
 import numpy
 
@@ -9,7 +9,7 @@ WITHOUT_PLACE = numpy.zeros((1, 3))
 
 
 class RigidMotion:
-    """The rigid motion nearest to the displacements of some points, about a centre (Kabsch)."""
+    """The rigid motion closest to the displacements of some points, about a centre (Kabsch)."""
 
     def __init__(self, arms, displacement):
         moved = arms + displacement
@@ -21,7 +21,7 @@ class RigidMotion:
         self.error = numpy.abs(self.centre + arms @ self.turn.T - moved).max()
 
     def rotation(self):
-        """Rotation vector, below half a turn; in a plane its one component."""
+        """Rotation vector of less than half a turn; in a plane its one component."""
         if len(self.turn) == 2:
             return numpy.array([numpy.arctan2(self.turn[1, 0], self.turn[0, 0])])
         axis = numpy.array([self.turn[2, 1] - self.turn[1, 2], self.turn[0, 2] - self.turn[2, 0], self.turn[1, 0] - self.turn[0, 1]])
@@ -30,7 +30,7 @@ class RigidMotion:
 
 
 def spin_rates(rotation):
-    """Columns: the spin by the rate of each component of a rotation vector."""
+    """Columns: the spin for the rate of each component of a rotation vector."""
     if len(rotation) == 1:
         return numpy.eye(1)
     angle = numpy.linalg.norm(rotation)
@@ -47,7 +47,8 @@ def moment(arms, forces):
 
 
 class Ties:
-    """What a case ties. Works for dead loads and for any state; `follows` marks degrees of freedom without an equation."""
+    """The constraints of a case. Computes work for dead loads and for any state; `follows` marks degrees of freedom
+    without an equation."""
 
     def __init__(self, case, reference, volume, sets, prescribed):
         self.case, self.reference, self.sets, self.prescribed = case, reference, sets, prescribed
@@ -75,7 +76,7 @@ class Ties:
                 inside = sets[term["set"]]
                 row[inside] += numpy.asarray(term["weights"], float) / inside.sum()
             self.rows.append((table["name"], row, table.get("displacement", 0), None, None))
-        self.held |= self.follows  # whatever becomes of a piece; sums are only of displacements
+        self.held |= self.follows  # independent of the state of a piece; sums only contain displacements
         self.in_rows = numpy.zeros(reference.shape, bool)
         if self.rows:
             self.eliminate()
@@ -83,7 +84,7 @@ class Ties:
 
     @property
     def size(self):
-        """Of rigid sets [m]: their places are rounded."""
+        """Round-off of rigid sets [m], from the rounding of their positions."""
         return max((numpy.abs(arms).max() for _, _, arms in self.rigid), default=0.0)
 
     def add_touching(self, table, normal):
@@ -113,7 +114,7 @@ class Ties:
         return float(evaluate(expression, WITHOUT_PLACE if place is None else place[None], load, self.spacings)[0])
 
     def errors(self, displacement, load):
-        """Distances of the displacements from what the ties allow [m]."""
+        """Errors of the displacements with respect to the constraints [m]."""
         found = [0.0]
         for table, members, arms in self.rigid:
             motion = RigidMotion(arms, displacement[members])
@@ -134,8 +135,8 @@ class Ties:
         return max(found)
 
     def after_jump(self, displacement, loads):
-        """The displacement with all that is given moved to its new value, nothing else: sums of displacements by the
-        least change of those in them."""
+        """The displacement with all prescribed values moved to their new values and everything else kept; prescribed
+        sums by the least change of their displacements."""
         moved = displacement.copy()
         for table, members, arms in self.rigid:
             motion = RigidMotion(arms, displacement[members])
@@ -155,13 +156,13 @@ class Ties:
         return moved
 
     def given(self, expressions, loads, now):
-        """Components that are given, and what they are now where they are not."""
+        """Prescribed components, and the current values of the others."""
         expressions = expressions or ["free"] * len(now)
         return numpy.array([is_now if e == "free" else self.value(e, loads) for e, is_now in zip(expressions, now)])
 
     def out_of_balance(self, displacement, forces, unheld=None):
-        """Forces that nothing is there to bear [N]: those along what the ties leave free, but on points that nothing
-        holds and pins may."""
+        """Unbalanced forces [N]: the forces along directions that the constraints leave free. Pins may carry forces on
+        floating points."""
         left = []
         for table, members, arms in self.rigid:
             motion = RigidMotion(arms, displacement[members])
@@ -180,19 +181,20 @@ class Ties:
         return numpy.array(left)
 
     def are_of(self, unheld):
-        """Which slides are those of displacements of points that nothing holds."""
+        """Whether slides are those of displacements of floating points."""
         unheld = numpy.zeros(len(self.reference), bool) if unheld is None else unheld
         return numpy.broadcast_to(unheld[:, None], self.reference.shape)[self.in_rows][self.others]
 
     def on_unheld(self, forces, unheld):
-        """Norm of what only pins can bear [N]."""
+        """Norm of the forces that only pins can carry [N]."""
         loose = numpy.broadcast_to(unheld[:, None], forces.shape) & ~self.prescribed & ~self.in_rows
         along = (self.slides.T @ forces[self.in_rows])[self.are_of(unheld)] if self.rows else []
         return numpy.hypot(numpy.linalg.norm(forces[loose]), numpy.linalg.norm(along))
 
     def eliminate(self):
-        """Each row has a pivot, the displacement with its largest coefficient, which follows the others: `slides` are
-        motions of one of these and of the pivots that break no row, `leans` of pivots that one row alone answers to."""
+        """Each row has a pivot, the displacement with its largest coefficient, which depends on the others. `slides`
+        are motions of one of the others and of the pivots that keep all rows satisfied; `leans` are motions of
+        pivots that change one row alone."""
         self.in_rows = numpy.any([row != 0 for _, row, *_ in self.rows], axis=0) & ~self.prescribed
         self.coefficients = numpy.array([row[self.in_rows] for _, row, *_ in self.rows])
         solved, pivots = self.coefficients.copy(), []
@@ -210,12 +212,12 @@ class Ties:
         self.pivots = pivots
 
     def multipliers(self, forces):
-        """What each row bears [N]: its work as its value changes and the pivots follow."""
+        """Force of each row [N]: the work per change of its value while the pivots follow."""
         return self.leans.T @ forces[self.in_rows][self.pivots]
 
     def work(self, old, new, before, after):
-        """Of what moves the ties, by the trapezoidal rule in their own coordinates [J]: centres and rotation vectors of
-        rigid sets, displacements along normals, values of linear constraints."""
+        """Work of the motion of the constraints, by the trapezoidal rule in their own coordinates [J]: centres and
+        rotation vectors of rigid sets, displacements along normals, values of linear constraints."""
         work = 0.0
         for table, members, arms in self.rigid:
             one, other = (RigidMotion(arms, state.displacement[members]) for state in (old, new))
@@ -237,7 +239,7 @@ class Ties:
         return work
 
     def reactions(self, displacement, forces):
-        """By name, and moments of rigid sets about their present centres."""
+        """Reactions by name, and moments of rigid sets about their current centres."""
         reactions, moments = {}, {}
         for table, members, arms in self.rigid:
             motion = RigidMotion(arms, displacement[members])

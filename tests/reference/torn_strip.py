@@ -1,4 +1,4 @@
-"""Straight tears through the command line: two halves of a body that are pulled apart until nothing joins them."""
+"""Straight tears through the command line: two halves of a body are pulled apart until no bond joins them."""
 
 import itertools
 import json
@@ -8,27 +8,27 @@ from dataclasses import dataclass, field
 from tests.reference.clouds import toml
 from tests.reference.program import peristat
 
-# Directions of the lattice in which it repeats, with the period in spacings.
+# Directions in which the lattice repeats, with the period in spacings.
 ANGLES = ((0.0, 1.0), (math.degrees(math.atan(0.5)), math.sqrt(5.0)), (45.0, math.sqrt(2.0)))
 SPACING, THICKNESS = 1e-3, 0.5
 
 
 @dataclass
 class TornStrip:
-    """Of a lattice that is turned by an angle about z; torn along the plane y = 0, between its points."""
+    """A strip of a lattice that is turned by an angle about z, torn along the plane y = 0, between its points."""
 
     material: dict
     ratio: float
     angle: float
-    period: float  # in which the lattice repeats along x [spacings]
+    period: float  # of the lattice along x [spacings]
     dimension: int = 2
     quadrature: dict = field(default_factory=dict)
     steps: int = 1
-    opening: float = 0.0  # [m]; 0: wide enough for any bond to break at once
+    opening: float = 0.0  # [m]; 0: wide enough to break every bond at once
 
     def tables(self, length, width):
         """A strip of that length along x and, in space, width along z [m]."""
-        # A bond across sees surfaces through a correction only.
+        # Surfaces affect a bond across the plane only through a correction.
         half = (2 * self.ratio + 3 if "surface_correction" in self.quadrature else self.ratio + 1) * SPACING
         low, high = [0, -half, 0], [length, half, width]
         opening = self.opening or 20 * self.ratio * SPACING
@@ -46,7 +46,8 @@ class TornStrip:
         }  # fmt: skip
 
     def energy(self, folder):
-        """Dissipated over area [J/m2], of the middle of the strip: what a longer (and wider) one has more."""
+        """Dissipated energy over area [J/m2] in the middle of the strip: the increase for a longer (and wider)
+        strip."""
         more = 2
         least = 4 * self.ratio + 3 if "surface_correction" in self.quadrature else self.ratio + 1
         lengths, widths = self._two(least, self.period, more), self._two(least, 1.0, more)
@@ -58,7 +59,8 @@ class TornStrip:
 
     @staticmethod
     def _two(least, period, more):
-        """A length of at least so much, and one that is longer by some periods; just above: no point is on the end."""
+        """A length of at least the given one, and one that is longer by some periods; slightly more, so that no point
+        is on the end."""
         periods = math.ceil(least / period)
         return [n * period * SPACING * (1 + 1e-12) for n in (periods, periods + more)]
 

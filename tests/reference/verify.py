@@ -1,7 +1,7 @@
-"""Whether the accepted steps of a run are what the results folder says of them.
+"""Checks the accepted steps of a run against its results folder.
 
-Every step is judged by the reference alone: from its displacements and the histories of its bonds
-follow forces, energies, reactions and damage, and these must be those that were written.
+The reference alone judges every step: the displacements and the histories of the bonds determine forces,
+energies, reactions and damage, and these must agree with the written ones.
 """
 
 import copy
@@ -20,15 +20,15 @@ from tests.reference.saw_tooth import SAME_STRENGTH, SawTooth
 from tests.reference.ties import Ties
 
 UNIT_ROUND_OFF = 2.0**-53
-# Sums of energies and forces over up to 10^6 interactions in another order: errors grow like the
+# Sums of energies and forces over up to 10^6 interactions in another order: errors grow with the
 # square root of their number, and stretches near 1e-3 have lost three digits before.
 AGREEMENT = 1e-10
-SHARE_OF_SCALE = 1e-5  # of the largest forces so far: what has come apart along a path has none
-# The ends of teeth are searched: both sides know them, and the integrities there, to some 1e-11.
+SHARE_OF_SCALE = 1e-5  # of the largest forces so far: a body torn apart along a path has no forces
+# The ends of saw teeth are searched for: both programs know them, and the integrities there, to about 1e-11.
 OF_TEETH, OF_INTEGRITY = 1e-9, 1e-10
 NEVER_FAILS = -1  # history of a bond of a no-fail set, as it is written
 
-UNLOADED = None  # loads before what acts at load 0 is put on
+UNLOADED = None  # loads before those at load 0 are applied
 
 
 class Verification:
@@ -40,12 +40,12 @@ class Verification:
         if self.case["material"].get("kinematics") == "linear":
             raise NotUnderstood("linear kinematics: tests/acceptance/linear_kinematics_test.py has a reference of its own")
         self.complaints, self.worst, self.bears = [], {}, {}
-        self.broken_across = 0  # bonds to what lies beyond that are broken in the end
+        self.broken_across = 0  # bonds to points beyond planes and periods that are broken in the end
         self.broken_when_looked_for, self.last_unheld = 0, None
         self.rows = {int(row["step"]): row for row in self.results.table("history")}
         reference, volume, sets = self.results.reference, self.results.volume, self.results.sets
         more = {"sets": sets, "factors": self.results.factors}
-        as_given = copy.deepcopy(self.case)  # a body puts constants in the place of data of a sheet
+        as_given = copy.deepcopy(self.case)  # a body replaces data-sheet values by constants
         self.mechanics = Mechanics(Body(self.case, reference, volume, **more))
         self.mechanics.spare(sets)
         self.listed_steps, self.listed_codes = self.listed_bonds()
@@ -77,10 +77,10 @@ class Verification:
                                 f"{computed if numpy.ndim(computed) == 0 else 'another'} is right "
                                 f"({error:.3g} of {scale:.4g})")  # fmt: skip
 
-    # ---- what lies beyond ------------------------------------------------------------------------
+    # ---- beyond planes and periods ----------------------------------------------------------------
 
     def number_of(self, source, kind):
-        """Of the image of a kind, from 1, of a point, or (0) the point itself; None: no own point sees it."""
+        """Number of the image of a kind >= 1 of a point, or (0) of the point itself; None: no own point sees it."""
         if kind == 0:
             return source
         mirror, shift = (numbers[kind - 1] for numbers in self.results.image_kinds)
@@ -90,7 +90,7 @@ class Verification:
         return self.mechanics.body.beyond.told_jump(row)
 
     def listed_bonds(self):
-        """Steps and codes of the bonds that are written to have broken, in the order of the codes; -1 is no bond."""
+        """Steps and codes of the written broken bonds, ordered by code; -1 is no bond."""
         rows, body = self.results.table("broken_bonds"), self.mechanics.body
         ends = [self.number_of(int(row["second_point"]), int(row.get("second_image", 0))) for row in rows]
         pairs = numpy.sort([[int(row["first_point"]), -1 if end is None else end] for row, end in zip(rows, ends)], axis=-1)
@@ -102,7 +102,7 @@ class Verification:
 
     @property
     def histories_are_known(self):
-        """They are written, or follow from the accepted states."""
+        """Histories are read if they were written, else derived from the accepted states."""
         steps = self.results.steps
         if not self.case.has_damage or not steps or any(step.history is not None for step in steps):
             return True
@@ -148,7 +148,7 @@ class Verification:
         return right[0]
 
     def judge_twins(self, step, history):
-        """A bond to a point beyond and the same bond as the other point sees it have one history."""
+        """A bond to a point beyond and the same bond seen from the other point have the same history."""
         body = self.mechanics.body
         for bond in numpy.flatnonzero(body.bonds[:, 1] >= body.own):
             twin = body.twin(*body.bonds[bond])
@@ -157,7 +157,7 @@ class Verification:
     # ---- steps -----------------------------------------------------------------------------------
 
     def run(self):
-        """Judges every written step; returns the complaints."""
+        """Checks every written step; returns the complaints."""
         if not self.histories_are_known:
             raise ValueError("the histories of the bonds are not known")
         old = Old(self.results.reference.shape, self.mechanics, self.results.steps)
@@ -205,7 +205,7 @@ class Verification:
         self.judge_work(mechanics, step, row, old, history, before, gradient, external, loads)
 
     def gradient_before(self, mechanics, step, old):
-        """Of the old state, under its own eigenstretch."""
+        """Forces of the old state, under its own eigenstretch."""
         mechanics.eigenstretch = self.eigenstretch(old.loads)
         gradient = mechanics.gradient(old.everywhere, self.past(mechanics, old))
         mechanics.eigenstretch = self.eigenstretch(step.loads)
@@ -218,7 +218,7 @@ class Verification:
         return old.history if mechanics is self.mechanics else mechanics.no_history()
 
     def loads(self, load, displacement):
-        """Dead loads, and those that follow the deformation [N]."""
+        """Dead loads and follower loads [N]."""
         if load is UNLOADED:
             return numpy.zeros(displacement.shape)
         return self.conditions.force(load) + self.conditions.follower_force(load, displacement)
@@ -230,27 +230,27 @@ class Verification:
         return self.loads(load, displacement) + self.foundations.force(displacement, load)
 
     def whole_force(self, mechanics, step):
-        """What a whole bond would bear at the largest displacement [N]: rounding of displacements
-        shows up as a few units of round-off of it, also where all bonds are broken or slack."""
+        """Force of an intact bond at the largest displacement [N]. Rounding of displacements causes errors of a few
+        units of round-off of it, even if all bonds are broken or slack."""
         body = mechanics.body
         reach = min(numpy.abs(step.displacement).max() / body.lengths.min(), 1.0)
         return body.constants[1] * body.weight[1].max() * reach
 
     def reach(self, mechanics, step):
-        """Stretch whose rounding is that of displacements and eigenstrains."""
+        """Stretch whose round-off equals that of displacements and eigenstrains."""
         reach = numpy.abs(step.everywhere).max() / mechanics.body.lengths.min()
         eigenstretch = 0.0 if mechanics.eigenstretch is None else numpy.abs(mechanics.eigenstretch).max()
         return min(reach, 1.0) + eigenstretch
 
     def whole_forces(self, mechanics, step):
-        """Likewise of all interactions of a point [N], for sums."""
+        """The same for all interactions of a point [N], for sums."""
         if mechanics not in self.bears:
             self.bears[mechanics] = mechanics.bears()
         return self.bears[mechanics] * self.reach(mechanics, step)
 
     def unheld(self, step, old, history):
-        """Points that may be pinned or have left the equations in this step: those that nothing held
-        after the last step that broke bonds, or, in mode path, after what broke at its beginning."""
+        """Points that may be pinned or removed from the equations in this step: those that were not held
+        after the last step that broke bonds, or, in mode path, after the breaks at its beginning."""
         broken = self.mechanics.is_broken(history if self.events else old.history)
         if not broken.any() or step.number < self.first_real_step:
             return numpy.zeros(len(self.results.volume), bool)
@@ -279,17 +279,17 @@ class Verification:
         reactions = before - self.external(old.loads, old.displacement)
         beyond = self.forces_beyond(mechanics, old, past)
         mechanics.eigenstretch = self.eigenstretch(step.loads)
-        # Reactions of both states: Newton's method that finishes a relaxed step starts from the latter.
+        # Reactions of both states: the Newton's method that finishes a relaxed step starts from the latter.
         held = prescribed | self.ties.follows
         of_ties = self.norm_of_ties(old, reactions)
         norms = [numpy.linalg.norm(external), numpy.linalg.norm([numpy.linalg.norm(reactions[held]), beyond, of_ties])]
-        # Loads on what is held may have changed: the program knows the new ones.
+        # Loads on held points may have changed: the program uses the new ones.
         changed = reactions + self.external(old.loads, old.displacement) - external
         norms.append(numpy.linalg.norm([numpy.linalg.norm(changed[held]), beyond, self.norm_of_ties(old, changed)]))
         beyond = self.forces_beyond(mechanics, step, history)
         of_ties = self.norm_of_ties(step, out_of_balance)
         norms.append(numpy.linalg.norm([numpy.linalg.norm(out_of_balance[held]), beyond, of_ties]))
-        # The jump that a step begins with is measured with the damage held.
+        # The jump at the start of a step is measured with the damage held.
         jump = numpy.where(self.jump_is_free, old.jump, step.jump)
         everywhere = mechanics.body.beyond.spread(jumped, jump)
         after_jump = mechanics.gradient(everywhere, past, held=True) - external
@@ -310,11 +310,11 @@ class Verification:
         along_ties = self.ties.out_of_balance(step.displacement, out_of_balance, unheld)
         on_jumps = mechanics.pull_of_periods(step.everywhere, history)[self.jump_is_free]
         residual = numpy.linalg.norm([numpy.linalg.norm(part) for part in (out_of_balance[free], along_ties, on_jumps)])
-        # A tenth more: the program's scale has the same three norms in its own rounding and its own
-        # idea of the jump that a cut or relaxed step begins with.
+        # A tenth more: the program's scale has the same three norms with its own rounding, and with its own
+        # value of the jump at the start of a cut or relaxed step.
         allowed = 1.1 * self.case["solver"]["relative_tolerance"] * scale + floor
         self.judge_pins(step, row, self.ties.on_unheld(out_of_balance, unheld), allowed)
-        if row["settled"]:  # owes no equilibrium
+        if row["settled"]:  # need not be in equilibrium
             return
         self.worst["residual / allowed"] = max(self.worst.get("residual / allowed", 0.0), residual / allowed)
         on_cell = numpy.linalg.norm(out_of_balance[cell_held])
@@ -325,7 +325,7 @@ class Verification:
                                 f"(relative {residual / scale if scale else numpy.inf:.3g})")  # fmt: skip
 
     def norm_of_ties(self, state, forces):
-        """Of what ties bear in their own coordinates [N]: it counts among the reactions."""
+        """Forces of the constraints in their own coordinates [N]; they count as reactions."""
         reactions, moments = self.ties.reactions(state.displacement, forces)
         sizes = {table["set"]: numpy.sqrt((arms**2).sum(axis=1)).max() for table, _, arms in self.ties.rigid}
         turns = [numpy.linalg.norm(about) / sizes[name] for name, about in moments.items()]
@@ -333,14 +333,14 @@ class Verification:
 
     @staticmethod
     def forces_beyond(mechanics, state, history):
-        """Norm of what acts beyond planes and periods: it counts among the reactions."""
+        """Norm of the forces beyond planes and periods; they count as reactions."""
         if mechanics.body.own == len(mechanics.body.volume):
             return 0.0
         on_copies = numpy.linalg.norm(mechanics.gradient_of_shares(state.everywhere, history)[mechanics.body.own :])
         return numpy.hypot(on_copies, numpy.linalg.norm(mechanics.slopes_by_jumps(state.everywhere, history)))
 
     def of_environment(self, mechanics, step, old, past):
-        """What eigenstrains and pressures add to the forces of the old displacement."""
+        """The change of forces at the old displacement due to eigenstrains and pressures."""
         added = numpy.zeros(mechanics.body.reference.shape)
         if mechanics.eigenstretch is not None:
             under = mechanics.gradient_of_shares(old.everywhere, past, held=True)
@@ -349,11 +349,11 @@ class Verification:
             mechanics.eigenstretch = kept
         added[: mechanics.body.own] -= self.conditions.follower_force(step.loads, old.displacement)
         resting = numpy.zeros(old.displacement.shape)
-        added[: mechanics.body.own] -= self.foundations.force(resting, step.loads)  # of the ground alone
+        added[: mechanics.body.own] -= self.foundations.force(resting, step.loads)  # the ground's part only
         return added
 
     def judge_pins(self, step, row, on_unheld, allowed):
-        """Nothing but pins may bear a force on points that nothing holds, and all of it is told."""
+        """Only pins may carry forces on floating points, and all of these forces are reported."""
         if step.number < self.first_real_step:
             return
         if not row["settled"] and not on_unheld <= row["pin_force"] + allowed:
@@ -393,11 +393,11 @@ class Verification:
             self.complain(step, f"reactions and loads differ by {total:.4g} N")
 
     def sum_beyond(self, row):
-        """Of the forces that planes of symmetry are written to bear."""
+        """Checks the written forces of planes of symmetry."""
         return sum(row[f"reaction_{'xyz'[axis]}:{name}"] for name, axis, _ in self.mechanics.body.beyond.planes())
 
     def judge_jump(self, mechanics, step):
-        """What the displacement gains over a period, as far as it is given."""
+        """Checks the prescribed jumps of the displacement over the periods."""
         jump, free = mechanics.body.beyond.given_jump(step.loads)
         if free.all():
             return
@@ -405,7 +405,7 @@ class Verification:
         self.compare(step, "jump over a period", step.jump[~free], jump[~free], reach, 1e-12)
 
     def judge_beyond(self, mechanics, step, row, history, gradient, largest):
-        """Forces of what lies beyond planes and periods."""
+        """Checks the forces beyond planes and periods."""
         beyond = mechanics.body.beyond
         scale = largest * len(numpy.unique(beyond.source))
         pull = mechanics.pull_of_periods(step.everywhere, history)
@@ -471,7 +471,7 @@ class Verification:
         self.compare(step, "stretch", step.stretch, of_points, scale)
 
     def judge_broken_bonds(self, step, broken):
-        """Those listed so far."""
+        """Broken bonds listed so far."""
         bonds = self.mechanics.body.bonds[broken]
         self.broken_across = int((bonds >= self.mechanics.body.own).any(axis=1).sum())
         written = self.listed_codes[self.listed_steps <= step.number]
@@ -479,7 +479,7 @@ class Verification:
             self.complain(step, "the list of broken bonds is not that of bonds whose history has come to an end")
 
     def judge_work(self, mechanics, step, row, old, history, before, gradient, external, loads):
-        """External work by the trapezoidal rule over the accepted steps; implicit ones add no other."""
+        """External work by the trapezoidal rule over the accepted steps; implicit steps add no other work."""
         if step.number == 0:
             return self.judge_work_of_preload(mechanics, step, row)
         if old.mechanics not in (None, mechanics) or old.number + 1 != step.number or self.events:
@@ -505,7 +505,7 @@ class Verification:
         self.compare(step, "work", row["external_work"] - old.external_work, work, scale)
 
     def judge_work_of_preload(self, mechanics, step, row):
-        """What acts at load 0 was put on slowly: an elastic body takes up all of its work."""
+        """Loads at load 0 were applied slowly: an elastic body stores all of their work."""
         if row["dissipated_energy"] == 0 and row["drained_energy"] == 0 and not row["settled"]:
             scale = row["stored_energy"] + 1e-5 * self.whole_forces(mechanics, step) * numpy.abs(step.everywhere).max()
             self.compare(step, "work", row["external_work"], row["stored_energy"], scale)
@@ -528,7 +528,7 @@ class Verification:
 
 
     def is_at_its_end(self, rows):
-        """At load factor 1, at the last controlled displacement, or after the steps that the path may have."""
+        """A run ends at load factor 1, at the last controlled displacement, or at the limit on steps of the path."""
         if not rows:
             return False
         last = rows[max(rows)]
@@ -540,7 +540,7 @@ class Verification:
         return isinstance(table, str) or abs(last["load_factor"] - table[-1]) <= 1e-12
 
     def judge_control(self, step, row):
-        """The weighted sum of mean displacements that is controlled."""
+        """The controlled weighted sum of mean displacements."""
         terms, sets = self.case.get("control"), self.results.sets
         parts = [float(numpy.dot(step.displacement[sets[term["set"]]].mean(axis=0), term["weights"])) for term in terms]
         size = sum(abs(part) for part in parts) + max(abs(step.displacement).max(), 1e-300)
@@ -553,7 +553,8 @@ class Old:
     """The last accepted state."""
 
     def __init__(self, shape, mechanics, steps):
-        """At rest: without loads if they act at load 0, so that step 0 is written; else it is step 0 itself."""
+        """The state at rest: without loads if they act at load 0, so that step 0 is written; else it is step 0
+        itself."""
         is_written = bool(steps) and steps[0].number == 0
         self.number, self.load, self.mechanics = -1 if is_written else 0, 0.0, None
         self.displacement, self.history = numpy.zeros(shape), mechanics.no_history()

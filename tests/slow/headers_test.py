@@ -1,4 +1,4 @@
-"""Headers stand alone: each compiles without what a source would include before it."""
+"""Headers are self-contained: each compiles without the includes of a source before it."""
 
 import os
 import re
@@ -9,7 +9,7 @@ from tests.unit.architecture_test import ROOT, in_parallel, sources
 
 
 def leads_its_source(header):
-    """Whether the build compiles it alone already: its own source begins with it."""
+    """Whether the build already compiles it alone, because its own source includes it first."""
     source = header.with_suffix(".cpp")
     if not source.exists():
         return False
@@ -18,7 +18,7 @@ def leads_its_source(header):
 
 
 def compile_alone(header):
-    """What the compiler says of it; nothing if it is content."""
+    """The compiler's messages; empty if there are none."""
     name = header.relative_to(ROOT).as_posix()
     result = subprocess.run(
         [os.environ.get("PERISTAT_CXX", "c++"), "-std=c++20", "-fsyntax-only", "-fopenmp", "-I", ROOT]

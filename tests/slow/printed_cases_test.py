@@ -1,4 +1,4 @@
-"""What the headers of the long cases print, compared with one run of each."""
+"""Numbers in the headers of the long cases, compared with one run of each."""
 
 import math
 import unittest
@@ -10,8 +10,8 @@ from tests.printed.pieces import pieces
 from tests.printed.runs import run
 from tests.reference.program import ROOT
 
-# Round-off decides which of two like bonds breaks first, so that elsewhere counts differ "by some per
-# cent" and peaks by "less than one": so the headers and the tutorial.
+# Round-off decides which of two equal bonds breaks first. So on other machines counts differ "by some per
+# cent" and peaks by "less than one", as the headers and the tutorial say.
 COUNTS, PEAK = 0.05, 0.01
 
 
@@ -58,12 +58,12 @@ class Fracture(PrintedTest, Folder):
         self.assertEqual(round(last["control"], 12), 1.2e-3)
         share = last["reaction_y:load"] / peak["reaction_y:load"]
         self.assertLess(abs(share - 2 / 3), 0.1)  # "to two thirds of the peak"
-        # Where load control would have to go back it does; the opening never does.
+        # Load control would have to go back, and the load does; the opening never does.
         openings = [row["control"] for row in plate.history]
         self.assertEqual(openings, sorted(openings))
         loads = [row["load_factor"] for row in plate.history]
         self.assertNotEqual(loads, sorted(loads))
-        # Nothing is lost but what bonds and avalanches take.
+        # Only bonds and avalanches take energy.
         self.assertLess(abs(last["balance_error"]), 2e-3 * last["external_work"])
         self.assertGreater(last["drained_energy"], 0)
 
@@ -143,7 +143,7 @@ class LinearSolid(PrintedTest):
         return (f"material.poisson_ratio={outer}", f"region[0].material.poisson_ratio={inner}", support, *expected)
 
     def studies(self):
-        """Case and changes of every row."""
+        """Case and changes for every row."""
         for setting in ((self.ALL_ROUND,), (), (self.CORNER,)):
             for changes in ((), self.NEARLY, (self.PERTURBED,)):
                 yield "manufactured", *setting, *changes
@@ -220,13 +220,13 @@ class LinearSolidInMotion(PrintedTest):
         self.prints("At {} us, with the tip at {} m", 1e6 * branches["time"], branches["upper_tip"])
         last = plate.history[-1]
         self.assertAlmostEqual(last["upper_tip"], 0.1)
-        # A crack on a plane of symmetry chooses by round-off, which threads and compilers change.
+        # For a crack on a plane of symmetry round-off decides, which depends on threads and compilers.
         self.prints("{} bonds are broken", last["broken_bonds"], within=0.01)
         self.prints("{} J are put in, and {} J found", last["external_work"],
                     last["kinetic_energy"] + last["stored_energy"] + last["dissipated_energy"], within=0.01)  # fmt: skip
         for row in plate.history:
             self.assertEqual(row["upper_tip"], row["lower_tip"])
-            self.assertLess(row["stored_energy"], 0.3)  # debris that is unstable has a thousand times as much
+            self.assertLess(row["stored_energy"], 0.3)  # unstable debris has a thousand times as much
         places, damage = plate.points("reference"), plate.field("damage")
         order = {tuple(place.round(7).tolist()): number for number, place in enumerate(places)}
         mirrored = [order[tuple((place * (1, -1)).round(7).tolist())] for place in places]
@@ -239,19 +239,19 @@ class LinearSolidInMotion(PrintedTest):
         tip = {round(1e6 * row["time"], 3): row["upper_tip"] for row in plate.history}
         self.prints("its tip at {} m after 20 us and at {} m after 32 us", tip[20.0], tip[32.0])
         last = plate.history[-1]
-        # As above a crack on a plane of symmetry chooses by round-off; steps of the lattice do the rest.
+        # As above, round-off decides for a crack on a plane of symmetry; steps of the lattice add to it.
         self.prints("leave at {} degrees", last["branch_angle"], within=0.05)
         self.prints("{} bonds are broken after", last["broken_bonds"], within=0.02)
         for row in plate.history:
             self.assertEqual(row["upper_tip"], row["lower_tip"])
         broken = plate.points("reference")[plate.field("damage") > 0.35]
-        ahead = broken[abs(broken[:, 1]) > 2e-3, 0].min()  # of the crack's own rows
+        ahead = broken[abs(broken[:, 1]) > 2e-3, 0].min()  # the crack's own rows
         self.prints("branches at {} m", ahead, within=0.1)
 
     def test_fragmenting_ring(self):
         self.page = "cases/lps/fragmenting_ring.toml"
         ring = run("lps/fragmenting_ring", threads=2)
-        self.prints("after 0.1 ms {} pieces of ten points", len(pieces(ring.folder, 0.016)), within=0.2)  # one of them
+        self.prints("after 0.1 ms {} pieces of ten points", len(pieces(ring.folder, 0.016)), within=0.2)  # one piece
 
 
 class Cpd(PrintedTest):
@@ -260,7 +260,7 @@ class Cpd(PrintedTest):
         kinds = ("material.c3=0",), ("material.c2=2000", "material.c3=0"), ()
         cubes = [run("cpd/cube", "loading.steps=1", *kind) for kind in kinds]
         self.prints('reaction on "pulled" [N] {} {} {}', *(cube.reaction("pulled") for cube in cubes))
-        # "takes six iterations, one of them projected": round-off may take or leave one
+        # "takes six iterations, one of them projected": round-off may change it by one
         self.assertAlmostEqual(cubes[2].summary["newton_iterations"], 6, delta=1)
         self.assertIn(sum(row["projection"] > 0 for row in cubes[2].iterations), (1, 2))
 

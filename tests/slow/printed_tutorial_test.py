@@ -1,4 +1,4 @@
-"""What the tutorial, the theory and the headers of its cases print of fracture, compared with runs."""
+"""Numbers on fracture in the tutorial, the theory and the headers of its cases, compared with runs."""
 
 import re
 import unittest
@@ -24,7 +24,7 @@ class Square(PrintedTest):
         self.assertGreater(len(told), 10)
         said = run(SQUARE).output.splitlines()
         for line in told:
-            # round-off decides residuals, and iterations by a few
+            # round-off decides residuals, and a few iterations
             pattern = re.escape(line.rstrip())
             pattern = re.sub(r"\d+\\ iterations", r"\\d+\\ iterations", pattern)
             pattern = re.sub(r"after\\ \d+\\ of", r"after\\ \\d+\\ of", pattern)
@@ -81,7 +81,7 @@ class Square(PrintedTest):
         self.prints("The peak falls to {} kN,", cracked.peak("top", "y") / 1e3, within=PEAK)
         self.prints("at load {}, and runs in several bursts before it goes through at {}.",
                     cracked.first("broken_bonds")["load_factor"], torn["load_factor"], within=PEAK)  # fmt: skip
-        # damage beside a straight crack: "about 0.4", the number of bonds that cross it over all of them
+        # damage beside a straight crack: "about 0.4", the share of bonds that cross it
         self.prints("A clean crack has about {} beside it", cracked.step(1)["max_damage"])
 
     def mode(self, words, result):
@@ -100,7 +100,7 @@ class Square(PrintedTest):
         newton = run(SQUARE, "solver.mode=newton", code=3)
         self.mode(f"`adaptive` | {adaptive.summary['steps']}", adaptive)
         self.mode(f"`relaxation` | {relaxed.summary['steps']}", relaxed)
-        (steps,) = numbers(TUTORIAL, "| `newton` | {} |")  # of which most are cuts: a few more or less
+        (steps,) = numbers(TUTORIAL, "| `newton` | {} |")  # most of them are cuts: a few more or less
         self.assertAlmostEqual(newton.summary["steps"], steps.value, delta=3)
         self.mode(f"`newton` | {steps.text}", newton)
         self.prints("limit point near {} with a dossier", newton.history[-1]["load_factor"],

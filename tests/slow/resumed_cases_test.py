@@ -1,4 +1,4 @@
-"""Shipped cases in every mode, killed on their way: what goes on ends as what was never disturbed."""
+"""Shipped cases in every mode, killed on their way: a resumed run ends like an undisturbed one."""
 
 import contextlib
 import json
@@ -18,7 +18,7 @@ FRACTURE = ["plate_with_hole/square"]
 if os.environ.get("PERISTAT_ALL_KILLS"):  # some minutes more
     FRACTURE += ["plate_with_hole/rectangle", "three_point_bending/notched", "four_holes/tension",
                  "three_point_bending/mouth_opening"]
-# In few steps, which are split as many are.
+# Few steps, which are split like many.
 OTHERS = {
     "bar/tension": [],
     "cantilever/plate": [],
@@ -53,7 +53,7 @@ class Resumed(Folder):
         return [PROGRAM, "run", ROOT / "cases" / f"{case}.toml", "--output", self.out, "--threads", 1, *words]
 
     def check(self, case, changes=()):
-        """Three sessions: an end after one step, after another one, and the end."""
+        """Three sessions: an end after one step, after another one, and the final end."""
         whole = shipped_run(case, *changes)
         self.execute(self.begin(case, *settings(*changes), "--stop-after", 1))
         self.peristat("resume", self.out, "--threads", 1, "--stop-after", 1)
@@ -75,7 +75,7 @@ class Resumed(Folder):
             process.wait()
             if (self.out / "parts/checkpoint.0").exists():
                 command = [PROGRAM, "resume", self.out, "--threads", 1]
-        # Where the machine was too slow for a first step, all of it.
+        # If the machine was too slow for a first step, the whole run.
         self.assert_completed(self.execute(command, seconds=900, limited=False))
         self.assertEqual(differences(whole.folder, self.out), [])
 

@@ -1,4 +1,4 @@
-"""Random but valid cases: bodies, materials, supports and loads, ways to solve them."""
+"""Random but valid cases: bodies, materials, supports and loads, solution methods."""
 
 import numpy
 
@@ -9,11 +9,11 @@ PRECONDITIONERS = ("auto", "jacobi", "block_jacobi", "rigid_pieces", "surrogate"
 
 
 class Generator:
-    """Makes the case of one seed and number, the same one every time."""
+    """Makes the case for a seed and a number, reproducibly."""
 
     def __init__(self, seed, number):
         self.random = numpy.random.default_rng([seed, number])
-        self.of_kernel = numpy.random.default_rng([seed, number, 2])  # so that the rest of a case stays as it was
+        self.of_kernel = numpy.random.default_rng([seed, number, 2])  # keeps the rest of a case unchanged
 
     def choice(self, *options, weights=None):
         return options[self.random.choice(len(options), p=weights)]
@@ -25,7 +25,7 @@ class Generator:
         return float(self.random.uniform(low, high))
 
     def power(self, low, high):
-        """Between 10^low and 10^high, every decade as likely."""
+        """Between 10^low and 10^high, log-uniform."""
         return float(10 ** self.random.uniform(low, high))
 
     def make(self, folder):
@@ -93,7 +93,7 @@ class Generator:
         return {"points": points}
 
     def crack(self):
-        """Across the body, between two planes of points."""
+        """A pre-crack across the body, between two planes of points."""
         x = round(self.between(0.3, 0.7) * self.size[0] / self.spacing) * self.spacing + 0.013 * self.spacing
         depth = self.between(0.1, 0.6) * self.size[1] + 0.007 * self.spacing
         low = -0.53 * self.spacing
@@ -110,8 +110,8 @@ class Generator:
             if self.dimension == 2:
                 material["plane"] = self.choice("stress", "strain")
         else:
-            # Constants of the same order of stiffness: bonds, triangles and tetrahedra of a horizon
-            # of two spacings each bear a part.
+            # Constants with stiffnesses of the same order: bonds, triangles and tetrahedra with a horizon
+            # of two spacings all contribute.
             horizon = 2 * self.spacing
             unit = self.cross_section * horizon**3 if self.dimension == 2 else horizon**4
             plane = horizon**6 * self.cross_section**2 if self.dimension == 2 else horizon**8
@@ -139,7 +139,7 @@ class Generator:
         return material
 
     def quadrature(self, place):
-        """place: table that tells where the points come from."""
+        """place: the table that defines the points."""
         if self.model == "cpd":
             return {"weights": self.choice("mean", "bulk")}
         has_whole_cells = "spacing" in place and not {"perturbation", "volumes"} & set(place)

@@ -1,4 +1,4 @@
-"""Random but valid cases of several materials, with constraints, what lies beyond planes and periods, and loads of all
+"""Random but valid cases of several materials, with constraints, planes of symmetry, periods, and loads of all
 kinds on lattices of all kinds."""
 
 import numpy
@@ -6,11 +6,11 @@ import numpy
 from tests.reference.clouds import random_places, toml, write_points
 from tests.torture.generator import Generator
 
-ROWS = 1.05  # spacings that are more than one row of points, and less than two
+ROWS = 1.05  # spacings; more than one row of points, and less than two
 
 
 class RichGenerator(Generator):
-    """Beside its parent's cases: the same kinds of bodies and laws, but every key that these lack."""
+    """Complements its parent's cases: the same kinds of bodies and laws, with all keys that those lack."""
 
     def __init__(self, seed, number):
         super().__init__(seed, number)
@@ -77,7 +77,7 @@ class RichGenerator(Generator):
         return {"lattice": lattice, "set": sets}
 
     def cloud(self, folder):
-        """Points in a box that may be another's continuation; with neighbours from a file at times."""
+        """Points in a box, which may be the continuation of another; with neighbours from a file at times."""
         side = {1: 14, 2: 7, 3: 4}[self.dimension]
         reference = (random_places(self.random, side**self.dimension, self.dimension) + 0.5) * self.spacing
         self.size, self.spacings = [side * self.spacing] * self.dimension, numpy.full(self.dimension, self.spacing)
@@ -102,7 +102,7 @@ class RichGenerator(Generator):
             lines.append(f"{i + 1} {j + 1} {self.between(0.2, 1)} {self.between(0.2, 1)}")
         (folder / "neighbours.txt").write_text("\n".join(lines) + "\n")
 
-    # ---- what lies beyond ------------------------------------------------------------------------
+    # ---- planes and periods -----------------------------------------------------------------------
 
     def beyond(self):
         """Planes of symmetry and periods; the body's left end stays free for supports."""
@@ -126,7 +126,7 @@ class RichGenerator(Generator):
         return {name: tables for name, tables in found.items() if tables}
 
     def jump(self, axis, component):
-        """Shears between two periods are given for one of them alone: free ones let the cell turn."""
+        """The shear between two periods is given for one of them only: free shears would let the cell rotate."""
         if self.is_mirrored(component) or axis > component:
             return "0"
         if axis == component and axis != "x" and self.chance(0.5):
@@ -206,7 +206,7 @@ class RichGenerator(Generator):
         floats = self.kinds["x"] == "period" and self.chance(0.6)
         if not floats:
             case["support"] = [{"set": "left", "displacement": still}]
-        is_open = self.kinds["x"] == "end"  # the right end is there to be moved
+        is_open = self.kinds["x"] == "end"  # the right end can be moved
         ways = ["nothing"] if not is_open else ["pull"]
         if is_open and self.dimension > 1:
             ways += ["rigid", "platen", "slope", "constraint", "touching"]
@@ -255,7 +255,7 @@ class RichGenerator(Generator):
         case["roller"] = [table]
 
     def load(self, case):
-        """Of about a share of the strength."""
+        """A load of about a share of the strength."""
         stress = self.modulus * self.critical * self.power(-1.5, 0.2)
         density = stress / self.size[0]
         kinds = ["body_force", "total_force", "gravity"]

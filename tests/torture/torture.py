@@ -1,5 +1,5 @@
 #!/usr/bin/env -S /usr/bin/python3 -BEs
-"""Torture: random but valid cases, every accepted step of which the reference has to confirm.
+"""Torture: random but valid cases, whose accepted steps the reference has to confirm.
 
     /usr/bin/python3 -B tests/torture/torture.py                    all 300 cases, some 20 minutes on one core
     /usr/bin/python3 -B tests/torture/torture.py --only 17          one of them again
@@ -7,7 +7,7 @@
     /usr/bin/python3 -B tests/torture/torture.py --rich             those of tests/torture/rich.py
 
 A case must end with 0 (done), 3 (did not converge), 4 (memory), or 2 if its body is unstable at rest
-or not held, within a minute of processor time. Cases that fail are kept below --keep.
+or not held, within a minute of processor time. Failing cases are kept below --keep.
 """
 
 import argparse
@@ -28,12 +28,12 @@ from tests.torture.generator import Generator  # noqa: E402
 from tests.torture.rich import RichGenerator  # noqa: E402
 
 CPU_SECONDS = 60
-# A body that can't be calculated, by its own choice of constants, points or supports.
+# Messages for a body that can't be calculated because of its constants, points or supports.
 REFUSALS = ("unstable at rest", "move freely", "held", "negative", "Poisson", "selects no")
 
 
 def judge(path, folder):
-    """Runs a case; returns the exit code, whether the reference has judged it, and complaints."""
+    """Runs a case; returns the exit code, whether the reference checked it, and complaints."""
     run = peristat("run", path, "--quiet", "--threads", 1, "--output", folder / "out", "--set", "output.stress=true", folder=folder,
                    seconds=10 * CPU_SECONDS, cpu_seconds=CPU_SECONDS)  # fmt: skip
     (folder / "said.txt").write_text(run.said)

@@ -1,4 +1,4 @@
-"""The house stands: includes go only downwards, the code is formatted."""
+"""The architecture: includes only go downwards, and the code is formatted."""
 
 import concurrent.futures
 import os
@@ -9,9 +9,9 @@ import subprocess
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# From the ground up. Tests and benchmarks look at the house from outside and may include any floor.
+# From the lowest floor up. Tests and benchmarks may include any floor.
 FLOORS = ["src", "assembly", "solvers", "cases"]
-# Rooms of the floors, each of which may include itself and those before it.
+# Rooms of the floors; each may include itself and earlier ones.
 ROOMS = [
     "src/core",
     "src/parallel",
@@ -50,7 +50,7 @@ OUTSIDE = ["tests", "benchmarks"]
 ALLOWED_IN_HEADERS = {"omp.h"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 STANDARD_HEADER = re.compile(r"[a-z_0-9]+")  # <vector>: neither a folder nor an extension
-CLANG_FORMAT_VERSION = "14"  # versions differ in taste; this is the one of Debian 12
+CLANG_FORMAT_VERSION = "14"  # versions format differently; this is the one of Debian 12
 
 
 def sources(*suffixes, places=tuple(FLOORS + OUTSIDE)):
@@ -65,7 +65,7 @@ def sources(*suffixes, places=tuple(FLOORS + OUTSIDE)):
 
 
 def room_of(file):
-    """The room that a file is in, however deep; its folder if that is none."""
+    """The room that contains a file, at any depth; its folder if there is none."""
     folders = file.split("/")[:-1]
     for depth in range(len(folders), 0, -1):
         if "/".join(folders[:depth]) in ROOMS:
@@ -74,7 +74,7 @@ def room_of(file):
 
 
 def misplaced_includes(file, text):
-    """What is wrong with the includes of a file; `file` is relative to the root, with slashes."""
+    """Errors in the includes of a file; `file` is relative to the root, with slashes."""
     floor = file.split("/")[0]
     wrong = []
     for kind, name in INCLUDE.findall(text):
@@ -123,7 +123,7 @@ class Architecture(unittest.TestCase):
     def test_every_file_stands_in_a_room(self):
         files = [path.relative_to(ROOT).as_posix() for path in sources(".hpp", ".cpp", places=FLOORS)]
         self.assertEqual([file for file in files if room_of(file) not in ROOMS], [])
-        self.assertEqual(room_of("src/shape.cpp"), "src")  # is none
+        self.assertEqual(room_of("src/shape.cpp"), "src")  # src is not a room
 
     def test_includes_never_run_up_a_floor(self):
         wrong = []
@@ -155,7 +155,7 @@ class Architecture(unittest.TestCase):
             return checked.stderr if checked.returncode else ""
 
         files = [path.relative_to(ROOT).as_posix() for path in sources(".hpp", ".cpp")]
-        size = 50  # starting the program takes longer than a file does
+        size = 50  # starting the program takes longer than formatting a file
         wrong = in_parallel(check_format, [files[k : k + size] for k in range(0, len(files), size)])
         self.assertFalse(wrong, f"run {program} -i on the files of\n" + "\n".join(wrong))
 

@@ -12,8 +12,8 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# Prints its arguments; leaves the results folder's path; `run wait` waits for interrupts and counts
-# those of the next half second; `run write` writes states; `run end CODE` ends with that code; `run talk` goes on talking.
+# Prints its arguments; writes the results folder's path to the note; `run wait` waits for interrupts and counts those
+# of the next half second; `run write` writes states; `run end CODE` ends with that code; `run talk` keeps printing.
 PROGRAM = r"""#!/usr/bin/env bash
 printf '[%s]' "$@"; echo
 [[ ${PERISTAT_NOTE-} ]] && echo "$PWD/some results" >"$PERISTAT_NOTE"
@@ -45,7 +45,7 @@ SWEEP = """import os, sys
 print("sweep", sys.argv[1:], os.environ["PERISTAT_PROGRAM"])
 sys.exit(3)
 """
-# dpkg-query: every package that is asked for
+# dpkg-query that reports every requested package as installed
 PACKAGES_ARE_THERE = r'''for name; do [[ $name == -* ]] || printf "|%s installed|" "$name"; done'''
 
 
@@ -104,7 +104,7 @@ class Launcher(unittest.TestCase):
         result = self.launch("run", "write", "--plots-every", "2", "--threads", "1")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertIn("[run][write][--threads][1]", result.stdout)
-        self.assertEqual(result.stdout.count("pictures of"), 1)  # those on the way are not told
+        self.assertEqual(result.stdout.count("pictures of"), 1)  # intermediate drawings are not reported
         self.assertGreaterEqual(len(drawn.read_text().split()), 3)
         drawn.unlink()
         shutil.rmtree(self.folder / "some results")
@@ -219,13 +219,13 @@ class Launcher(unittest.TestCase):
             self.assertIsNone(process.poll())
         started = time.monotonic()
         process.kill()
-        process.communicate(timeout=60)  # ends when the last holder of the pipe has
+        process.communicate(timeout=60)  # ends when the last holder of the pipe ends
         self.assertLess(time.monotonic() - started, 10, "the program waits 30 s by itself")
 
-    # ---- building, and what continuous integration runs -------------------------------------------
+    # ---- building, and continuous integration -----------------------------------------------------
 
     def build_with(self, cmake):
-        """./peristat build, with a script in the place of cmake; nothing is installed."""
+        """./peristat build with a script in place of cmake; nothing is installed."""
         tools = self.folder / "tools"
         tools.mkdir(exist_ok=True)
         for name, text in {"cmake": cmake, "dpkg-query": PACKAGES_ARE_THERE}.items():
@@ -252,7 +252,7 @@ class Launcher(unittest.TestCase):
         echo = 'echo "$@" >>cmake_calls'
         (self.root / "build/release/peristat_mumps.so").touch()
         self.build_with(echo)
-        self.launch("check", "x", PATH=f"{self.folder / 'tools'}:{os.environ['PATH']}")  # which is current
+        self.launch("check", "x", PATH=f"{self.folder / 'tools'}:{os.environ['PATH']}")  # which is up to date
         first = (self.root / "cmake_calls").read_text()
         (self.root / "src/changed.cpp").touch()
         self.launch("check", "x", PATH=f"{self.folder / 'tools'}:{os.environ['PATH']}")

@@ -1,4 +1,4 @@
-"""Fracture energy of cpd: what a tear through the command line takes, beside what was asked for."""
+"""Fracture energy of cpd: the energy of tears through the command line, compared with the requested one."""
 
 import math
 import unittest
@@ -15,9 +15,9 @@ from tests.reference.tear import Tear, directions
 SPACING, RATIO, G = 1e-3, 2.015, 4e3
 C1, C2 = 5e19, 3e27
 STEPS = 400
-PEAK = 1e-7  # of a peak that is searched for by steps
-# Directions of the lattice in which it repeats, with the period in spacings, and a little more than
-# the opening over s_c at which the bond breaks that is flattest to the plane, L^2 / h in spacings.
+PEAK = 1e-7  # relative error of a peak that is searched for by steps
+# Directions in which the lattice repeats, with the period in spacings, and slightly more than
+# the opening over s_c at which the bond flattest to the plane breaks, L^2 / h in spacings.
 ANGLES = ((0.0, 1.0, 2.1), (math.degrees(math.atan(0.5)), math.sqrt(5.0), 4.7), (45.0, math.sqrt(2.0), 3.0))
 
 
@@ -25,14 +25,14 @@ class CpdFractureEnergy(Folder):
     threads = 2
 
     def strip(self, length, angle, damage, steps=1, opening=0.0):
-        """Two halves that are pulled apart as rigid blocks, in small steps, until no bond joins them."""
+        """Two halves are pulled apart as rigid blocks, in small steps, until no bond joins them."""
         half = (RATIO + 1) * SPACING
         return {
             "dimension": 2,
             "lattice": {"spacing": SPACING, "horizon_ratio": RATIO, "angle": angle, "thickness": 0.5,
                         "shape": [{"add": "box", "min": [0, -half], "max": [length, half]}]},
             "set": [{"name": "low", "where": "y < 1.23e-5"}, {"name": "high", "where": "y >= 1.23e-5"}],
-            "quadrature": {"weights": "bulk"},  # the strip is all surface
+            "quadrature": {"weights": "bulk"},  # the strip consists of surface
             "material": {"model": "cpd", "c1": C1, "c2": C2, "damage": damage},
             "support": [{"set": "low", "displacement": [0, 0]}, {"set": "high", "displacement": [0, f"{opening}*load"]}],
             "loading": {"steps": steps}, "solver": {"mode": "relaxation"}, "output": {"every": steps},
@@ -56,14 +56,14 @@ class CpdFractureEnergy(Folder):
                     normal = [math.sin(math.radians(angle)), math.cos(math.radians(angle))]
                     foretold = tear.energy(found, normal)
                     took = self.tear(angle, period, damage, last * told["critical"] * SPACING)
-                    # A step overshoots what breaks by half a step of the STEPS, quadratically.
+                    # A step exceeds the breaking opening by half of one of the STEPS, with a quadratic effect.
                     self.assertAlmostEqual(took / foretold, 1.0, delta=0.01)
                     self.assertGreater(foretold / tear.of_bonds(found, normal), 1.1)  # triangles matter
                     if angle == 0.0:
                         self.assertAlmostEqual(foretold / told["fracture_energy"]["axes"][0], 1.0, delta=1e-9)
 
     def tear(self, angle, period, damage, opening):
-        """Dissipated over area, of the middle of a strip: what a longer one has more than a shorter one."""
+        """Dissipated energy over area in the middle of a strip: the increase from a shorter to a longer strip."""
         periods = math.ceil((2 * RATIO + 2) / period)
         lengths = [n * period * SPACING * (1 + 1e-12) for n in (periods, periods + 2)]
         short, long = (self.dissipated(self.strip(n, angle, damage, STEPS, opening)) for n in lengths)
@@ -127,7 +127,7 @@ class CpdFractureEnergy(Folder):
             with self.subTest(law=damage["law"]):
                 told = self.told(self.of_moduli(damage | {"strength": 3e8}))
                 self.assertAlmostEqual(told["strength"] / 3e8, 1.0, delta=1e-7)
-                # The other way round: a pull of the lattice whose bonds have these stretches.
+                # In reverse: uniaxial tension of the lattice whose bonds have these stretches.
                 pulled = self.of_moduli({"law": damage["law"]} | {key: told[key] for key in keys})
                 peak = self.told(pulled, "--strengths")["strengths"]["uniaxial"]["peak"]
                 self.assertAlmostEqual(peak["mean"] / 3e8, 1.0, delta=1e-6)
@@ -135,7 +135,7 @@ class CpdFractureEnergy(Folder):
                 self.assertGreater(peak["most"], 3e8)
 
     def test_strengths_are_those_of_the_reference(self):
-        """Of a pull, of equal biaxial tension and of shear, with triangles that go with their bonds."""
+        """Strengths in uniaxial tension, equal biaxial tension and shear, with triangles that fail with their bonds."""
         shear = lambda normal: uniaxial(normal) - uniaxial([-normal[1], normal[0]])
         normals, weights = directions(2)
         pull, of_bonds = Pull.of_cpd(Tear(2, RATIO, SPACING, 0.5, {1: C1, 2: C2})), Pull.of_cpd(Tear(2, RATIO, SPACING, 0.5, {1: C1}))

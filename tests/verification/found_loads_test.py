@@ -1,4 +1,4 @@
-"""Every accepted state under a control and along the arc length, judged by tests/reference."""
+"""Every accepted state under a control and along the arc length, checked by tests/reference."""
 
 import unittest
 

@@ -1,4 +1,4 @@
-"""Fracture energy and strength: what a tear takes and a pull bears, beside what was asked for and foretold."""
+"""Fracture energy and strength: tears and tension tests, compared with the requested and the predicted values."""
 
 import unittest
 
@@ -16,9 +16,9 @@ from tests.reference.torn_strip import ANGLES, TornStrip
 LAWS = ("critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended")
 CORRECTIONS = {"none": {}, "linear": {"volume_correction": "linear"},
                "energy": {"volume_correction": "linear", "surface_correction": "energy"}}  # fmt: skip
-# Sums of a few hundred bonds by other means.
+# Sums of a few hundred bonds by independent means.
 ROUND_OFF = 1e-12
-# Of a strength that is searched for, and of the stretches that belong to it: a peak is flat.
+# Relative errors of a strength that is searched for, and of its stretches: a peak is flat.
 STRENGTH, STRETCH = 1e-7, 1e-6
 
 
@@ -26,11 +26,11 @@ class FractureEnergy(Folder):
     threads = 2
 
     def strip(self, length, angle, ratio, material, quadrature, dimension=2):
-        """Two halves that are pulled apart as rigid blocks, until no bond joins them."""
+        """Two halves are pulled apart as rigid blocks, until no bond joins them."""
         return TornStrip(material, ratio, angle, 1.0, dimension, quadrature).tables(length, length)
 
     def tear(self, angle, period, ratio, material, quadrature, dimension=2):
-        """Dissipated over area, of the middle of a strip: what a longer one has more than a shorter one."""
+        """Dissipated energy over area in the middle of a strip: the increase from a shorter to a longer strip."""
         return TornStrip(material, ratio, angle, period, dimension, quadrature).energy(self.folder)
 
     def test_a_straight_tear_takes_what_is_foretold_for_its_direction(self):
@@ -49,7 +49,7 @@ class FractureEnergy(Folder):
                     self.assertAlmostEqual(took / foretold, 1.0, delta=1e-10)  # a difference of two sums
                     found.setdefault((ratio, correction), {})[angle] = took
         for (ratio, correction), by_angle in found.items():
-            # 0 and 45 degrees are the ends of the range of directions, 26.6 stands twice in it.
+            # 0 and 45 degrees are the ends of the range of directions, 26.6 counts twice in it.
             flat, between, diagonal = by_angle.values()
             self.assertAlmostEqual((flat + 2 * between + diagonal) / 40, 1.0, delta=0.02 if correction == "none" else 0.01,
                                    msg=f"{ratio} {correction}")  # fmt: skip
@@ -91,7 +91,7 @@ class FractureEnergy(Folder):
             factor, places = file["points/strength_factor"][:], file["points/reference"][:]
             bonds = numpy.stack([file["broken_bonds/first_point"][:], file["broken_bonds/second_point"][:]])
         length = numpy.linalg.norm(places[bonds[1]] - places[bonds[0]], axis=1)
-        square = (factor[bonds].mean(axis=0) ** 2 * length).sum() / length.sum()  # a bond takes c V^2 length W
+        square = (factor[bonds].mean(axis=0) ** 2 * length).sum() / length.sum()  # a bond has c V^2 length W
         self.assertGreater(abs(square - 1), 0.005)
         self.assertAlmostEqual(took / whole / square, 1.0, delta=1e-10)
 
@@ -138,7 +138,8 @@ class FractureEnergy(Folder):
             self.assertAlmostEqual(back[key] / there[key], 1.0, delta=STRENGTH)
         for key in ("mean", "least", "most"):
             self.assertAlmostEqual(back["fracture_energy"][key] / there["fracture_energy"][key], 1.0, delta=ROUND_OFF)
-        # and beside the reference, whose bonds are those of a body; its strengths take seconds in a plane, more in space
+        # also compared with the reference, whose bonds are those of a body; its strengths take seconds in a plane, more
+        # in space
         if strength and dimension > 1 and (dimension, law, calibration) not in ((2, "linear", "lattice"), (2, "tanh", "continuum")):
             return
         tables = {"dimension": dimension, "lattice": {"spacing": 2e-4, "horizon_ratio": 3.015},
@@ -161,7 +162,7 @@ class FractureEnergy(Folder):
                 self.assertLess(min(*told["youngs_modulus"]["axes"], *list(told["youngs_modulus"].values())[-1]), 30e9)
 
     def test_modulus_along_an_axis_is_that_of_a_pulled_body(self):
-        """A square cut along the axes, every point stretched as told; its inner points bear E."""
+        """A square cut along the axes with every point stretched by a given amount; its inner points have E."""
         told = self.calibrated(2, "linear", **{"fracture-energy": 60.0, "horizon-ratio": 3.015})
         bulk = Bulk(Case({"dimension": 2, "lattice": {"spacing": 2e-4, "horizon_ratio": 3.015}, "material": {"youngs_modulus": 30e9}}))
         c = 30e9 * bulk.of_modulus
@@ -179,7 +180,7 @@ class FractureEnergy(Folder):
         self.assert_refused(ended, f"a spacing below {largest:.4g} m resolves it")
 
     def test_strengths_of_a_lattice_are_those_of_its_pull(self):
-        """One direction of a lattice in space, and every stress of a planar one, beside a calculation by other means."""
+        """One direction of a lattice in space, and every stress of a planar one, against an independent calculation."""
         question = self.question(2, "linear", onset=1e-4, critical=8e-4)
         planar = self.peristat("calibrate", "--strengths", "--model", "bond", *question).json()
         case = lambda d: Case({"dimension": d, "lattice": {"spacing": 2e-4, "horizon_ratio": 3.015}, "material": {"youngs_modulus": 30e9}})
@@ -201,7 +202,7 @@ class FractureEnergy(Folder):
         self.assertGreater(spread["most"] * (1 + 1e-7), along)
 
     def test_a_bar_bears_its_strength(self):
-        """Every bond of a bar under a homogeneous strain has the same stretch: the force is largest at the peak."""
+        """Every bond of a bar under a homogeneous strain has the same stretch, so the force is largest at the peak."""
         for law in LAWS:
             with self.subTest(law=law):
                 damage = {"law": law, "strength": 2e6} | ({} if law == "critical_stretch" else {"critical": 4e-3})
@@ -211,7 +212,7 @@ class FractureEnergy(Folder):
                 rows = self.results(tables).table("history")[1:]  # after step 0
                 stored = numpy.array([row["stored_energy"] for row in rows])
                 strain = 4e-3 * numpy.arange(1, len(stored) + 1) / 400
-                # Of the inner points half the force times the strain is stored; the ends take away from all alike.
+                # Inner points store half the force times the strain; the ends reduce all values alike.
                 stress = stored / strain
                 self.assertAlmostEqual(stress.max() / stress[0] * strain[0] * 1e9 / 2e6, 1.0, delta=0.01)
 

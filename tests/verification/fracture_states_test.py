@@ -1,7 +1,7 @@
-"""Every accepted state of the published fracture problems, judged by tests/reference.
+"""Every accepted state of the published fracture problems, checked by tests/reference.
 
-Twice each: with damage in accepted states alone, so that the histories of the bonds follow from the
-states themselves, and as shipped, where transient breaking makes histories that the results tell.
+Each problem runs twice: with damage only in accepted states, so that the states determine the histories of
+the bonds, and as shipped, where transient breaking makes histories that are read from the results.
 """
 
 import unittest
@@ -11,7 +11,7 @@ from tests.reference.program import ROOT
 from tests.reference.verify import Verification
 from tests.shipped_runs import shipped_run
 
-# Bonds that break at least: a run that breaks nothing would prove nothing.
+# Minimum number of broken bonds: a run that breaks nothing would prove nothing.
 CASES = {
     "plate_with_hole/square": 500,
     "plate_with_hole/rectangle": 500,

@@ -1,4 +1,4 @@
-"""Gravity, tractions, eigenstrains and pressures: against sums, closed forms and tests/reference."""
+"""Gravity, tractions, eigenstrains and pressures, compared with sums, closed forms and tests/reference."""
 
 import unittest
 
@@ -35,7 +35,7 @@ thermal_expansion = 1e-3
 set = "left"
 displacement = [0, 0]
 """
-# Two points in the corners hold a plate without layers so that it may grow.
+# Two corner points hold a plate without layers, so that it can expand.
 FREE = (
     PLATE.replace('layer = [{ name = "left", side = "x-" }]\n', "")
     .replace('set = "left"\ndisplacement = [0, 0]', 'set = "corner"\ndisplacement = [0, 0]')
@@ -48,7 +48,7 @@ class Loads(Folder):
     threads = 2
 
     def judged(self, text, *changes):
-        """Results of a run that tests/reference has judged."""
+        """Results of a run, checked by tests/reference."""
         output = self.run_case(text, *changes)
         verification = Verification(output, Case(self.resolved(output), self.folder))
         self.assertEqual(verification.run(), [])
@@ -66,7 +66,7 @@ class DeadLoads(Loads):
         results = self.judged(PLATE + '[[load]]\ngravity = ["3*load", "-9.81*load"]\n')
         weight = 2000 * 0.02 * 0.01 * 2e-3
         reaction = results.summary["reactions"]["left"]
-        # Newton's last step is quadratic, so that what is left is the round-off of sums over 3000 bonds.
+        # Newton's last step converges quadratically, so only the round-off of sums over 3000 bonds remains.
         self.assertAlmostEqual(reaction[0] / (-3 * weight), 1, delta=1e-10)
         self.assertAlmostEqual(reaction[1] / (9.81 * weight), 1, delta=1e-10)
         self.refusal(PLATE + "[[load]]\ngravity = [0, 1]\n", "material={youngs_modulus=1e9}")
@@ -96,7 +96,7 @@ class DeadLoads(Loads):
 
 class Heated(Loads):
     def assert_grown(self, results, by):
-        """No stress and a growth of all lengths, to the digits of displacements."""
+        """No stress and a uniform growth of all lengths, to the digits of displacements."""
         step = results.steps[-1]
         start = results.reference[results.sets["corner"]][0]
         growth = by * (results.reference - start)
@@ -114,7 +114,7 @@ class Heated(Loads):
                          ('loading.table=[0, 0, 1]', 'loading.table2=[0, 1, 1]',
                           'temperature.change="100*load+100*load2"')):  # fmt: skip
             with self.subTest(settings=settings):
-                # What is free of stress has no forces to measure the last digits of stretches and work by.
+                # A stress-free state has no forces that could scale the last digits of stretches and work.
                 results = self.results(HEATED, *settings)
                 x = results.reference[:, 0]
                 by = 3.7e-3 / (x.max() - x.min()) if "control" in settings[0] else 0.2
@@ -135,8 +135,8 @@ class Heated(Loads):
         held += '[quadrature]\nsurface_correction = "energy"\n'
         results = self.judged(held, "temperature.change=\"2*load\"", "loading.steps=2")
         inside = numpy.abs(results.reference - [0.01, 0.005]).max(axis=1) < 1e-3
-        # 2 * 1/2 E e2 / (1 - nu) = 3/2 E e2; the energy correction sets W of one strain at a time, which in the
-        # bulk of this lattice leaves 2 % to two of them at once.
+        # 2 * 1/2 E e2 / (1 - nu) = 3/2 E e2. The energy correction calibrates W for one strain at a time, which leaves
+        # an error of 2 % for two strains at once in the bulk of this lattice.
         density = results.steps[-1].energy_density[inside].mean()
         self.assertAlmostEqual(density / (1.5 * 1e9 * 2e-3**2), 1, delta=0.03)
         row = results.table("history")[-1]
@@ -144,9 +144,9 @@ class Heated(Loads):
         self.assertAlmostEqual(row["external_work"], row["stored_energy"], delta=2e-5 * row["stored_energy"])
 
     def test_a_clamped_bar_bears_the_bonds_across_a_section(self):
-        """Every point of a bar between two layers has as many neighbours on both sides, so that none moves, and every bond
-        has the stretch -alpha dT: k of the reach k cross a section. With half of the outermost neighbours' volume that sum
-        is E alpha dT, without a volume correction (m + 1)/m of it."""
+        """Every point of a bar between two layers has the same number of neighbours on both sides, so none moves, and
+        every bond has the stretch -alpha dT: k bonds of the reach k cross a section. With half of the outermost
+        neighbours' volume that sum is E alpha dT, without a volume correction (m + 1)/m of it."""
         bar = """
 dimension = 1
 [lattice]
@@ -179,12 +179,12 @@ change = "100*load"
                     force = (numpy.arange(1, reach + 1) * share).sum() * factor * 2e11 * 1e-3 * 1e-9**2
                     self.assertAlmostEqual(force / (2e11 * 1e-5 * 100 * 1e-6 * (1 if correction == "linear" else (reach + 1) / reach)), 1, delta=1e-14)
                     for side, sign in (("left", 1), ("right", -1)):
-                        # Distances of points have the round-off of their places, 1e-14 of a spacing at the far end.
+                        # Distances of points have the round-off of positions, 1e-14 of a spacing at the far end.
                         self.assertAlmostEqual(sign * results.summary["reactions"][side][0] / force, 1, delta=1e-12)
                     self.assertLess(numpy.abs(results.steps[-1].displacement).max(), 1e-12 * 0.1)
 
     def test_a_heated_cell_has_the_stress_of_its_lattice(self):
-        """Held in its shape: every bond has the stretch -s, and the stress is the lattice's sum. Free: it grows by s."""
+        """Held in shape: every bond has the stretch -s, and the stress is the lattice's sum. Free: it grows by s."""
         growth = 0.02
         for dimension, ratio in ((2, 3.015), (3, 2.1)):
             for is_free in (False, True):
@@ -195,7 +195,7 @@ change = "100*load"
                     text += f'shape = [{{ add = "box", min = {[0.0] * dimension}, max = {shape} }}]\n'
                     text += "[material]\nyoungs_modulus = 1e9\nthermal_expansion = 2e-4\n[temperature]\nchange = \"100*load\"\n"
                     for axis in range(dimension):
-                        # Free to grow, and not to shear, by which it could turn.
+                        # Free to grow, but not to shear, which would let it rotate.
                         gradient = [("free" if k == axis and is_free else 0) for k in range(dimension)]
                         text += f'[[period]]\naxis = "{"xyz"[axis]}"\nfrom = 0\nto = {shape[axis]}\ngradient = {gradient}\n'
                     results = self.results(text)
@@ -215,7 +215,7 @@ change = "100*load"
                     self.assertLess(numpy.abs(moved - grown).max(), 1e-11 * growth * shape[0])
 
     def test_a_linear_temperature_bends_with_little_stress(self):
-        """Stretches are left of second order in the growth only: a tenth of it leaves a hundredth of them."""
+        """The remaining stretches are of second order in the growth: a tenth of it leaves a hundredth of them."""
         left = []
         for change in (2.0, 0.2):
             results = self.results(HEATED, f'temperature.change="{change}*load*y/0.01"', "loading.steps=1")
@@ -232,7 +232,7 @@ change = "100*load"
         ends = ends.replace("[material]", '[[set]]\nname = "start"\nwhere = "x < 1e-3"\n[material]')
         cold = self.judged(ends, 'temperature.change="-30*load"', "solver.mode=adaptive", "loading.steps=2",
                            "relaxation.steps=10")  # fmt: skip
-        self.assertGreater(cold.summary["broken_bonds"], 0)  # cooled between its ends by three of them
+        self.assertGreater(cold.summary["broken_bonds"], 0)  # cooled by three critical stretches between its ends
         row = cold.table("history")[-1]
         self.assertLess(abs(row["balance_error"]), 0.05 * row["external_work"])
 
@@ -325,7 +325,7 @@ pressure = "{pressure}*load"
 
 class Pressed(Loads):
     def growth(self, results):
-        """Mean displacement along the radius, at radii within a spacing of 3/4."""
+        """Mean radial displacement at radii within a spacing of 3/4."""
         step, radius = results.steps[-1], numpy.sqrt((results.reference**2).sum(axis=1))
         middle = numpy.abs(radius - 0.75) < 0.05
         along = (step.displacement * results.reference).sum(axis=1) / radius
@@ -359,8 +359,8 @@ class Pressed(Loads):
         linear = ring.lame(radius, 0.5, 1, 0.1e9, 1e9).mean()
         small, radius = self.growth(self.judged(RING.format(spacing=0.05, pressure=1e4)))
         of_lattice = small / ring.lame(radius, 0.5, 1, 1e4, 1e9).mean()
-        # What the lattice errs by at small strain it also does at large ones, to a tenth of the difference that the
-        # strain makes.
+        # The lattice's relative error at small strain also applies at large strain, to a tenth of the effect of the
+        # strain.
         self.assertGreater(expected / linear, 1.15)
         self.assertAlmostEqual(found / expected / of_lattice, 1, delta=0.03)
         iterations = results.table("history")
@@ -408,7 +408,7 @@ pressure = "5e4*load"
         for settings in ((), ("loading.steps=3",), ("solver.mode=relaxation",)):
             with self.subTest(settings=settings):
                 results = self.judged(PLATE + load, *settings)
-                self.assertGreater(numpy.abs(results.steps[-1].displacement).max(), 1e-3)  # it has turned
+                self.assertGreater(numpy.abs(results.steps[-1].displacement).max(), 1e-3)  # it has rotated
         row = results.table("history")[-1]
         self.assertLess(abs(row["balance_error"]), 1e-6 * row["external_work"])
 

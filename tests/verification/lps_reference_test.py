@@ -1,4 +1,4 @@
-"""The reference of the linear peridynamic solid (tests/reference/lps.py) beside what is known without it: printed
+"""Checks the reference of the linear peridynamic solid (tests/reference/lps.py) against independent results: printed
 weights, the printed scheme bond by bond, rigid motions, linear displacements, the derivative of its energy."""
 
 import itertools
@@ -9,14 +9,14 @@ import numpy
 
 from tests.reference import lps
 
-# Printed of the uniform lattice: weight over h^2 by the place of the neighbour.
+# Printed for the uniform lattice: weight over h^2 by the position of the neighbour.
 PRINTED = {
     3.0: {(1, 0): 1.9018542425, (1, 1): 1.4355103103, (2, 0): 0.9327693982, (2, 1): 0.9293206459,
           (2, 2): 0.8409601239, (3, 0): 0.6016710176},
     3.5: {(1, 0): 1.6631568915, (1, 1): 1.5074490738, (2, 0): 0.9196920912, (2, 1): 1.1422083780,
           (2, 2): 1.3131596297, (3, 0): 0.7110321114, (3, 1): 0.9264710961},
 }  # fmt: skip
-# Sums of some 40 terms, with weights that miss their moments by 1e-14; solutions are worse by the condition, 1e3.
+# Sums of some 40 terms, with weights whose moments err by 1e-14; solutions are worse by the condition, 1e3.
 ROUND_OFF, OF_SOLUTIONS = 1e-13, 1e-12
 GRADIENT = {
     2: numpy.array([[3.0, 2.0], [-1.0, 2.0]]),
@@ -31,8 +31,8 @@ def lattice_ball(dimension, ratio):
 
 
 def block(dimension, count, ratio, free_sides=(), perturbation=0.0, **options):
-    """A square or cube of count points a side about 0, spacing 1/count, collars but for tractions on the high
-    sides of the free axes, which go on through the collars. Returns the solid and what fills its ghosts."""
+    """A square or cube with `count` points per side about 0, spacing 1/count, collars except for tractions on the high
+    sides of the free axes, which extend through the collars. Returns the solid and the fill values of its ghosts."""
     spacing, deep = 1 / count, 2 * math.ceil(ratio)
     line = (numpy.arange(-deep, count + deep) + 0.5) / count - 0.5
     places = numpy.stack(numpy.meshgrid(*[line] * dimension, indexing="ij"), -1).reshape(-1, dimension)
@@ -43,7 +43,7 @@ def block(dimension, count, ratio, free_sides=(), perturbation=0.0, **options):
 
 
 def linear(solid, gradient=None):
-    """Linear displacements, not a number at ghosts; and the tractions that belong to them."""
+    """Linear displacements, nan at ghosts; and the corresponding tractions."""
     gradient = GRADIENT[solid.dimension] if gradient is None else gradient
     displacement = solid.places @ gradient.T
     displacement[~solid.carries] = numpy.nan
@@ -72,7 +72,7 @@ class Weights(unittest.TestCase):
         radius, weight = numpy.polynomial.legendre.leggauss(20)
         radius, weight = (radius + 1) / 2, weight / 2
         angle = numpy.arange(40) * 2 * math.pi / 40
-        for power in lps.exponents(2, 5):  # trapezoids are exact for trigonometric polynomials
+        for power in lps.exponents(2, 5):  # the trapezoidal rule is exact for trigonometric polynomials
             around = (numpy.cos(angle) ** power[0] * numpy.sin(angle) ** power[1]).sum() * 2 * math.pi / 40
             expected = around * (weight * radius ** (power.sum() - 2)).sum()
             self.assertAlmostEqual(lps.moment(power), expected, delta=1e-14)
@@ -81,7 +81,7 @@ class Weights(unittest.TestCase):
             around = (numpy.cos(angle) ** power[0] * numpy.sin(angle) ** power[1]).sum() * 2 * math.pi / 40
             sphere = around * (share * (1 - cosine**2) ** ((power[0] + power[1]) / 2) * cosine ** power[2]).sum()
             expected = sphere * (weight * radius ** (power.sum() - 1)).sum()
-            # Odd powers of the sine are no polynomials, but there the integral around is 0.
+            # Odd powers of the sine are no polynomials, but their integral over the circle is 0.
             self.assertAlmostEqual(lps.moment(power), expected, delta=1e-14)
         self.assertEqual((len(lps.exponents(2, 5)), len(lps.exponents(3, 5)), len(lps.exponents(2, 4))), (18, 55, 12))
 
@@ -107,7 +107,7 @@ class Weights(unittest.TestCase):
                 powers, scaled = lps.exponents(dimension, 5), places / (ratio + 0.4)
                 matrix = numpy.prod(scaled[None] ** powers[:, None], -1) / numpy.linalg.norm(scaled, axis=1) ** 3
                 self.assertEqual(numpy.linalg.matrix_rank(matrix), rank)
-                # The least of all solutions is orthogonal to whatever changes no moment.
+                # The least-norm solution is orthogonal to every change that keeps the moments.
                 nothing = numpy.linalg.svd(matrix)[2][rank:]
                 self.assertLess(abs(nothing @ weights).max(), ROUND_OFF * abs(weights).max())
 
@@ -143,7 +143,7 @@ class Weights(unittest.TestCase):
 
 
 class LinearDisplacements(unittest.TestCase):
-    """Patches with collars, tractions on a side, and on two or three that meet."""
+    """Patches with collars, tractions on one side, and on two or three adjacent sides."""
 
     def compare(self, solid, gradient=None):
         gradient = GRADIENT[solid.dimension] if gradient is None else gradient
@@ -161,8 +161,8 @@ class LinearDisplacements(unittest.TestCase):
                 self.compare(block(2, 10, ratio, sides, moved))
 
     def test_space_is_exact_where_tangents_are_alike(self):
-        """The ball is alike for both tangents (one face of a lattice), or the strain is (a swelling that turns):
-        of the tangential strains only the sum follows from the dilatation and the traction."""
+        """The ball is symmetric in both tangents (one face of a lattice), or the strain is (a swelling with rotation):
+        the dilatation and the traction determine only the sum of the tangential strains."""
         self.compare(block(3, 3, 3.0))
         self.compare(block(3, 3, 3.2, perturbation=0.15))
         self.compare(block(3, 3, 3.0, (2,)))
@@ -201,13 +201,13 @@ class LinearDisplacements(unittest.TestCase):
         across = (places[bonds[0], 1] < 0) & (places[bonds[1], 1] > 0) & (abs(places[bonds[0], 0]) < 0.3)
         across &= abs(places[bonds[1], 0]) < 0.3
         solid = block(2, 12, 3.0, broken=numpy.stack(bonds, 1)[across])
-        self.compare(solid)  # the faces bear what the linear displacements ask for
+        self.compare(solid)  # the tractions on the faces are those of the linear displacements
         self.assertGreater(solid.damage().max(), 0.2)
         numpy.testing.assert_array_equal(solid.has_surface, solid.damage() > 0)
 
 
 class Printed(unittest.TestCase):
-    """The scheme as it is printed, a bond after the other."""
+    """The printed scheme, bond by bond."""
 
     def scheme(self, solid, displacement, tractions):
         """(4.6) to (4.9) and (5.5), with lambda, mu of the point itself in the missing part of the ball."""
@@ -285,7 +285,7 @@ class Printed(unittest.TestCase):
             block(2, 4, 3.0, (1,), form="half")
 
     def test_form_in_space_is_that_of_a_plane_where_it_does_not_turn(self):
-        """Bonds in a plane through the normal: with zero strain across it, both differ by the shared strain alone."""
+        """Bonds in a plane through the normal: with zero strain across it, both differ only by the shared strain."""
         vectors, normal = numpy.array([[0.3, 1.0], [-0.7, 0.5], [0.2, 0.4]]), numpy.array([0.6, 0.8])
         shares = numpy.array([0.2, -0.1, 0.4])
         raised = numpy.append(vectors, numpy.zeros((3, 1)), axis=1)
@@ -351,7 +351,7 @@ class Energy(unittest.TestCase):
             stiffness = solid.matrix()[:, free] / count**dimension
             self.assertLess(abs(stiffness - stiffness.T).max(), 1e-14 * abs(stiffness).max())
             self.assertGreater(numpy.linalg.eigvalsh(stiffness).min(), 0)
-            # The energy is quadratic: differences are exact but for round-off.
+            # The energy is quadratic: differences are exact up to round-off.
             displacement, change = random(solid), random(solid, seed=9)
             change[numpy.setdiff1d(numpy.arange(len(change)), solid.points)] = 0
             difference = (solid.energy(displacement + change) - solid.energy(displacement - change)) / 2
@@ -396,7 +396,7 @@ class Composites(unittest.TestCase):
         self.assertAlmostEqual(lps.harmonic_mean(3.0, 6.0), 4, delta=1e-15)
 
     def test_layers_bear_the_series_modulus(self):
-        """A step of lambda + 2 mu across layers: u is continuous and piecewise linear, to the order of h."""
+        """A step of lambda + 2 mu across layers: u is continuous and piecewise linear, up to O(h)."""
         errors = []
         for count in (8, 16):
             solid = block(2, count, 3.0)
@@ -414,7 +414,7 @@ class Constants(unittest.TestCase):
         a, b = lps.lame(72.0, 0.23)
         self.assertAlmostEqual(b * (3 * a + 2 * b) / (a + b), 72, delta=1e-12)
         self.assertAlmostEqual(a / (2 * (a + b)), 0.23, delta=1e-15)
-        # Plane stress: sigma_zz = 0 of the solid gives this lambda.
+        # In plane stress, sigma_zz = 0 of the solid gives this lambda.
         self.assertAlmostEqual(lps.lame(72.0, 0.23, "stress")[0], 2 * a * b / (a + 2 * b), delta=1e-12)
 
     def test_critical_stretch(self):

@@ -1,4 +1,4 @@
-"""Commands that README, pages and headers of cases print are accepted, and do what stands beside them."""
+"""Commands in README, pages and headers of cases are accepted, and do what the text says."""
 
 import re
 import shlex
@@ -12,7 +12,7 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
 def blocks(path, language):
-    """Texts of the page's blocks of code in a language ("": none is named)."""
+    """Texts of the page's code blocks in a language ("": none is named)."""
     fenced = path.read_text().split("```")[1::2]
     return [text for head, _, text in (block.partition("\n") for block in fenced) if head == language]
 
@@ -31,7 +31,7 @@ class Commands(Folder):
         (self.folder / "strip.toml").write_text(strip)
 
     def assert_accepted(self, words):
-        """By `check`, which reads a case as `run` does; `sweep` with the first of its values."""
+        """Runs `check`, which reads a case as `run` does; for `sweep` with its first values."""
         command, *rest = words
         sets = [rest[k + 1] for k, word in enumerate(rest) if word == "--set"]
         sets += [re.split(r",(?![^\[]*\])", rest[k + 1])[0] for k, word in enumerate(rest) if word == "--vary"]
@@ -47,7 +47,7 @@ class Commands(Folder):
                 self.assert_accepted(words)
 
     def test_settings_within_the_text_are_accepted(self):
-        """`--set …` in the tutorial's sentences, of the case of the last command before them."""
+        """`--set …` within the tutorial's sentences, for the case of the last command before them."""
         text, case, tried = (ROOT / "docs/tutorial-fracture.md").read_text(), None, 0
         for line in text.splitlines():
             if named := re.match(r"\./peristat \w+ (cases/\S+)", line):
@@ -66,7 +66,7 @@ class Commands(Folder):
         last = table(self.folder / "torn/history.csv")[-1]
         self.assertGreater(last["broken_bonds"], 0)  # "until it breaks"
         peak = max(abs(row["reaction_x:left"]) for row in table(self.folder / "torn/history.csv"))
-        self.assertLess(abs(last["reaction_x:left"]), 1e-2 * peak)  # what loose points between the pieces carry
+        self.assertLess(abs(last["reaction_x:left"]), 1e-2 * peak)  # carried by loose points between the pieces
         self.assert_completed(self.peristat(*cycle, "--quiet", "--output", "cycle"))
         self.assertEqual([row["load_factor"] for row in table(self.folder / "cycle/history.csv")], [0, 1, 0, 1.2])
 

@@ -1,7 +1,7 @@
-"""What README, pages and headers of cases print as the result of a command is what it gives.
+"""Results of commands that README, pages and headers of cases print are compared with runs.
 
-Values are expected as the page prints them; here stand the words around them, the command, and a
-tolerance where it isn't the rounding of the printed digits. Runs of fracture are in tests/slow.
+Values are read from the page; this file has the words around them, the command, and a
+tolerance if it isn't the rounding of the printed digits. Runs of fracture are in tests/slow.
 """
 
 import math
@@ -53,7 +53,7 @@ class Bar(PrintedTest):
             changes = f"lattice.spacing={spacing}", f"quadrature.volume_correction={correction}"
             return abs(run("bar/tension", *changes).summary["probes"]["tip"] / 1e-3 - 1.0)
 
-        # in proportion: to a tenth, what terms of the second order leave at 500 points
+        # proportional, to a tenth: the effect of second-order terms at 500 points
         self.assertAlmostEqual(error(2e-3, "linear") / error(1e-3, "linear"), 2.0, delta=0.2)
         for spacing in (2e-3, 1e-3):  # theory.md: "keeps an error of a quarter at any spacing"
             self.assertAlmostEqual(error(spacing, "none"), 0.25, delta=0.005)
@@ -109,13 +109,13 @@ class Bimetal(PrintedTest):
         height, n, strain = 2e-3, 100 / 200, (19e-6 - 12e-6) * 100
         curvature = 6 * strain * 4 / (height * (3 * 4 + (1 + n) * (1 + 1 / n)))
         self.prints("(m^2 + 1/(m n)))) = {} /m", curvature)
-        first, last = 0.5e-4, 0.04 - 0.5e-4  # points where the strip is held, and of the probe
+        first, last = 0.5e-4, 0.04 - 0.5e-4  # the points where the strip is held, and of the probe
         closed = 0.5 * curvature * (last**2 - first**2)
         self.prints("a deflection of {} m;", closed)
         found = strip.summary["probes"]["tip"][1]
         self.prints("probe tip_y {} m", found)
         self.assertAlmostEqual(-found / closed, 1, delta=5e-3)
-        # The force that would hold the strip straight.
+        # relative to the force that would hold the strip straight
         self.assertLess(abs(strip.reaction("symmetry_x")), 1e-6 * 200e9 * strain * height * 1e-3)
 
 
@@ -179,7 +179,7 @@ class ElasticPlate(PrintedTest):
         self.assertAlmostEqual(plate.reaction("left") / plate.reaction("right"), -1.0, delta=1e-9)
         self.prints("layers of 3 x 50 whose displacement is prescribed in both components: {} points",
                     plate.summary["points"])  # fmt: skip
-        density = sorted(plate.field("energy_density"))  # of most points: the median
+        density = sorted(plate.field("energy_density"))  # the median stands for most points
         self.prints("the strain is about {} times that far away", math.sqrt(density[-1] / density[len(density) // 2]))
         self.prints("E w h 1.333e-3 = {} N", 192e9 * 0.05 * 1e-3 * 0.2 / 150)
 
@@ -213,7 +213,7 @@ class Cpd(PrintedTest):
             words = check("cpd/square", f"material.c2={c2}").split()
             ratios.append(float(words[words.index("ratio") + 1]))
         self.prints("Poisson's ratio of the lattice {} {} {} {} {}", *ratios)
-        # the equilibrium does not depend on the steps that lead there
+        # the equilibrium does not depend on the load steps
         pulls = [run("cpd/square", f"material.c2={c2}", "loading.steps=2").reaction("pulled")
                  for c2 in (0, 50, 400, 1200, 4000)]  # fmt: skip
         self.prints('reaction on "pulled" [N] {} {} {} {} {}', *pulls)
@@ -227,7 +227,7 @@ class Cpd(PrintedTest):
     def test_iterations_of_the_squares(self):
         for case in ("cpd/square", "cpd/square_hole"):
             steps = run(case).history
-            # Round-off may take or leave one.
+            # Round-off may change it by one.
             self.assertTrue(all(abs(row["newton_iterations"] - 4) <= 1 for row in steps), case)
             self.assertIn("Four iterations in a step", " ".join((ROOT / f"cases/{case}.toml").read_text()
                                                                .replace("\n#", "").split()))  # fmt: skip
@@ -329,8 +329,8 @@ class Theory(PrintedTest, Folder):
 
 
 class LinearSolvers(PrintedTest, Folder):
-    """The table's bodies with loads that look random, and the first system of a step. Another
-    right-hand side than the benchmark's: a fifth, and one iteration."""
+    """The table's bodies with pseudo-random loads, and the first system of a step. The right-hand side differs from
+    the benchmark's, hence the tolerance: a fifth, and one iteration."""
 
     CASE = """dimension = 3
         [lattice]
@@ -423,11 +423,11 @@ class Motions(PrintedTest):
         self.page = "cases/bond_models/crack_branching.toml"
         plate = run("bond_models/crack_branching")
         first = next(row for row in plate.history if row["broken_bonds"])
-        self.prints("from about {} us on", 1e6 * first["time"], within=0.1)  # a row
+        self.prints("from about {} us on", 1e6 * first["time"], within=0.1)  # one row
         last = plate.history[-1]
         self.prints("{} steps of {} ns", last["step"], 1e9 * last["time_step"])
         spacing = 0.1 / 300
-        for tip in ("upper_tip", "lower_tip"):  # which bond is the last to break round-off may decide
+        for tip in ("upper_tip", "lower_tip"):  # round-off may decide which bond is the last to break
             self.prints("are at x = {} m", last[tip], within=2 * spacing / 0.0457)
         self.prints("{} bonds are broken", last["broken_bonds"], within=0.05)
         self.prints("of {} J of work {} J are kinetic energy", last["external_work"], last["kinetic_energy"], within=0.01)
@@ -437,7 +437,7 @@ class Motions(PrintedTest):
         middles = numpy.array([height[[int(row["first_point"]), int(row["second_point"])]].mean() for row in of])
         above, below = (middles > 1e-9).sum(), (middles < -1e-9).sum()
         self.assertGreater(above, 2000)
-        self.assertLess(abs(above - below), 0.02 * above)  # none on this machine
+        self.assertLess(abs(above - below), 0.02 * above)  # equal on this machine
         moved, ratio = "lattice.perturbation=1e-6", "lattice.horizon_ratio=3.015"
         broken = lambda *settings: run("bond_models/crack_branching", *settings).history[-1]["broken_bonds"]
         self.prints("are gone, and {} bonds break", broken(moved), within=0.05)
@@ -467,7 +467,7 @@ class Motions(PrintedTest):
         self.page = "cases/bond_models/kalthoff_winkler.toml"
         plate = run("bond_models/kalthoff_winkler")
         broken = table(plate.folder / "broken_bonds.csv")
-        self.prints("from {} us on", 1e6 * broken[0]["load_factor"], within=0.1)  # a row
+        self.prints("from {} us on", 1e6 * broken[0]["load_factor"], within=0.1)  # one row
         self.assertGreater(plate.history[-1]["tip"], 0.099)
         self.prints("{} bonds are broken", plate.history[-1]["broken_bonds"], within=0.05)
         places = plate.points("reference")
@@ -490,7 +490,7 @@ class Motions(PrintedTest):
         field, places = square.field("displacement"), square.points("reference") - 2.5
         radius, size = numpy.hypot(*places.T), numpy.hypot(*field.T)
         front = radius[size > 0.02 * size.max()].max()
-        self.prints("at the end it is {} m from the middle", front, within=0.1)  # the ring is as wide
+        self.prints("at the end it is {} m from the middle", front, within=0.1)  # the width of the ring
         order = lambda at: numpy.lexsort(numpy.round(at / 0.0125).astype(int).T)
         turned = field[:, ::-1] * [-1, 1]
         difference = turned[order(places[:, ::-1] * [-1, 1])] - field[order(places)]

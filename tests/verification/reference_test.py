@@ -1,4 +1,4 @@
-"""The program beside the reference of tests/reference: energies, forces, tangents, runs."""
+"""The program compared with the reference of tests/reference: energies, forces, tangents, runs."""
 
 import collections
 import csv
@@ -17,8 +17,8 @@ from tests.reference.influence import POWERS
 from tests.reference.mechanics import STEP, Mechanics
 from tests.reference.verify import Verification
 
-# Both sides sum some 10^2 to 10^4 terms of stretches near 1e-2 in double precision: a term has lost
-# two digits of 16, and terms that cancel in a sum one or two more.
+# Both programs sum some 10^2 to 10^4 terms of stretches near 1e-2 in double precision: a term has lost
+# two digits of 16, and terms that cancel in a sum lose one or two more.
 ROUND_OFF = 1e-12
 
 
@@ -38,7 +38,7 @@ class Clouds(Folder):
         self.random = numpy.random.default_rng(20)
 
     def compare(self, path, amount, size):
-        """check-tangent beside the reference; returns the reference and the displacements."""
+        """Compares check-tangent with the reference; returns the reference and the displacements."""
         mechanics, _ = mechanics_of(path)
         reference = mechanics.body.reference
         expressions = random_deformation(self.random, reference.shape[1], size, amount)
@@ -57,7 +57,7 @@ class Clouds(Folder):
         return mechanics, displacement
 
     def assert_forces_are_derivatives(self, mechanics, displacement):
-        """The reference beside itself: its forces are complex steps of its energy."""
+        """Checks the reference itself: its forces are complex steps of its energy."""
         forces, scale = mechanics.gradient(displacement), mechanics.gradient(displacement, absolute=True).max()
         for place in itertools.islice(numpy.ndindex(displacement.shape), 8):
             moved = displacement.astype(complex)
@@ -135,7 +135,7 @@ class Clouds(Folder):
         self.assertEqual(compared, 2 * 8)
 
     def test_cpd_of_few_and_nearly_flat_points(self):
-        """Where flatness factors lie between 0 and 1, and where those of a point sum up to less than 1."""
+        """Some flatness factors are between 0 and 1, and those of some points sum up to less than 1."""
         between = below = 0
         for dimension, count in itertools.product((2, 3), (7, 8, 9, 10)):
             with self.subTest(dimension=dimension, count=count):
@@ -196,7 +196,7 @@ class Beyond(Folder):
         self.random = numpy.random.default_rng(21)
 
     def arrangements(self, dimension):
-        """What is beyond, by name; the pull is along x, by supports or by the gradient of a period."""
+        """Tables of planes and periods, by name; the load acts along x, by supports or by the gradient of a period."""
         side, still = self.SIDE[dimension], [0] * (dimension - 1)
         last = "xyz"[dimension - 1]
         found = {"a plane": {"symmetry": [plane("x", side)]}, "a strip": {"symmetry": [plane(last, 0), plane(last, side)]}}
@@ -213,7 +213,7 @@ class Beyond(Folder):
         return found
 
     def body(self, dimension, model, law, beyond, is_lattice):
-        """Points in a cube of which a half may be another's continuation, stretched along x."""
+        """Points in a cube, half of which may be the continuation of the other half, stretched along x."""
         side = self.SIDE[dimension]
         case = {"dimension": dimension}
         horizon = {"bond": (2.2, 3.015, 2.015), "cpd": (0, 2.3, 1.75)}[model][dimension - 1]
@@ -278,7 +278,7 @@ class Beyond(Folder):
         self.assertGreater(min(seen["broken across", model] for model in ("bond", "cpd")), 100)
         self.assertGreater(min(seen[kind] for kind in ("planes", "periods", "clouds")), 20)
 
-    # ---- what is wrong is found ------------------------------------------------------------------
+    # ---- errors are detected ----------------------------------------------------------------------
 
     def changed_rows(self, folder, table, change):
         path = folder / f"{table}.csv"
@@ -300,7 +300,7 @@ class Beyond(Folder):
 
     def test_what_is_tampered_with_is_found(self):
         case = self.body(2, "bond", "tanh_continuous", {"symmetry": [plane("x", 6)], "period": [period("y", 6, ["0", "free"])]}, True)
-        case["support"][0]["displacement"][0] = "-0.28*load"  # a part of the bonds breaks, the rest bears
+        case["support"][0]["displacement"][0] = "-0.28*load"  # some of the bonds break, the rest carry the load
         case["loading"] = {"steps": 3}
         case["solver"] = {"mode": "adaptive"}
         case["relaxation"] = {"steps": 4}
@@ -325,18 +325,18 @@ class Beyond(Folder):
             return in_file(change)
 
         def history_across(_, step):
-            """One of two twins alone."""
+            """Only one of two twins."""
             image, stretch = step["history/second_image"][...], step["history/largest_stretch"][...]
             stretch[numpy.flatnonzero(image)[0]] *= 1.001
             step["history/largest_stretch"][...] = stretch
 
         def other_kind(_, step):
-            """As if bonds over the plane went over the period."""
+            """As if bonds across the plane crossed the period."""
             image = step["history/second_image"][...]
             step["history/second_image"][...] = numpy.where(image > 0, len(step.file["points/images/shift"]) + 1 - image, 0)
 
         def other_place(file, _):
-            """As if the plane stood somewhere else."""
+            """As if the plane were somewhere else."""
             file["points/images/shift"][:, 0] += 0.5
 
         tampered = {

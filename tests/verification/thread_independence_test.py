@@ -1,4 +1,4 @@
-"""Cracks take the same path, bond by bond, on any number of threads."""
+"""Cracks take the same path, bond by bond, with any number of threads."""
 
 import sys
 import unittest
@@ -14,13 +14,13 @@ class ThreadIndependence(unittest.TestCase):
         return [[cell.strip() for cell in line.strip("|").split("|")] for line in ended.output.splitlines()[2:]]
 
     def test_square_breaks_sixteen_bonds_first(self):
-        # What a relaxation without inertia does, which cannot jump a barrier.
+        # The case of a relaxation without inertia, which cannot jump over a barrier.
         for row in self.told("plate_with_hole/square"):
             self.assertEqual(row[5].split(" at ")[0], "16")
             self.assertAlmostEqual(float(row[5].split(" at ")[1]), 0.5575, delta=0.003)
 
     def test_coarser_plates_break_the_same_bonds_on_any_number_of_threads(self):
-        # The problems as they are shipped take minutes: benchmarks/thread_independence.py.
+        # The problems as shipped take minutes: benchmarks/thread_independence.py.
         for row in self.told("three_point_bending/notched:lattice.spacing=2.4e-3",
                              "four_holes/tension:lattice.spacing=2e-3"):  # fmt: skip
             self.assertGreater(int(row[6]), 20)

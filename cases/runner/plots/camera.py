@@ -1,17 +1,17 @@
-"""A camera that looks at solids, its lights, and the page that it draws on; no graphics card, no display."""
+"""A camera for pictures of solids: projection, lights and page. It needs no graphics card and no display."""
 
 import numpy as np
 
 from style import INK, new_figure
 
 AXES = "xyz"
-MARGIN = 1.95  # of a page on the right, for the colour bar [inch]
+MARGIN = 1.95  # right margin for the colour bar [inch]
 
 
 class Camera:
     """Parallel projection that lays the body's longest direction across the picture.
 
-    azimuth  by which it looks round the body [degrees]; chosen by the body's shape if it is None
+    azimuth  angle of the view around the body [degrees]; None: chosen from the body's shape
     """
 
     def __init__(self, reference: np.ndarray, displacement: np.ndarray, azimuth: float | None = None):
@@ -19,14 +19,14 @@ class Camera:
         across = int(np.argmax(extent))
         others = [axis for axis in range(3) if axis != across]
         motion = np.abs(displacement).max(axis=0)
-        # Up is where the body moves most, so that bending is seen; z if there is no difference.
+        # The axis along which the body moves most points up, so that bending is seen; z if there is no difference.
         up = others[0] if motion[others[0]] > 1.01 * motion[others[1]] else others[1]
         a, b = np.eye(3)[across], np.eye(3)[up]
         c = np.cross(a, b)  # out of the picture
         slender = extent[across] > 3.0 * np.sort(extent)[1]
         own, elevation = np.radians((24.0, 20.0) if slender else (33.0, 25.0))
         azimuth = own if azimuth is None else np.radians(azimuth)
-        self.across = 3 - across - int(np.argmax(b))  # the axis that points most at the viewer
+        self.across = 3 - across - int(np.argmax(b))  # the axis that points most towards the viewer
         self.right = np.cos(azimuth) * a - np.sin(azimuth) * c
         self.towards = np.cos(elevation) * (np.sin(azimuth) * a + np.cos(azimuth) * c) + np.sin(elevation) * b
         self.up = np.cross(self.towards, self.right)
@@ -34,11 +34,11 @@ class Camera:
         self.fill_light = _unit(self.towards + 1.2 * self.right)
 
     def project(self, places: np.ndarray) -> np.ndarray:
-        """Picture coordinates (right, up) of places, whose last axis is x, y, z."""
+        """Picture coordinates (right, up) of positions, whose last axis is x, y, z."""
         return places @ np.stack([self.right, self.up], axis=1)
 
     def depth(self, places: np.ndarray) -> np.ndarray:
-        """Grows towards the viewer."""
+        """Depth coordinate of positions; it grows towards the viewer."""
         return places @ self.towards
 
     def far_to_near(self, faces: np.ndarray) -> np.ndarray:
@@ -56,7 +56,7 @@ def normals(faces: np.ndarray) -> np.ndarray:
 
 
 def lit(colours: np.ndarray, faces: np.ndarray, camera) -> np.ndarray:
-    """Colours under a main light from the upper left and a weak one from the right."""
+    """Colours under a main light from the upper left and a weak light from the right."""
     normal = normals(faces)
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
     main = np.clip(normal @ camera.light, 0.0, 1.0)
@@ -75,7 +75,7 @@ def darker(colours: np.ndarray, factor: float) -> np.ndarray:
 
 
 def stage(low, high, right: float = MARGIN):
-    """A figure in proportion to the projected body: figure, axes, colour bar's place, inches per metre."""
+    """A figure in the proportions of the projected body: figure, axes, place of the colour bar, inches per metre."""
     left, bottom, top = 0.9, 0.95, 1.5
     size = np.maximum(high - low, 1e-300)
     scale = min((16.0 - left - right) / size[0], 8.6 / size[1])
@@ -96,7 +96,7 @@ def stage(low, high, right: float = MARGIN):
 
 
 def draw_directions(figure, camera) -> None:
-    """A small tripod of the coordinate directions in the lower left corner."""
+    """A small tripod of the coordinate axes in the lower left corner."""
     width, height = figure.get_size_inches()
     side = 1.25
     tripod = figure.add_axes([0.2 / width, 0.15 / height, side / width, side / height], zorder=3)

@@ -1,16 +1,16 @@
-"""Voronoi cells that tile a plane cloud of points, also after it has deformed."""
+"""Voronoi cells that tile a plane cloud of points, in the reference and in the deformed configuration."""
 
 import numpy as np
 
 from crossings import crosses
 from voronoi import Polygons
 
-SAME = 1e-3  # of a cell's size: corners of cells that are nearer are one
+SAME = 1e-3  # share of a cell's size; corners that are closer count as one
 
 
 class CloudCells:
-    """One polygon per point, as `Cells` is one square per point of a lattice: its outlines share corners with the
-    neighbours', unless they have been parted.
+    """One polygon per point of a cloud, the counterpart of `Cells` for lattices. Neighbours share corners unless they
+    have been parted.
 
     polygons   in the reference configuration, and the points that they belong to (count x 2)
     size       of a cell
@@ -26,7 +26,8 @@ class CloudCells:
         self._knot = np.unique((key[:, :, 0] << 32) + key[:, :, 1], return_inverse=True)[1].reshape(key.shape[:2])
 
     def part(self, cracks, broken: np.ndarray, piece: np.ndarray) -> None:
-        """Parts neighbours whose bond is among the broken ones (count x 2), meets a crack, or joins two pieces."""
+        """Parts neighbours whose bond is broken (`broken`, count x 2) or meets a crack, or that belong to different
+        pieces."""
         cell, side = np.nonzero(self._is_inner())
         other, count = self._polygons.beyond[cell, side], len(self._points)
         keys = np.sort(broken, axis=1) @ [count, 1]
@@ -36,14 +37,14 @@ class CloudCells:
         self._parted[cell, side] = gone
 
     def sides(self):
-        """Of each side: the corners at its ends, the cells' neighbours beyond it, which of them have been parted."""
+        """For each side: the corners at its ends, the neighbours beyond it, and whether these have been parted."""
         most = self._parted.shape[1]
         for side in range(most):
             yield [side, (side + 1) % most], self._polygons.beyond[:, side], self._parted[:, side]
 
     def outlines(self, reference: np.ndarray, displacement: np.ndarray, loose: np.ndarray) -> np.ndarray:
-        """Displaced corners, count x most x 2; as in `Cells.corners` displacements are continued linearly to the
-        corners and averaged there. Loose cells, and those at a corner where cells have been parted, move alone."""
+        """Displaced corners, count x most x 2. As in `Cells.corners`, displacements are extrapolated linearly to the
+        corners and averaged there. Loose cells, and cells at a corner where cells have been parted, move alone."""
         gradient = self._gradient(displacement, loose)
         corners = self._polygons.corners
         moved = displacement[:, None] + (corners - self._points[:, None]) @ gradient
@@ -63,7 +64,7 @@ class CloudCells:
         return (self._polygons.beyond >= 0) & self._polygons.is_side
 
     def _gradient(self, displacement, loose) -> np.ndarray:
-        """Of the displacement, count x 2 (derivative along) x 2 (component), by least squares over joined neighbours."""
+        """Displacement gradient, count x 2 (direction) x 2 (component), by least squares over joined neighbours."""
         cell, side = np.nonzero(self._is_inner() & ~self._parted)
         other = self._polygons.beyond[cell, side]
         usable = ~loose[cell] & ~loose[other]

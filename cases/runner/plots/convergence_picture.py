@@ -6,8 +6,8 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from style import FAINT, WARNING, heading, new_figure, number
 
-# Relative residuals below are round-off and show no order: in slender bodies the forces of single
-# bonds are orders of magnitude larger than the residual's scale, and so is their round-off.
+# Relative residuals below this value are round-off and show no order of convergence. In slender bodies single
+# bonds carry forces that are orders of magnitude larger than the residual's scale, and so is their round-off.
 ROUND_OFF = 1e-11
 MOST_STEPS = 8  # curves in the picture
 
@@ -17,7 +17,7 @@ def has_iterations(results) -> bool:
 
 
 def _searches(results):
-    """The searches for equilibrium: step, whether it was accepted, relative residuals by iteration.
+    """The equilibrium searches: step, whether it was accepted, relative residuals by iteration.
 
     A step that was cut appears several times; its last search is the one that counts.
     """
@@ -38,7 +38,8 @@ def _searches(results):
 
 
 def draw_convergence(results):
-    """Relative residuals against iterations, and each against the one before, whose slope is the order."""
+    """Relative residuals over the iterations, and each over the previous one; the slope of the second curve is the
+    order."""
     searches = [search for search in _searches(results) if len(search[2]) > 1]
     accepted = [search for search in searches if search[1]]
     failed = [search for search in searches if not search[1]]
@@ -86,7 +87,7 @@ def draw_convergence(results):
     left.set_xlabel("iteration")
     left.set_ylabel("relative residual")
     left.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=12))
-    # Between the panels, where no curve is.
+    # The legend goes between the panels, where no curve runs.
     left.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=11.5, alignment="left", title_fontsize=11.5,
                 title="p: observed order" if results.orders else None, borderaxespad=0.0)  # fmt: skip
     right.set_xlabel("relative residual of one iteration")
@@ -100,7 +101,7 @@ def draw_convergence(results):
 
 
 def order_words(orders: dict[int, float], increments: int) -> list[str]:
-    """The range of the observed orders and how many increments show one; nothing if none does."""
+    """The range of the observed orders and the number of increments that show one; nothing if none does."""
     if not orders:
         return []
     least, most = (f"{order(orders.values()):.2f}" for order in (min, max))
@@ -109,7 +110,7 @@ def order_words(orders: dict[int, float], increments: int) -> list[str]:
 
 
 def _log_axis(axis, low: float, high: float) -> None:
-    """Decades as ticks; at least one of them on the axis."""
+    """Decades as ticks, at least one of them on the axis."""
     axis.set_major_locator(LogLocator(numticks=8))
     axis.set_minor_formatter(NullFormatter())
     if np.floor(np.log10(high)) < np.ceil(np.log10(low)):
@@ -118,7 +119,7 @@ def _log_axis(axis, low: float, high: float) -> None:
 
 
 def _draw_search(left, right, residuals, floor, **looks):
-    """One search in both panels; a residual of exactly zero is an open mark at the floor."""
+    """Draws one search in both panels; a residual of exactly zero is an open mark at the floor."""
     shown = np.where(residuals == 0.0, floor, residuals)
     many = len(residuals) > 60
     marks = {} if many else {"marker": "o", "markersize": 6, "markeredgecolor": "white", "markeredgewidth": 0.7}
@@ -134,8 +135,8 @@ def _draw_tolerance(axes, results):
     tolerance = results.case.get("solver", {}).get("relative_tolerance")
     if isinstance(tolerance, float) and tolerance > 0.0:
         axes.axhline(tolerance, color=FAINT, linewidth=1.2, linestyle=(0, (2, 3)), zorder=2)
-        # Below its line: "round-off" may stand right above.
-        # At the left: there the residuals are large.
+        # The label is below its line, because "round-off" may be right above it.
+        # It is at the left, where residuals are large.
         axes.annotate(f"tolerance {tolerance:.0e}", (0.0, tolerance), xycoords=("axes fraction", "data"),
                       xytext=(4, -4), textcoords="offset points", ha="left", va="top",
                       fontsize=11, color=FAINT)  # fmt: skip
@@ -156,6 +157,6 @@ def _draw_slopes(axes, chosen, floor):
         seen = (y >= bottom) & (y <= 30 * max(b for _, b in pairs))
         axes.plot(x[seen], y[seen], color=FAINT, linewidth=1.2, linestyle="--" if slope > 1 else ":", zorder=2,
                   label=name)  # fmt: skip
-    # In a strip above the curves, of which none is higher than the guides end.
+    # The guides' names go in a strip above the curves; no curve rises above the ends of the guides.
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=2, fontsize=11, borderaxespad=0.2)
     _log_axis(axes.xaxis, low, high)

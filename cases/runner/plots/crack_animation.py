@@ -1,4 +1,4 @@
-"""An animation of the damage on the deformed plate, beside it the load-displacement curve as it grows."""
+"""An animation of the damage on the deformed plate beside the load-displacement curve."""
 
 import io
 
@@ -19,17 +19,17 @@ from style import (
 )  # fmt: skip
 
 MOST_FRAMES = 60
-MOST_INTACT_FRAMES = 12  # of them before the first damage
+MOST_INTACT_FRAMES = 12  # frames before the first damage
 MOST_CELLS = 20_000
 MOST_BYTES = 950_000
-COLOURS = 64  # of damage, and as many of everything else
+COLOURS = 64  # colours for damage, and the same number for everything else
 LEVELS = np.linspace(0.0, 1.0, COLOURS)
 SECONDS = 7.0
 SECONDS_AT_THE_END = 2.0
 
 
 def crack_animation(results) -> bytes:
-    """The steps that have fields as a GIF of less than a megabyte."""
+    """The steps with fields as a GIF of less than a megabyte."""
     numbers = animated_steps(results)
     last = results.step(numbers[-1])
     stage = _Stage(results, last)
@@ -42,7 +42,7 @@ def crack_animation(results) -> bytes:
 
 
 def animated_steps(results) -> list[int]:
-    """At most sixty of the steps that have fields, most of them after the first damage; always the last."""
+    """At most sixty of the steps with fields, most of them after the first damage, always including the last."""
     numbers = results.step_numbers
     first = next((place for place, step in enumerate(numbers) if results.has_damage(step)), len(numbers) - 1)
     intact = _spread(numbers[:first], MOST_INTACT_FRAMES)
@@ -55,7 +55,7 @@ def _spread(numbers: list[int], most: int) -> list[int]:
 
 
 def _by_colour(cells: np.ndarray, damage: np.ndarray) -> list[Outline]:
-    """The cells (count x corners x 2) of every colour as one outline, which is much faster to draw than each alone."""
+    """Draws the cells (count x corners x 2) of each colour as one outline, which is much faster than cell by cell."""
     level = np.rint(np.clip(damage, 0.0, 1.0) * (len(LEVELS) - 1)).astype(int)
     closed = np.concatenate([cells, cells[:, :1]], axis=1)
     codes = np.full(closed.shape[1], Outline.LINETO, np.uint8)
@@ -68,16 +68,16 @@ def _by_colour(cells: np.ndarray, damage: np.ndarray) -> list[Outline]:
 
 
 class _SmallGif(PillowWriter):
-    """All frames have the same few colours; every second frame is left out as long as the file is too large.
+    """All frames share one small palette. Every second frame is dropped as long as the file is too large.
 
-    The colours are white, those of damage, and those of the figure as it is at the start.
+    The palette is white, the damage colours, and the colours of the figure at the start.
     """
 
     def setup(self, fig, outfile, dpi=None):
         super().setup(fig, outfile, dpi)
         scenery = self._image().quantize(COLOURS, dither=Image.Dither.NONE).getpalette()[: 3 * COLOURS]
         scenery = np.reshape(scenery, (-1, 3))
-        scenery = scenery[scenery.min(axis=1) < 248]  # almost white would replace white
+        scenery = scenery[scenery.min(axis=1) < 248]  # near-white would replace white
         damage = DAMAGE_COLOURS(LEVELS, bytes=True)[:, :3]
         self._palette = Image.new("P", (1, 1))
         self._palette.putpalette(np.concatenate([[[255, 255, 255]], damage, scenery]).ravel().tolist())
@@ -96,12 +96,12 @@ class _SmallGif(PillowWriter):
             frames[0].save(file, format="GIF", save_all=True, append_images=frames[1:], duration=durations, loop=0)
             if file.tell() <= MOST_BYTES or len(frames) <= 2:
                 break
-            frames, duration = frames[::-1][::2][::-1], 2.0 * duration  # the last one stays
+            frames, duration = frames[::-1][::2][::-1], 2.0 * duration  # keeps the last frame
         self.content = file.getvalue()
 
 
 class _Stage:
-    """A figure whose scenery is drawn once; a step adds the plate, the curve and a line of facts."""
+    """A figure whose fixed parts are drawn once; each step adds the plate, the curve and a line of facts."""
 
     def __init__(self, results, last):
         self.results = results
@@ -150,7 +150,7 @@ class _Stage:
         return deformed_plate(self.results, step, self.factor, step.damage, limit=MOST_CELLS)
 
     def _set_the_curve(self, place) -> None:
-        """The whole curve faintly, and artists for the part that has been gone through."""
+        """Draws the whole curve faintly and creates the artists for the part up to the current step."""
         axes = self.figure.add_axes(place)
         load = self.results.numbers("load_factor")
         curves = reactions(self.results)
@@ -170,7 +170,7 @@ class _Stage:
         self.artists += [self.line, self.point]
 
     def show(self, step) -> None:
-        """Draws a step on the scenery."""
+        """Draws a step over the fixed parts."""
         plate = self._plate(step)
         self.cells.set_paths(_by_colour(plate.moved, plate.values))
         self.cracks.set_segments(crack_lines(plate.cells, plate.moved).get_segments())

@@ -1,4 +1,4 @@
-"""Faces of a solid's cells that its cracks pass over."""
+"""Faces of a solid's cells through which its cracks run."""
 
 from typing import NamedTuple
 
@@ -11,12 +11,12 @@ from solid_pictures import MOST_CELLS
 
 
 class CrackSurface(NamedTuple):
-    """Of a solid in its reference configuration."""
+    """Crack faces of a solid in its reference configuration."""
 
-    body: np.ndarray  # its outer faces, count x 4 x 3 [m]
-    faces: np.ndarray  # those of cracks, count x 4 x 3 [m]
-    damage: np.ndarray  # of the more damaged cell beside each
-    steps: np.ndarray  # in which the bond straight over each broke; 0 where it was cut before, -1 where it is not known
+    body: np.ndarray  # outer faces of the body, count x 4 x 3 [m]
+    faces: np.ndarray  # crack faces, count x 4 x 3 [m]
+    damage: np.ndarray  # of the more damaged of the two cells beside each face
+    steps: np.ndarray  # in which the bond straight across each face broke; 0: cut by a pre-crack, -1: unknown
 
     @property
     def has_grown(self) -> bool:
@@ -24,8 +24,8 @@ class CrackSurface(NamedTuple):
 
 
 def crack_surface(results, step) -> CrackSurface:
-    """Faces between cells that have been parted (separations.py); where no broken bonds are known, the outer faces of
-    the cells that are damaged as beside a crack."""
+    """Faces between cells that have been parted (separations.py). Where the broken bonds are unknown: the outer faces
+    of the cells that are as damaged as those beside a crack."""
     cells, reference, displacement, _, _, damage = cells_of(results, step, MOST_CELLS, 1.0, step.damage)
     nobody = np.zeros(len(damage), dtype=bool)
     corners = cells.corners(reference, np.zeros_like(displacement), nobody)
@@ -44,7 +44,8 @@ def crack_surface(results, step) -> CrackSurface:
 
 
 def _steps_of_faces(results, cells) -> dict:
-    """By axis and sign, of each point the step in which its bond to the next place there broke, 0 if it never did."""
+    """By axis and sign: for each point, the step in which its bond to the next point in that direction broke, 0 if
+    never."""
     bonds = results.broken_bonds()
     begin, end = bonds.ends(results.reference, results.image_kinds or ImageKinds.none(3)).transpose(1, 0, 2)
     away = np.rint((end - begin) @ np.linalg.inv(cells.edges)).astype(np.int64)

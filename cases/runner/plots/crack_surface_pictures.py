@@ -1,4 +1,4 @@
-"""Pictures of the cracks inside a solid, which is drawn as if of glass, in its reference configuration."""
+"""Pictures of the cracks inside a solid, drawn transparently in its reference configuration."""
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
@@ -12,13 +12,13 @@ from panels import step_panels
 from step_colours import STEP_COLOURS, ranks_of_steps, step_bar
 from style import PIECE, bond_words, colour_bar, heading, step_words
 
-GLASS = 0.5  # of the shades of a white body
-AZIMUTH = 52.0  # degrees: most cracks run across the body
+GLASS = 0.5  # strength of the shades of a transparent white body
+AZIMUTH = 52.0  # degrees; most cracks run across the body
 
 
 def draw_crack_surface(results, step, surface):
-    """Crack surface of a step (crack_surface.CrackSurface), coloured by the steps in which it grew or, where these are
-    not known, by damage."""
+    """Crack surface of a step (crack_surface.CrackSurface), coloured by the steps in which it grew or, if these are
+    unknown, by damage."""
     camera = Camera(results.reference, step.displacement, AZIMUTH)
     figure, axes, bar_place, _ = stage(*_frame(camera, surface), right=2.35)
     grown, colours = surface.steps > 0, _by_damage(surface)
@@ -50,7 +50,7 @@ def draw_crack_surface_sequence(results, steps):
 
 
 def _by_damage(surface) -> np.ndarray:
-    """Colours of damage, but for faces of pre-cracks."""
+    """Colours of damage; faces of pre-cracks have a colour of their own."""
     return np.where((surface.steps == 0)[:, None], to_rgba(PIECE), DAMAGE_COLOURS(surface.damage))
 
 
@@ -65,7 +65,7 @@ def _frame(camera, surface):
 
 
 def _draw(axes, camera, surface, colours) -> None:
-    """The body, and over it the faces of its cracks, which are seen from both sides."""
+    """Draws the body and over it the faces of its cracks, which are visible from both sides."""
     body = surface.body[normals(surface.body) @ camera.towards > 0.0]
     body = body[camera.far_to_near(body)]
     glass = lit(np.ones((len(body), 4)), body, camera)

@@ -1,4 +1,4 @@
-"""Picture of what loads the tips of cracks: J and energy release rates, stress intensity factors."""
+"""Picture of the crack-tip quantities: J, energy release rates and stress intensity factors."""
 
 import numpy as np
 
@@ -16,13 +16,14 @@ def _column(results, name: str) -> np.ndarray:
 
 
 def crack_tips(results) -> list[str]:
-    """Names of the tips that the history tells of."""
+    """Names of the tips that have columns in the history."""
     names = [str(tip.get("name")) for tip in results.tables("crack_tip")]
     return [name for name in names if len(_column(results, f"{name}_J"))]
 
 
 def draw_crack_tips(results):
-    """J with its spread over the ring, and G, above; the factors below. Over the load factor, or steps if it turns back."""
+    """J with its spread over the ring and G above, stress intensity factors below; over the load factor, or over the
+    steps if the load factor turns back."""
     load = _column(results, "load_factor")
     grows = (np.diff(load) >= 0.0).all()
     place = load if grows else np.arange(1.0, len(load) + 1)

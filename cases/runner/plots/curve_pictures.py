@@ -1,4 +1,4 @@
-"""Picture of the reactions of a run against load factor and displacement."""
+"""Picture of the reactions of a run over load factor and displacement."""
 
 from dataclasses import dataclass
 
@@ -6,12 +6,12 @@ import numpy as np
 
 from style import FORCES, GHOST, INK, LENGTHS, LINES, WARNING, heading, load_words, new_figure, number, unit_for
 
-SMALL = 1e-6  # share of the largest reaction below which one is zero
-ALIKE = 0.02  # share by which reactions of two supports may differ and are still drawn as one
-MOST_VALUES_READ = 20_000_000  # of displacements, to find how far the supports moved
+SMALL = 1e-6  # share of the largest reaction below which a reaction counts as zero
+ALIKE = 0.02  # largest relative difference of the reactions of two supports that are drawn as one
+MOST_VALUES_READ = 20_000_000  # limit on the displacement values read to find the motion of the supports
 AXES = "xyz"
 MARKERS = "osD^vP"
-HAND_OVERS = (  # actions of decisions.csv, words, colour and dashes
+HAND_OVERS = (  # actions of decisions.csv, label, colour and dashes
     ("hand over to relaxation", "hand-over to relaxation", "#b58a1b", (0, (5, 2))),
     ("hand back to newton", "hand-back to Newton's method", "#7a5aa6", (0, (1, 2))),
 )
@@ -19,14 +19,14 @@ HAND_OVERS = (  # actions of decisions.csv, words, colour and dashes
 
 @dataclass
 class Reaction:
-    """A component of a support set's reaction, turned so that its largest value is positive."""
+    """A component of a support set's reaction, with the sign that makes its largest value positive."""
 
     name: str  # of the set
     axis: int
-    sign: float  # by which it was turned
+    sign: float  # sign that it was multiplied by
     values: np.ndarray  # at the accepted steps [N]
-    others: list[str]  # words for the supports that have the same or the opposite reaction
-    is_constraint: bool = False  # whose one force has no direction
+    others: list[str]  # labels of the supports that have the same or the opposite reaction
+    is_constraint: bool = False  # a constraint's reaction is one force without direction
 
     @property
     def label(self) -> str:
@@ -37,11 +37,11 @@ class Reaction:
 
 @dataclass
 class Abscissa:
-    """A displacement that the reactions are drawn over."""
+    """A displacement for the abscissa of the reactions."""
 
     label: str  # without unit
     values: np.ndarray  # at the accepted steps [m]
-    of_set: str | None  # the support that it is the motion of: only its reaction belongs to it
+    of_set: str | None  # the support whose displacement it is: only that support's reaction is drawn over it
 
 
 # ------------------------------------------------------------------------------ load and displacement
@@ -50,8 +50,8 @@ class Abscissa:
 def draw_load_displacement(results):
     """Reactions of the support sets over the load factor, and over a displacement if one is known.
 
-    Of supports with the same or opposite reactions one is drawn. Once there is damage, also how the steps
-    were found, the peak, and the hand-overs between the solvers.
+    Supports with equal or opposite reactions share one curve. Once there is damage, the picture also shows how the
+    steps were found, the peak, and the switches between the solvers.
     """
     load = results.numbers("load_factor")
     curves = reactions(results)
@@ -91,15 +91,16 @@ def draw_load_displacement(results):
 
 
 def controlled(results) -> np.ndarray | None:
-    """The displacement that a control lets grow while it finds the loads, at the accepted steps [m]."""
+    """The displacement that a control increases while it finds the loads, at the accepted steps [m]."""
     values = results.numbers("control")
     return values if values is not None and np.abs(values).max(initial=0.0) > 0.0 else None
 
 
 def _what_grows(results, load, control) -> tuple[np.ndarray, str, str]:
-    """Values, label and words for one value of what the run lets grow: load factor, time, or what is controlled.
+    """Values, label and words for the quantity that the run increases: load factor, time, or the controlled
+    displacement.
 
-    Where loads are found, a reaction over the load factor is a straight line of the load over itself.
+    Where loads are found, a reaction over the load factor would be a straight line of the load over itself.
     """
     if control is not None:
         unit, size = unit_for(np.abs(control).max(), LENGTHS)
@@ -112,7 +113,7 @@ def _what_grows(results, load, control) -> tuple[np.ndarray, str, str]:
 def reactions(results) -> list[Reaction]:
     """The dominating component of every support set's reaction, without those that are zero.
 
-    Supports whose reactions are alike or opposite are told by the one that is moved.
+    Supports with equal or opposite reactions are represented by the one that is moved.
     """
     found = []
     constraints = {str(entry.get("name")) for entry in results.tables("constraint")}
@@ -140,7 +141,7 @@ def reactions(results) -> list[Reaction]:
 
 
 def support_sets(results) -> list[str]:
-    """Names of the sets that the history has reactions of."""
+    """Names of the sets whose reactions are in the history."""
     return [column.partition(":")[2] for column in results.history if column.startswith("reaction_x:")]
 
 
@@ -151,7 +152,7 @@ def has_reactions(results) -> bool:
 
 
 def driven_components(results) -> list[tuple[str, int]]:
-    """Sets and components whose displacement the case prescribes and lets grow with the load."""
+    """Sets and components whose displacement the case prescribes and increases with the load."""
     return _varying(results, "support", "displacement")
 
 
@@ -172,10 +173,10 @@ def _varying(results, table: str, *keys: str) -> list[tuple[str, int]]:
 def find_abscissa(results, curves: list[Reaction]) -> Abscissa | None:
     """The displacement to draw over; None if none is known.
 
-    That of the driven support which has the largest reaction, in the component in which it is driven: from a
-    probe of its displacement, else from the fields. If loads drive the body, a probe of the loaded set in the
-    component of the load, else any probe of a displacement. The case tells what is driven; without that, the
-    support that moves most.
+    It is the displacement of the driven support with the largest reaction, in its driven component: from a probe of
+    it, else from the fields. If loads drive the body: a probe of the loaded set in the component of the load, else
+    any probe of a displacement. The case says which support is driven; without it, the support that moves most is
+    used.
     """
     shown = {(curve.name, curve.axis) for curve in curves}
     driven = driven_components(results)
@@ -198,7 +199,7 @@ def find_abscissa(results, curves: list[Reaction]) -> Abscissa | None:
 
 
 def _between_grips(results, driven, name: str, axis: int) -> tuple[str, np.ndarray] | None:
-    """By how much more a driven set moves than another one that is driven the other way: words and values."""
+    """Displacement of a driven set relative to another set that is driven the opposite way: words and values."""
     own = _mean_of(results, name, axis)
     for other in (other for other, along in driven if along == axis and other != name) if own else ():
         against = _mean_of(results, other, axis)
@@ -208,14 +209,15 @@ def _between_grips(results, driven, name: str, axis: int) -> tuple[str, np.ndarr
 
 
 def _turned(found: tuple[str, np.ndarray], of_set: str | None) -> Abscissa:
-    """Turned so that it grows: an axis points to the right."""
+    """Values with the sign that makes them grow, so that the axis points to the right."""
     words, values = found
     falls = values[np.argmax(np.abs(values))] < 0.0
     return Abscissa(words.format("−" if falls else ""), -values if falls else values, of_set)
 
 
 def _probe_of(results, name, axis: int) -> tuple[str, np.ndarray] | None:
-    """A probe of the displacement of a set that moves in a component: words (with a place for its sign) and values."""
+    """A probe of the displacement of a set in a component in which it moves: words (with a place for its sign) and
+    values."""
     for probe in results.tables("probe"):
         is_mean = "set" in probe and probe.get("statistic", "mean") == "mean"
         if not is_mean or probe["set"] != name or probe.get("field", "displacement") != "displacement":
@@ -228,10 +230,11 @@ def _probe_of(results, name, axis: int) -> tuple[str, np.ndarray] | None:
 
 
 def _mean_of(results, name: str, axis: int) -> tuple[str, np.ndarray] | None:
-    """Mean displacement of a set at the accepted steps if all have fields: words (with a place for its sign) and values."""
+    """Mean displacement of a set at the accepted steps if all have fields: words (with a place for its sign) and
+    values."""
     steps = [int(step) for step in results.history.get("step", [])]
     if not steps or set(steps) - set(results.step_numbers) - results.resting_steps or not len(results.sets.get(name, ())):
-        return None  # fields of some steps were not written
+        return None  # the fields of some steps were not written
     if len(steps) * results.reference.size > MOST_VALUES_READ or axis >= results.dimension:
         return None
     members = results.sets[name]
@@ -240,7 +243,7 @@ def _mean_of(results, name: str, axis: int) -> tuple[str, np.ndarray] | None:
 
 
 def abscissa_of(abscissa: Abscissa, curves: list[Reaction]):
-    """Of a displacement to draw over: label, values in its unit, the curves to draw, words for a value."""
+    """Label, values in a suitable unit, curves to draw and words for a value of a displacement to draw over."""
     shown = [curve for curve in curves if abscissa.of_set in (None, curve.name)] or curves
     length, size = unit_for(np.abs(abscissa.values).max(), LENGTHS)
     return f"{abscissa.label} [{length}]", abscissa.values / size, shown, f"at {{}} {length}"
@@ -250,10 +253,11 @@ def abscissa_of(abscissa: Abscissa, curves: list[Reaction]):
 
 
 def draw_fracture(axes, results, curves, places, size, words, all_curves):
-    """Open marks of the steps found by relaxation, lines of the hand-overs, and the peak with its value.
+    """Marks the steps found by relaxation (open marks), the switches between solvers (lines), and the peak with its
+    value.
 
     places  abscissa of the accepted steps
-    words   what is said of the peak's place, "at {} mm"
+    words   text for the place of the peak, "at {} mm"
     """
     mark = np.clip(400 / len(places), 3.5, 7)
     for line in axes.get_lines():
@@ -276,7 +280,7 @@ def draw_fracture(axes, results, curves, places, size, words, all_curves):
 
 
 def hand_overs(results, action: str) -> list[tuple[float, float]]:
-    """Step and load factor of decisions for an action; without decisions, of changes of the mode."""
+    """Step and load factor of the decisions for an action; if there are no decisions, of changes of the mode."""
     table = results.decisions
     if table.get("action"):
         decided = zip(table.get("step", []), table.get("load_factor", []), table["action"])
@@ -288,7 +292,7 @@ def hand_overs(results, action: str) -> list[tuple[float, float]]:
 
 
 def on_the_way(results, places, step: float, load: float) -> float:
-    """Abscissa of a load factor on the way to a step from the accepted one before it."""
+    """Abscissa of a load factor between a step and the accepted step before it."""
     after = min(int(np.searchsorted(results.history["step"], step)), len(places) - 1)
     loads = np.concatenate([[0.0], results.history["load_factor"]])[after : after + 2]
     ends = np.concatenate([[0.0], places])[after : after + 2]
@@ -297,7 +301,7 @@ def on_the_way(results, places, step: float, load: float) -> float:
 
 
 def _mark_peak(axes, curves, places, size, words) -> None:
-    """A ring about the largest reaction, and its value and place above all curves."""
+    """A ring around the largest reaction, and its value and place above all curves."""
     values = max((curve.values for curve in curves), key=np.max) / size
     peak = int(np.argmax(values))
     axes.plot(places[peak], values[peak], "o", markersize=13, markerfacecolor="none", markeredgecolor=WARNING,

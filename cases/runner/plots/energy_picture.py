@@ -1,16 +1,16 @@
-"""Picture of where the external work went."""
+"""Picture of the energy balance: where the external work went."""
 
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from style import ENERGIES, INK, heading, load_axis, new_figure, number, time_unit, unit_for
 
-PARTS = (  # columns of the history, words and colours, from below
+PARTS = (  # columns of the history, labels and colours, from below
     ("stored_energy", "stored", "#8fb8d4"),
     ("dissipated_energy", "dissipated by damage", "#d98a68"),
     ("drained_energy", "drained by relaxation, or released", "#c9b26a"),
 )
-MOST_BARS = 40  # steps; the known states of more lie close together
+MOST_BARS = 40  # more steps are drawn as areas, because their states lie close together
 KINETIC = ("kinetic_energy", "kinetic", "#a9c58f")  # of a motion
 
 
@@ -24,22 +24,22 @@ def _parts(results) -> tuple:
 
 
 def has_lost_energy(results) -> bool:
-    """Whether the history has energies, and some was dissipated, drained or set in motion."""
+    """Whether the history has energies, and some energy was dissipated, drained or became kinetic."""
     columns = [_column(results, name) for name in ("load_factor", "external_work", *(name for name, _, _ in _parts(results)))]
     lengths = {len(column) for column in columns}
     return len(lengths) == 1 and lengths != {0} and any(column.any() for column in columns[3:])
 
 
 def _marks(count: int, edge: str = INK) -> dict:
-    """Marks of the accepted steps: only there the energies are known."""
+    """Style of the marks at the accepted steps, the only states whose energies are known."""
     return {"marker": "o", "markersize": float(np.clip(260 / count, 2.0, 6.0)), "markerfacecolor": INK,
             "markeredgecolor": edge, "markeredgewidth": 0.5}  # fmt: skip
 
 
 def draw_energies(results):
-    """Stored, kinetic, dissipated and drained energy on top of each other, and the external work that they add up to.
+    """Stored, kinetic, dissipated and drained energy stacked, and the external work that they add up to.
 
-    Over the load factor while it only grows, or the time of a motion, else over the steps.
+    The abscissa is the load factor if it only grows, the time for a motion, else the step.
     """
     load, work = _column(results, "load_factor"), _column(results, "external_work")
     parts = [_column(results, name) for name, _, _ in _parts(results)]
@@ -57,7 +57,7 @@ def draw_energies(results):
     place = place / second
     shown = [(values, *looks) for values, (_, *looks) in zip(parts, _parts(results)) if values.any()]
     below = np.zeros_like(work)
-    # Of few steps a bar each: chords from one to the next would tell what nobody knows.
+    # Few steps get one bar each: lines between them would show values that are not known.
     fill, line = ({"step": "mid"}, {"drawstyle": "steps-mid"}) if len(place) <= MOST_BARS else ({}, {})
     for values, words, colour in shown:
         axes.fill_between(place, below, below + values, color=colour, linewidth=0.0, label=words, zorder=2, **fill)
@@ -78,7 +78,7 @@ def draw_energies(results):
     axes.set_xlim(place.min(), place.max() if place.max() > place.min() else place.min() + 1.0)
     axes.set_ylim(min(0.0, work.min()), 1.06 * max(work.max(), below.max()))
     handles, labels = axes.get_legend_handles_labels()
-    # As they lie on each other, beside what is drawn.
+    # The legend lists the parts in their stacking order, beside the axes.
     axes.legend(handles[::-1], labels[::-1], loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=12)
     words = ["where the external work went", "known at the marked steps"]
     error = _column(results, "balance_error")

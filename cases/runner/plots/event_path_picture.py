@@ -1,4 +1,5 @@
-"""Picture of a path from event to event: with its snap-backs, and as the given loads meet it."""
+"""Picture of a path from event to event (sequentially linear analysis): the snap-backs, and the response to the given
+loads."""
 
 import numpy as np
 
@@ -18,9 +19,10 @@ def _with_rest(values: np.ndarray) -> np.ndarray:
 
 
 def draw_events(results):
-    """Reaction over the displacement of the driven support, else over the load factor; beside it what avalanches release.
+    """Reaction over the displacement of the driven support, else over the load factor; beside it the energy released in
+    avalanches.
 
-    The response goes along the path while the load grows, and falls at the held load where the path snaps back.
+    The response follows the path while the load grows and drops at constant load where the path snaps back.
     """
     load, curves = results.numbers("load_factor"), reactions(results)
     on_response = results.numbers("on_response") > 0.0
@@ -57,7 +59,7 @@ def draw_events(results):
 
 
 def _draw_released(axes, label, places, released) -> None:
-    """What avalanches have released so far, under the given loads."""
+    """Energy released in avalanches so far, under the given loads."""
     unit, size = unit_for(released.max(), ENERGIES, 1.0)
     axes.plot(places, released / size, color=RESPONSE, linewidth=2.4, zorder=2)
     axes.set_xlabel(label)

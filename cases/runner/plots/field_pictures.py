@@ -15,16 +15,16 @@ from style import (
 )  # fmt: skip
 
 MOST_CELLS = 60_000  # drawn in one panel; more points are averaged over blocks
-CLIPPED_SHARE = 99.5  # percentile of the energy density at which its colours may end
-FLIGHT = 0.25  # share of the body's size that floating pieces may lie outside it in a picture
-SEAM = 0.75  # width of a cell's own edge [point]: covers the hairline between neighbours
-DAMAGE_COLOURS = LinearSegmentedColormap.from_list(  # lightness falls steadily
+CLIPPED_SHARE = 99.5  # percentile of the energy density at which its colour range may end
+FLIGHT = 0.25  # distance, as a share of the body's size, that floating pieces may lie outside it in a picture
+SEAM = 0.75  # width of a cell's own edge [point]; it covers the hairline between neighbours
+DAMAGE_COLOURS = LinearSegmentedColormap.from_list(  # lightness decreases monotonically
     "damage", ["#d9dfe5", "#f0b36a", "#d8562f", "#8c1c2b", "#2b0a18"]
 )
 
 
 def exaggeration(reference: np.ndarray, step, share: float = 0.125) -> float:
-    """Round factor that makes the largest displacement of the held body at most a share of its size."""
+    """Round factor that limits the largest displacement of the held body to a share of its size."""
     held = step.displacement if step.floating.all() else step.displacement[~step.floating]
     size = np.linalg.norm(np.ptp(reference, axis=0))
     largest = np.linalg.norm(held, axis=1).max()
@@ -36,7 +36,7 @@ def exaggeration_words(factor: float) -> str:
 
 
 def limits(values: np.ndarray) -> tuple[float, float]:
-    """Smallest and largest value, apart even if the field is constant."""
+    """Smallest and largest value, widened if the field is constant."""
     low, high = float(values.min()), float(values.max())
     if high - low <= 1e-12 * max(abs(low), abs(high)):
         low, high = min(low, 0.0), max(high, 0.0)
@@ -44,12 +44,12 @@ def limits(values: np.ndarray) -> tuple[float, float]:
 
 
 def held_values(values: np.ndarray, floating: np.ndarray) -> np.ndarray:
-    """Values of the held body alone, which set the scale; of everything if all of it floats."""
+    """Values of the held body alone, which set the scale; all values if the whole body floats."""
     return values if floating.all() else values[~floating]
 
 
 def displacement_magnitude(step):
-    """Magnitudes in a readable unit, their range from zero in the held body, and the colour bar's label."""
+    """Magnitudes in a readable unit, their range from zero to the held body's largest, and the colour bar's label."""
     magnitude = np.linalg.norm(step.displacement, axis=1)
     largest = held_values(magnitude, step.floating).max()
     unit, size = unit_for(largest, LENGTHS)
@@ -57,7 +57,7 @@ def displacement_magnitude(step):
 
 
 def beyond(values: np.ndarray, low: float, high: float) -> str:
-    """At which ends of a colour bar values lie outside its range; round-off does not count."""
+    """The ends of a colour bar at which values lie outside its range, apart from round-off."""
     slack = 1e-9 * (high - low)
     ends = (bool(values.min() < low - slack), bool(values.max() > high + slack))
     return {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[ends]
@@ -68,16 +68,16 @@ def beyond(values: np.ndarray, low: float, high: float) -> str:
 
 @dataclass
 class Plate:
-    """The cells of a deformed plate, fewer than the points if these are too many to draw."""
+    """The cells of a deformed plate; fewer than the points if these are too many to draw."""
 
     cells: Cells | CloudCells
     still: np.ndarray  # corners in the reference configuration: count x most x 2
     moved: np.ndarray  # corners after the deformation
-    floating: np.ndarray  # whether the cell belongs to a piece that has come off
-    values: np.ndarray  # what colours the cells
+    floating: np.ndarray  # whether the cell belongs to a detached piece
+    values: np.ndarray  # values that colour the cells
 
     def frame(self) -> tuple[np.ndarray, np.ndarray]:
-        """Corners of a box around the plate before and after; pieces that flew far stay outside."""
+        """Corners of a box around the plate in both configurations; pieces that flew far stay outside."""
         low, high = self.still.min(axis=(0, 1)), self.still.max(axis=(0, 1))
         air = FLIGHT * (high - low).max()
         shown = self.moved
@@ -107,7 +107,7 @@ def draw_deformed_plane(results, step):
 
 
 def draw_plane(results, step, factor, values, value_range, label, colours, words=()):
-    """Deformed plate coloured by a value per point, with more words in the heading: figure, axes, plate."""
+    """Deformed plate coloured by a value per point, with extra words in the heading: figure, axes, plate."""
     unit, size = unit_for(np.ptp(results.reference, axis=0).max(), LENGTHS)
     plate = deformed_plate(results, step, factor, values, size)
     low, high = plate.frame()
@@ -155,7 +155,7 @@ def framed(low, high, right: float = 1.75):
 
 
 def _draw_outline(axes, plate: Plate) -> None:
-    """Boundary of the reference configuration, filled faintly so that the motion is seen."""
+    """Outline of the reference configuration, filled faintly so that the motion is visible."""
     everybody = np.ones(len(plate.still), dtype=bool)
     axes.add_collection(
         LineCollection(rims(plate.cells, plate.still, everybody), colors=GHOST, linewidths=1.4, zorder=3,
@@ -166,7 +166,7 @@ def _draw_outline(axes, plate: Plate) -> None:
 
 
 def rims(cells: Cells | CloudCells, corners: np.ndarray, members: np.ndarray) -> np.ndarray:
-    """Sides between the cells that are members and what is none: count x 2 ends x 2."""
+    """Sides between member cells and the rest or the outside: count x 2 ends x 2."""
     outer = lambda other: members & ((other < 0) | ~members[other])
     return np.concatenate([corners[outer(other)][:, ends] for ends, other, _ in cells.sides()])
 
@@ -178,7 +178,7 @@ def crack_lines(cells: Cells | CloudCells, corners: np.ndarray, colour: str = IN
 
 
 def mark_pieces(figure, axes, step, plate: Plate) -> None:
-    """Hatches and outlines pieces that have come off, and says how many they are."""
+    """Hatches and outlines detached pieces, and prints their number."""
     if not plate.floating.any():
         return
     axes.add_collection(
@@ -195,7 +195,7 @@ def mark_pieces(figure, axes, step, plate: Plate) -> None:
 
 
 def displacement_panels(displacement, floating):
-    """Values, label, title and colours of each component, in a unit of its own; 0 where only round-off moves."""
+    """Values, label, title and colours of each component in its own unit; 0 for components that are round-off."""
     largest = np.abs(held_values(displacement, floating)).max()
     panels = []
     for axis, values in zip("xy", displacement.T):
@@ -257,7 +257,7 @@ def draw_plane_fields(results, step):
 
 
 def _norm(values: np.ndarray, colours: str | None):
-    """Range and map of colours: diverging about zero if the sign changes; peaks of a few points cut off."""
+    """Colour range and map: diverging about zero if the sign changes; peaks of a few points are cut off."""
     low, high = limits(values)
     if colours is None:
         largest = max(abs(low), abs(high))

@@ -16,7 +16,7 @@ from style import (
     GHOST, INK, LENGTHS, PIECE, bond_words, heading, number, time_unit, unit_for,
 )  # fmt: skip
 
-OPENING = 0.05  # largest displacement over the body's size: a crack is seen to open, the body keeps its shape
+OPENING = 0.05  # largest displacement over the body's size: cracks open visibly and the body keeps its shape
 MOST_BONDS = 150_000  # more broken bonds are thinned out
 POINT_COLOUR = "#d8dde2"
 
@@ -52,9 +52,9 @@ def draw_damage_sequence(results, steps):
 
 
 def draw_broken_bonds(results, broken):
-    """Bonds that broke as lines between their points in the reference configuration: the cracks' paths.
+    """Broken bonds as lines between their points in the reference configuration: the cracks' paths.
 
-    Those across a plane of symmetry or a period go to where the image stands.
+    Bonds across a plane of symmetry or a period end at the image.
     """
     steps, kinds = broken.steps, results.image_kinds
     ends = broken.ends(results.reference, kinds or ImageKinds.none(2))
@@ -86,7 +86,7 @@ def draw_broken_bonds(results, broken):
     axes.add_collection(lines, autolim=False)
     axes.set_xlabel(f"x [{unit}]")
     axes.set_ylabel(f"y [{unit}]")
-    if len(distinct) > 1:  # one colour needs no bar
+    if len(distinct) > 1:  # a single colour needs no bar
         step_bar(figure, bar_place, results, distinct, norm)
     first, last = (results.in_history(int(step), "load_factor") for step in (steps[0], steps[-1]))
     words = ["broken bonds in the reference configuration", f"{number(len(steps))} bond{'s' * (len(steps) != 1)}"]

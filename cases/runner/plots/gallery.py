@@ -1,7 +1,7 @@
-"""The folder of pictures: what is written there, and what may be removed.
+"""The folder of pictures: which files are written there, and which may be removed.
 
-`plots/.pictures` lists the pictures that were drawn, one name a line. Only these are ever removed, by the
-next drawing and by the next run. Nothing is followed that is a link: pictures go into the folder itself.
+`plots/.pictures` lists the pictures that were drawn, one name per line. Only these are ever removed, by the
+next drawing and by the next run. Links are never followed: pictures go into the folder itself.
 """
 
 import os
@@ -11,17 +11,17 @@ from pathlib import Path
 
 LIST = ".pictures"
 PICTURE_NAME = re.compile(r"[A-Za-z0-9_]+\.(png|pdf|svg|gif)")
-MOST_BYTES = 100_000  # of the list
+MOST_BYTES = 100_000  # size limit of the list
 
 
 class NoPlace(Exception):
-    """`plots` is something else than a folder, or a picture's place is taken."""
+    """`plots` is not a folder, or a picture's name is taken by another file."""
 
 
 class Gallery:
-    """The folder `plots` of a results folder, made if there is none.
+    """The folder `plots` of a results folder; it is created if missing.
 
-    Raises NoPlace if the folder or its list is a link or something else, OSError if it can't be written.
+    Raises NoPlace if the folder or its list is a link or another kind of file, OSError if it can't be written.
     """
 
     def __init__(self, results: Path):
@@ -54,7 +54,7 @@ class Gallery:
         return list(dict.fromkeys(name for name in names if PICTURE_NAME.fullmatch(name)))
 
     def remove_earlier(self, endings: tuple[str, ...]) -> None:
-        """Removes the pictures of the list that end like this; not those that have become links."""
+        """Removes the listed pictures whose names end like this, except those that have become links."""
         kept = []
         for name in self.names:
             if not name.endswith(endings):
@@ -69,25 +69,25 @@ class Gallery:
         self._write(LIST, self._text())
 
     def add(self, name: str, content: bytes) -> None:
-        """Writes a picture in place of one that was drawn before, and lists it.
+        """Writes a picture in place of an earlier drawing, and lists it.
 
-        Raises NoPlace if a file has that name that is not on the list; a link is replaced.
+        Raises NoPlace if an unlisted file has that name; a link is replaced.
         """
         if name not in self.names:
-            self.names = list(dict.fromkeys([*self._listed(), *self.names]))  # another plot may be drawing here, too
+            self.names = list(dict.fromkeys([*self._listed(), *self.names]))  # another plot may be at work here
         if name not in self.names:
             if os.path.lexists(self.path / name) and not os.path.islink(self.path / name):
                 raise NoPlace(f"{self.path / name} was not drawn by this command and would be replaced; move it "
                               "to have the picture")  # fmt: skip
             self.names.append(name)
-            self._write(LIST, self._text())  # first: what is drawn is always on the list
+            self._write(LIST, self._text())  # before the picture, so that every picture is on the list
         self._write(name, content)
 
     def _text(self) -> bytes:
         return "".join(name + "\n" for name in self.names).encode()
 
     def _write(self, name: str, content: bytes) -> None:
-        """A complete new file in one rename, which replaces a link and leaves what it leads to alone."""
+        """Writes a complete new file in one rename, which replaces a link and leaves its target alone."""
         unfinished = f".{name}.tmp"
         try:
             os.unlink(unfinished, dir_fd=self._folder)

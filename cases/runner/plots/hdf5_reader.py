@@ -1,8 +1,8 @@
-"""Reads datasets of a results file that may be damaged, or made to do harm.
+"""Reads datasets of a results file that may be damaged or malicious.
 
-HDF5 follows links without end, opens pipes, and makes gigabytes of a file of some bytes. So nothing is
-read before it is known that it is a plain file, that its links are those that a run makes (parts/*.h5),
-and that an array is no larger than its file can hold.
+HDF5 follows links without end, opens pipes, and expands files of a few bytes to gigabytes. So nothing is
+read before these checks: it is a plain file, its links are those that a run makes (parts/*.h5), and an array is
+no larger than its file can hold.
 """
 
 import contextlib
@@ -11,24 +11,24 @@ import re
 import stat
 from pathlib import Path
 
-# A results file on a read-only or shared file system, or of a run still going, can be read unlocked.
+# Without locking, a results file can be read on a read-only or shared file system, or while a run writes it.
 os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")
 
 import h5py
 import numpy as np
 
 PARTS = re.compile(r"parts/(points|\d{6,})\.h5")
-MOST_EXPANSION = 50  # bytes of an array per byte of its file, for files that somebody has compressed
-LEAST_FILE = 200_000  # bytes that every file is taken for at least
-MOST_TEXT = 16 << 20  # bytes of a text
+MOST_EXPANSION = 50  # bytes of an array per byte of its file, which allows for compressed files
+LEAST_FILE = 200_000  # smallest file size that the limit on expansion assumes [byte]
+MOST_TEXT = 16 << 20  # limit on the bytes of a text
 
 
 class Damaged(Exception):
-    """Something that can't be read, named."""
+    """An object that can't be read, with its name."""
 
 
 def require_plain_file(path: Path) -> int:
-    """Size of a regular file [byte]. Raises Damaged for anything else: reading a pipe may never end."""
+    """Size of a regular file [byte]. Raises Damaged for any other kind: reading a pipe may never end."""
     try:
         status = os.stat(path)
     except OSError as error:
@@ -39,10 +39,10 @@ def require_plain_file(path: Path) -> int:
 
 
 class Hdf5Reader(contextlib.AbstractContextManager):
-    """A results file that is open for reading; `path` is "points/volume" and the like, "" the root.
+    """A results file open for reading; `path` is "points/volume" and the like, "" is the root.
 
-    A link in a group of the file's root may lead to a file in parts/, as in a run that is going; all other
-    objects must be where they are named.
+    A link in a group at the file's root may lead to a file in parts/, as while a run is going; all other
+    objects must be stored where they are named.
     """
 
     def __init__(self, folder: Path):
@@ -70,7 +70,7 @@ class Hdf5Reader(contextlib.AbstractContextManager):
         return sorted(group) if isinstance(group, h5py.Group) else []
 
     def attribute(self, path: str, name: str, default=None):
-        """An attribute of an object, or the default if it can't be had."""
+        """An attribute of an object, or the default if it can't be read."""
         try:
             return self._object(path).attrs.get(name, default)
         except (KeyError, OSError, TypeError, ValueError):
@@ -85,7 +85,7 @@ class Hdf5Reader(contextlib.AbstractContextManager):
         return text
 
     def numbers(self, path: str, shape: tuple | None = None, kind=float) -> np.ndarray:
-        """An array of numbers. Raises KeyError if there is none, Damaged if it isn't what it should be."""
+        """An array of numbers. Raises KeyError if there is none, Damaged if its type or size is wrong."""
         dataset = self._dataset(path)
         if dataset.dtype.kind not in "fiub":
             raise Damaged(f"/{path} holds no numbers but {dataset.dtype}")
@@ -111,7 +111,7 @@ class Hdf5Reader(contextlib.AbstractContextManager):
         return self._follow(self._root, path, may_leave=True)
 
     def _follow(self, here, path: str, may_leave: bool):
-        """Goes from object to object, by links that lead nowhere else. Raises KeyError where one is missing."""
+        """Goes from object to object and follows only the allowed links. Raises KeyError where one is missing."""
         gone = ""
         for name in filter(None, path.split("/")):
             gone += "/" + name

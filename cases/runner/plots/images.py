@@ -1,4 +1,4 @@
-"""Images of a body's points beyond planes of symmetry and periods, and the bonds that reach them."""
+"""Images of a body's points beyond planes of symmetry and periods, and the bonds that end at them."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 class ImageKinds(NamedTuple):
-    """How images follow their sources: of kind k, from 1, that of X stands at mirror[k-1] X + shift[k-1]."""
+    """Maps points to their images: an image of kind k >= 1 of the point X is at mirror[k-1] X + shift[k-1]."""
 
     mirror: np.ndarray  # kinds x dimension
     shift: np.ndarray  # kinds x dimension [m]
@@ -16,13 +16,13 @@ class ImageKinds(NamedTuple):
         return ImageKinds(np.zeros((0, dimension)), np.zeros((0, dimension)))
 
     def places(self, sources: np.ndarray, kind: np.ndarray) -> np.ndarray:
-        """Of images of each a kind (0: the source itself) of as many sources (count x dimension)."""
+        """Positions of images, given the kind (0: the source itself) and the source (count x dimension) of each."""
         mirror = np.concatenate([np.ones_like(self.mirror, shape=(1, sources.shape[1])), self.mirror])
         shift = np.concatenate([np.zeros_like(self.shift, shape=(1, sources.shape[1])), self.shift])
         return mirror[kind] * sources + shift[kind]
 
     def all_places(self, sources: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """Of the images of all kinds of all sources that stand within a box, count x dimension."""
+        """Images of all kinds of all sources within a box, count x dimension."""
         found = [np.zeros((0, sources.shape[1]))]
         for mirror, shift in zip(self.mirror, self.shift):
             of_kind = mirror * sources + shift
@@ -34,24 +34,24 @@ class BrokenBonds(NamedTuple):
     """Bonds that broke, in the order of breaking."""
 
     points: np.ndarray  # count x 2
-    image: np.ndarray  # kind of images of the second point that the bond ends at; 0: at itself
+    image: np.ndarray  # image kind of the second point at which the bond ends; 0: the point itself
     steps: np.ndarray  # in which they broke
 
     def until(self, step: int) -> "BrokenBonds":
         return BrokenBonds(*(values[self.steps <= step] for values in self))
 
     def inner(self) -> np.ndarray:
-        """Points of those that reach no image, count x 2."""
+        """Points of the bonds that end at no image, count x 2."""
         return self.points[self.image == 0]
 
     def ends(self, reference: np.ndarray, kinds: ImageKinds) -> np.ndarray:
-        """Places of both ends, count x 2 x dimension."""
+        """Positions of both ends, count x 2 x dimension."""
         first, second = self.points.T
         return np.stack([reference[first], kinds.places(reference[second], self.image)], axis=1)
 
 
 def on_the_body(cracks: list, kinds: ImageKinds, low: np.ndarray, high: np.ndarray) -> list:
-    """Cracks (vertices x dimension) and, of their images, those that may touch a box, each once."""
+    """Cracks (vertices x dimension) and those of their images that may touch a box, each once."""
     found = list(cracks)
     for crack in cracks:
         for mirror, shift in zip(kinds.mirror, kinds.shift):
@@ -64,5 +64,5 @@ def on_the_body(cracks: list, kinds: ImageKinds, low: np.ndarray, high: np.ndarr
 
 
 def _is_same(one: np.ndarray, other: np.ndarray, size: float) -> bool:
-    """Whether two lists of vertices are the same, be it backwards."""
+    """Whether two lists of vertices are equal, also in reverse order."""
     return any(np.abs(one - order).max() <= size for order in (other, other[::-1]))

@@ -1,10 +1,10 @@
-"""Pictures of a plate in motion: how fast its points are, and its energy density over decades, as in [GPMB] fig. 12."""
+"""Pictures of a plate in motion: speeds of its points, and logarithmic energy density, as in [GPMB] fig. 12."""
 
 import numpy as np
 
 from field_pictures import CLIPPED_SHARE, draw_plane, held_values
 
-DECADES = 3.5  # below the largest energy density that its colours span
+DECADES = 3.5  # range of the colours below the largest energy density
 
 
 def draw_motion(results, step):
@@ -17,7 +17,7 @@ def draw_motion(results, step):
     energy = step.energy_density
     largest = float(np.percentile(held_values(energy, step.floating), CLIPPED_SHARE))
     if largest > 0.0:
-        top = np.ceil(2.0 * np.log10(largest)) / 2.0  # to the next half decade
+        top = np.ceil(2.0 * np.log10(largest)) / 2.0  # rounded up to half a decade
         decades = np.log10(np.maximum(energy, 10.0 ** (top - 2 * DECADES)))
         label = "log₁₀ of the energy density in J/m³"
         yield "energy_decades", draw_plane(results, step, 1.0, decades, (top - DECADES, top), label, "turbo")[0]

@@ -1,20 +1,20 @@
-"""The outline of a plane body as its case gives it: shapes that are added and subtracted."""
+"""The outline of a plane body from its case: shapes that are added and subtracted."""
 
 import numpy as np
 
 from crossings import inside_polygon
 
-BESIDE = 0.02  # of a spacing: beside an outline, farther than its pieces are from a circle
-MOST_PIECES = 20_000  # of the boundary of a shape
-FARTHEST = 1e9  # spacings that a corner of a shape may lie from the origin
-KINK = np.radians(30.0)  # from which on a turn of a boundary is a corner
-AROUND = 3.0  # spacings: as far around the points an outline matters
+BESIDE = 0.02  # distance of test points from an outline, in spacings; larger than the error of the polygon for a circle
+MOST_PIECES = 20_000  # limit per shape's boundary
+FARTHEST = 1e9  # limit on the distance of a shape's corners from the origin, in spacings
+KINK = np.radians(30.0)  # smallest turn of a boundary that counts as a corner
+AROUND = 3.0  # margin around the points within which an outline matters, in spacings
 
 
 class Shape:
-    """A polygon, or a disk, whose boundary is a polygon of short sides; added or taken away.
+    """A polygon, or a disk as a polygon of short sides; added or subtracted.
 
-    window  corners of a box: what a box has outside it does not matter
+    window  corners of a box outside which the shape does not matter
     """
 
     def __init__(self, table: dict, spacing: float, window: tuple[np.ndarray, np.ndarray]):
@@ -35,19 +35,19 @@ class Shape:
             raise ValueError(kind)
 
     def holds(self, places: np.ndarray) -> np.ndarray:
-        """Whether places (count x 2) lie in it."""
+        """Whether positions (count x 2) lie inside."""
         if self._disk:
             return np.linalg.norm(places - self._disk[0], axis=1) <= self._disk[1]
         return inside_polygon(places, self.vertices)
 
     def corners(self) -> np.ndarray:
-        """Of its vertices those where the boundary turns sharply, count x 2."""
+        """Vertices at which the boundary turns sharply, count x 2."""
         along = np.roll(self.vertices, -1, axis=0) - self.vertices
         along /= np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
         return self.vertices[(along * np.roll(along, 1, axis=0)).sum(axis=1) < np.cos(KINK)]
 
     def pieces(self, spacing: float) -> np.ndarray:
-        """Its boundary in pieces of at most about half a spacing, count x 2 ends x 2."""
+        """The boundary in pieces of at most about half a spacing, count x 2 ends x 2."""
         begin, end = self.vertices, np.roll(self.vertices, -1, axis=0)
         length = np.linalg.norm(end - begin, axis=1)
         count = np.ceil(length / max(0.5 * spacing, length.sum() / MOST_PIECES)).astype(int)
@@ -59,10 +59,10 @@ class Shape:
 
 
 class Outline:
-    """Where a body ends.
+    """The boundary of a body.
 
     pieces   of its outline, count x 2 ends x 2 [m]
-    corners  where it has a kink, count x 2 [m]
+    corners  its kinks, count x 2 [m]
     """
 
     def __init__(self, shapes: list[Shape], spacing: float):
@@ -77,14 +77,14 @@ class Outline:
         self.corners = self.corners[np.array(apart) < BESIDE * spacing]
 
     def holds(self, places: np.ndarray) -> np.ndarray:
-        """Whether places (count x 2) lie in the body."""
+        """Whether positions (count x 2) lie in the body."""
         held = np.zeros(len(places), dtype=bool)
         for shape in self._shapes:
             held[shape.holds(places)] = shape.adds
         return held
 
     def nearest(self, places: np.ndarray, most) -> np.ndarray:
-        """The nearest places on the outline; those that are farther than `most` from it stay."""
+        """Nearest points of the outline; positions farther away than `most` stay."""
         begin, end = self.pieces.transpose(1, 0, 2)
         found = places.copy()
         for part in np.array_split(np.arange(len(places)), 1 + len(places) // 500):
@@ -96,7 +96,8 @@ class Outline:
         return np.where((np.linalg.norm(found - places, axis=1) <= most)[:, None], found, places)
 
     def with_corners(self, places: np.ndarray, most: float) -> np.ndarray:
-        """Places of which the nearest to each corner of the outline has moved there, if it is no farther than `most`."""
+        """Positions after moving the nearest one to each corner of the outline onto it, if it is no farther than
+        `most`."""
         found = places.copy()
         for corner in self.corners if len(places) else []:
             distance = np.linalg.norm(found - corner, axis=1)
@@ -106,7 +107,7 @@ class Outline:
 
 
 def read_outline(tables: list, spacing: float, points: np.ndarray) -> Outline | None:
-    """The outline of the tables lattice.shape, near the points; nothing if there are none, or they make no sense."""
+    """The outline from the tables lattice.shape near the points; None if there are no shapes or they are invalid."""
     window = points.min(axis=0) - AROUND * spacing, points.max(axis=0) + AROUND * spacing
     try:
         outline = Outline([Shape(table, spacing, window) for table in tables], spacing)

@@ -1,16 +1,16 @@
-"""Panels of the steps of a sequence on one page, with one colour bar."""
+"""Panels for the steps of a sequence on one page, with one colour bar."""
 
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from style import colour_bar, heading, new_figure, step_words
 
-WIDTH = 14.6  # of all panels in a row [inch]
+WIDTH = 14.6  # total of a row of panels [inch]
 TITLE = 0.45  # height above a panel [inch]
 
 
 def step_panels(results, steps, low, high, colours, words):
-    """A figure and the axes of a panel per step, each of which shows the same box in true proportion."""
+    """A figure and one axes per step; all axes show the same box in true proportion."""
     aspect = (high - low)[1] / (high - low)[0]
     columns = number_of_columns(len(steps), aspect)
     rows = -(-len(steps) // columns)
@@ -35,6 +35,6 @@ def step_panels(results, steps, low, high, colours, words):
 
 
 def number_of_columns(count: int, aspect: float) -> int:
-    """Of panels: as few as the height of a page allows, of which at most a third of the last row is empty."""
+    """Number of columns: as few as the height of a page allows, with at most a third of the last row empty."""
     fits = lambda columns: -(-count // columns) * (WIDTH / columns * aspect + TITLE) <= 11.0
     return next((columns for columns in range(1, count) if fits(columns) and -count % columns <= columns / 3), count)

@@ -1,4 +1,4 @@
-"""Picture of a path whose loads were found: load factor and reaction over displacements."""
+"""Picture of an equilibrium path whose loads were found: load factor and reaction over displacements."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ def has_found_loads(results) -> bool:
 
 
 def _probes(results):
-    """Label and values of every component of a displacement that is probed, turned so that it grows."""
+    """Label and values of every probed displacement component, with the sign that makes it grow."""
     for probe in results.tables("probe"):
         if probe.get("field", "displacement") not in ("displacement", "opening"):
             continue
@@ -30,7 +30,7 @@ def _probes(results):
 
 @dataclass
 class Panel:
-    """What is drawn over a displacement [m]."""
+    """Displacements for the abscissa [m]."""
 
     over: str
     places: np.ndarray
@@ -39,7 +39,7 @@ class Panel:
 
 
 def _panels(results):
-    """The load factor over what is controlled or probed; under a control also the largest reaction over it."""
+    """The load factor over the controlled or probed displacement; under a control also the largest reaction over it."""
     control = results.numbers("control")
     words, of_load = load_axis(results.numbers("load_factor"))
     load = results.numbers("load_factor") / of_load

@@ -1,9 +1,8 @@
 """Draws the pictures of a results folder: ./peristat plot DIR -> DIR/plots/*.png, crack.gif
 
-Exit code 0 when everything that can be drawn is drawn (what is missing is said), 2 when DIR is no
-results folder, is damaged, or its plots are a link or hold a picture of somebody else, 5 when they can't be
-written, 1 for a fault of the program. Needs numpy, h5py and
-matplotlib; no display.
+Exit codes: 0 if every possible picture is drawn (missing data is reported), 2 if DIR is no results folder, is
+damaged, or its plots are a link or hold an unlisted picture, 5 if the pictures can't be written, 1 for a fault of
+the program. Needs numpy, h5py and matplotlib, and no display.
 """
 
 import argparse
@@ -18,13 +17,13 @@ from results_folder import NotAResultsFolder, ResultsFolder, read_results_folder
 
 DONE, BUG, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 1, 2, 5, 130
 FORMATS = ("png", "pdf", "svg")
-DOTS_PER_INCH = {"png": 100, "pdf": 200, "svg": 200}  # of what a vector picture holds as an image
-MOST_VECTORS = 3000  # shapes of one kind that a vector picture holds as such
+DOTS_PER_INCH = {"png": 100, "pdf": 200, "svg": 200}  # resolution of images within vector pictures
+MOST_VECTORS = 3000  # number of shapes of one kind above which a vector picture stores them as an image
 MOST_FRAMES = 6
 
 
 def draw_all(results: ResultsFolder):
-    """Name and figure of every picture that the results allow, one after the other."""
+    """Yields name and figure of every picture that the results allow."""
     if results.step_numbers:
         yield from _draw_fields(results)
     from curve_pictures import draw_load_displacement, has_reactions
@@ -99,7 +98,7 @@ def _draw_fields(results: ResultsFolder):
 
 
 def _draw_fracture(results: ResultsFolder, step):
-    """Pictures of a plate that has damage or broken bonds."""
+    """Pictures of a plate with damage or broken bonds."""
     broken = results.broken_bonds()
     damaged = step.damage.max() > 0.0
     if not (damaged or len(broken.steps)):
@@ -131,9 +130,9 @@ def _draw_crack_surface(results: ResultsFolder, step):
 
 
 def chosen_frames(results: ResultsFolder) -> list[int]:
-    """Up to six steps between which damage grows alike: no frame is spent on steps in which nothing breaks.
+    """Up to six steps with about equal growth of damage in between: no panel is spent on steps in which nothing breaks.
 
-    The first and the last of the steps with damage are among them, and the one before the largest burst.
+    They include the first and the last step with damage, and the one before the largest burst.
     """
     numbers = [number for number in results.step_numbers if results.has_damage(number)]
     grown = [_damage_done(results, number) for number in numbers]
@@ -151,13 +150,13 @@ def chosen_frames(results: ResultsFolder) -> list[int]:
 
 
 def _damage_done(results: ResultsFolder, number: int) -> float | None:
-    """What grows with damage, at a step: broken bonds, or dissipated energy where none has broken."""
+    """A measure of damage at a step: broken bonds, or dissipated energy if no bond has broken."""
     bonds, energy = (results.in_history(number, name) for name in ("broken_bonds", "dissipated_energy"))
     return bonds if any(value for value in results.history.get("broken_bonds", []) if value) else energy
 
 
 def animate(results: ResultsFolder) -> bytes | None:
-    """The animation of a plate's damage where there is one."""
+    """The animation of a plate's damage, if there is any."""
     numbers = results.step_numbers
     if results.dimension != 2 or len(numbers) < 2 or not results.has_damage(numbers[-1]):
         return None
@@ -170,7 +169,7 @@ def animate(results: ResultsFolder) -> bytes | None:
 
 
 def encoded(figure, ending: str) -> bytes:
-    """A figure as a file; in a vector picture large heaps of shapes are images, texts and lines are not."""
+    """A figure as a file; a vector picture holds large numbers of shapes as images, but texts and lines as vectors."""
     if ending != "png":
         for axes in figure.axes:
             for heap in axes.collections:
@@ -182,7 +181,7 @@ def encoded(figure, ending: str) -> bytes:
 
 
 def draw(directory: Path, ending: str) -> None:
-    """Draws everything and says what was drawn."""
+    """Draws everything and prints what was drawn."""
     results = read_results_folder(directory)
     gallery = Gallery(directory)
     gallery.remove_earlier((f".{ending}", ".gif"))
@@ -224,10 +223,10 @@ def main(words: list[str]) -> int:
         return _told(str(error), WRONG_INPUT)
     except OSError as error:
         return _told(f"{arguments.directory}: {error}", MACHINE_FAILED)
-    except NameError:  # no content of a folder makes one
+    except NameError:  # a fault of the program: no folder's content causes it
         traceback.print_exc()
         return _told(f"{arguments.directory}: a fault of the program, which is worth a report", BUG)
-    except Exception as error:  # what nobody has thought of in a folder that somebody has changed
+    except Exception as error:  # an unforeseen change in a folder that somebody has edited
         return _told(f"{arguments.directory}: can't be drawn ({type(error).__name__}: {error})", WRONG_INPUT)
     return DONE
 
@@ -239,7 +238,7 @@ def _told(sentence: str, code: int) -> int:
 
 
 def guarded(words: list[str]) -> int:
-    """Runs `main` in a process of its own: the HDF5 library may crash on a damaged file."""
+    """Runs `main` in a process of its own, because the HDF5 library may crash on a damaged file."""
     child = os.fork()
     if child == 0:
         try:
@@ -247,12 +246,12 @@ def guarded(words: list[str]) -> int:
             sys.stdout.flush()
         except KeyboardInterrupt:
             code = INTERRUPTED
-        except OSError:  # nobody reads what is said
+        except OSError:  # nobody reads the output
             code = MACHINE_FAILED
         os._exit(code)
     try:
         code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-    except KeyboardInterrupt:  # of the terminal: the child has got it, too
+    except KeyboardInterrupt:  # from the terminal; the child has received it, too
         return INTERRUPTED
     return code if code >= 0 else _told(f"reading {' '.join(words)} ended with signal {-code}: it is damaged", WRONG_INPUT)
 

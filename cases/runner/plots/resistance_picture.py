@@ -1,11 +1,11 @@
-"""Picture of R-curves: what a crack has taken per area as it grew."""
+"""Picture of R-curves: dissipated energy per crack area as the crack grew."""
 
 import numpy as np
 
 from style import GHOST, INK, LENGTHS, LINES, heading, new_figure, number, scaled, unit_for
 
 RELEASES = scaled("J/m²")
-PLACES = {"crack_length": "crack length", "crack_area": "crack area"}  # what an R-curve may be drawn over
+PLACES = {"crack_length": "crack length", "crack_area": "crack area"}  # probes that an R-curve may be drawn over
 AREAS = (("m²", 1.0), ("cm²", 1e-4), ("mm²", 1e-6))
 
 
@@ -15,13 +15,13 @@ def _probes(results, field: str) -> list[dict]:
 
 
 def _place(results, probe: dict) -> dict | None:
-    """The probe to draw a resistance over: of the same set where there is one, a length before an area."""
+    """The probe to draw a resistance over: one of the same set if possible, a length before an area."""
     found = [other for field in PLACES for other in _probes(results, field)]
     return min(found, key=lambda other: other.get("set") != probe.get("set"), default=None)
 
 
 def resistances(results) -> list[tuple[dict, dict]]:
-    """Probes of a crack that has grown, each with the one that it is drawn over."""
+    """Probes of a crack that has grown, each with the probe that it is drawn over."""
     pairs = []
     for probe in _probes(results, "crack_resistance"):
         if not np.any(results.numbers(str(probe["name"])) > 0.0):
@@ -35,7 +35,8 @@ def resistances(results) -> list[tuple[dict, dict]]:
 
 
 def draw_resistances(results, pairs):
-    """Resistance over length, a mark per step in which the crack grew, beside the fracture energy of the material."""
+    """Resistance over crack length or area, with a mark per step in which the crack grew, beside the material's
+    fracture energy."""
     figure = new_figure(12.0, 7.0)
     axes = figure.add_axes([0.1, 0.12, 0.85, 0.72])
     curves = [(results.numbers(str(probe["name"])), results.numbers(str(place["name"]))) for probe, place in pairs]
@@ -61,7 +62,7 @@ def draw_resistances(results, pairs):
 
 
 def fracture_energy(results) -> float:
-    """Of the material of the case [J/m²]; 0 if it gives none."""
+    """Fracture energy of the case's material [J/m²]; 0 if it gives none."""
     material = results.case.get("material")
     damage = material.get("damage") if isinstance(material, dict) else None
     asked = damage.get("fracture_energy") if isinstance(damage, dict) else None

@@ -1,7 +1,7 @@
 """Reads a results folder (docs/results.md) for the pictures.
 
-A run that was killed, did not converge or is still going leaves an incomplete folder; everything here
-gives what is there and says what is missing. What is damaged is named (NotAResultsFolder).
+A run that was killed, did not converge or is still going leaves an incomplete folder; this module returns what is
+there and lists what is missing. Damaged files are named (NotAResultsFolder).
 """
 
 import csv
@@ -17,15 +17,15 @@ from hdf5_reader import Damaged, Hdf5Reader, as_text, require_plain_file
 from images import BrokenBonds, ImageKinds, on_the_body
 from outline import Outline, read_outline
 
-MOST_TABLE = 1 << 30  # bytes of a CSV file
-MOST_SUMMARY = 64 << 20  # bytes of summary.json
+MOST_TABLE = 1 << 30  # limit on the bytes of a CSV file
+MOST_SUMMARY = 64 << 20  # limit on the bytes of summary.json
 LONGEST_TITLE = 200  # characters
-MOST_SPACINGS = 1e7  # across a body
+MOST_SPACINGS = 1e7  # largest size of a body
 MOST_IMAGE_KINDS = 1_000_000
 
 
 class NotAResultsFolder(Exception):
-    """The folder does not exist, or holds no results that can be read."""
+    """The folder does not exist, or holds no readable results."""
 
 
 @dataclass
@@ -42,13 +42,13 @@ class Step:
 
     @property
     def floating(self) -> np.ndarray:
-        """Whether each point belongs to a piece that has come off."""
+        """Whether each point belongs to a detached piece."""
         return self.fragment > 0.5
 
 
 @dataclass
 class ResultsFolder:
-    """A results folder; the fields of steps are read when they are asked for."""
+    """A results folder; the fields of steps are read on request."""
 
     path: Path
     title: str
@@ -56,18 +56,18 @@ class ResultsFolder:
     volume: np.ndarray  # count [m3]
     spacing: float  # [m]
     sets: dict[str, np.ndarray]  # point numbers by name
-    step_numbers: list[int]  # with readable fields, ascending
+    step_numbers: list[int]  # steps with readable fields, ascending
     history: dict[str, list]  # columns of history.csv
     iterations: dict[str, list]  # columns of iterations.csv
     decisions: dict[str, list]  # columns of decisions.csv, empty if there is none
-    orders: dict[int, float]  # observed orders of convergence by step, as convergence.csv tells them
+    orders: dict[int, float]  # observed orders of convergence by step, from convergence.csv
     summary: dict
     case: dict  # the resolved case
-    missing: list[str] = field(default_factory=list)  # sentences for a person
-    drawn: dict = field(default_factory=dict)  # what pictures of several steps share
-    image_kinds: ImageKinds | None = None  # of a body with planes of symmetry or periods
-    _bonds: BrokenBonds | None = None  # broken ones, once they have been read
-    lattice_edges: np.ndarray | None = None  # of a lattice that is turned or not of squares, a row per axis [m]
+    missing: list[str] = field(default_factory=list)  # sentences for the user
+    drawn: dict = field(default_factory=dict)  # cache shared by pictures of several steps
+    image_kinds: ImageKinds | None = None  # for a body with planes of symmetry or periods
+    _bonds: BrokenBonds | None = None  # broken bonds, once they have been read
+    lattice_edges: np.ndarray | None = None  # for a lattice that is turned or not square, one row per axis [m]
 
     @property
     def dimension(self) -> int:
@@ -75,7 +75,7 @@ class ResultsFolder:
 
     @property
     def edges(self) -> np.ndarray:
-        """Edges of a cell, a row for each of the lattice's axes [m]."""
+        """Edges of a cell, one row per lattice axis [m]."""
         return self.spacing * np.eye(self.dimension) if self.lattice_edges is None else self.lattice_edges
 
     @property
@@ -89,7 +89,7 @@ class ResultsFolder:
 
     @property
     def reach(self) -> int:
-        """Of the horizon in whole spacings; 1 if it is not known."""
+        """Reach of the horizon in whole spacings; 1 if unknown."""
         lattice, points = (self.case.get(name) for name in ("lattice", "points"))
         ratio = _finite(lattice.get("horizon_ratio")) if isinstance(lattice, dict) else None
         horizon = _finite(points.get("horizon")) if isinstance(points, dict) else None
@@ -97,14 +97,14 @@ class ResultsFolder:
 
     @cached_property
     def outline(self) -> Outline | None:
-        """Of a plane body whose case has shapes; other dimensions have other shapes, which make none."""
+        """Outline of a plane body whose case has shapes; None in other dimensions, which have other shapes."""
         lattice = self.case.get("lattice")
         tables = lattice.get("shape") if isinstance(lattice, dict) else None
         return read_outline(tables, self.spacing, self.reference) if isinstance(tables, list) else None
 
     @cached_property
     def in_layers(self) -> np.ndarray:
-        """Whether each point stands in a layer in front of the body."""
+        """Whether each point is in a layer outside the body."""
         lattice, inside = self.case.get("lattice"), np.zeros(len(self.volume), dtype=bool)
         layers = lattice.get("layer") if isinstance(lattice, dict) else None
         for layer in layers if isinstance(layers, list) else []:
@@ -114,8 +114,8 @@ class ResultsFolder:
 
     @property
     def cracks(self) -> list[np.ndarray]:
-        """Pre-cracks: the two ends of a segment, or the vertices of a polygon [m]. Those that the case has, and
-        their images where these reach the body."""
+        """Pre-cracks: the two ends of a segment, or the vertices of a polygon [m]. These are the cracks of the case and
+        those of their images that reach the body."""
         cracks = []
         for table in self.tables("crack"):
             places = table.get("vertices") or [table.get("from"), table.get("to")]
@@ -132,7 +132,7 @@ class ResultsFolder:
 
     @property
     def sides(self) -> list[tuple[int, float]]:
-        """Axis and place of planes of symmetry and of the sides of periods [m]."""
+        """Axis and position of planes of symmetry and of the sides of periods [m]."""
         places = [(table.get("axis"), _finite(table.get(key)))
                   for name, keys in (("symmetry", ["at"]), ("period", ["from", "to"]))
                   for table in self.tables(name) for key in keys]  # fmt: skip
@@ -168,7 +168,7 @@ class ResultsFolder:
             )
 
     def field(self, number: int, name: str, *width: int) -> np.ndarray | None:
-        """A field that a step may have, count x width; nothing if it has none, or one that is not finite."""
+        """An optional field of a step, count x width; None if it is missing or not finite."""
         with _reading(self.path) as file:
             path = f"steps/{number:06d}/{name}"
             if path not in file:
@@ -181,7 +181,7 @@ class ResultsFolder:
 
     @property
     def resting_steps(self) -> set[int]:
-        """Step 0 if nothing moves there: it has a row of the history and no fields."""
+        """Includes step 0 if nothing moves there: it has a row of the history and no fields."""
         return {0} & {int(step) for step in self.history.get("step", [])} - set(self.step_numbers)
 
     def displacement(self, number: int) -> np.ndarray:
@@ -201,7 +201,7 @@ class ResultsFolder:
 
     @property
     def is_fractured(self) -> bool:
-        """Whether the history knows of damage."""
+        """Whether the history reports damage."""
         return any(isinstance(value, float) and value > 0.0
                    for column in ("max_damage", "broken_bonds") for value in self.history.get(column, []))  # fmt: skip
 
@@ -219,7 +219,7 @@ class ResultsFolder:
         return "kinetic_energy" in self.history and "time_step" in self.history
 
     def in_history(self, step: int, column: str) -> float | None:
-        """A number of an accepted step's row in the history."""
+        """A number from an accepted step's row of the history."""
         rows = zip(self.history.get("step", []), self.history.get(column, []))
         return next((value for own, value in rows if own == step and isinstance(value, float)), None)
 
@@ -230,7 +230,7 @@ class ResultsFolder:
 
     @property
     def tells_broken_bonds(self) -> bool:
-        """Whether the folder lists broken bonds, be it none; older folders do not."""
+        """Whether the folder has a list of broken bonds, even an empty one; older folders have none."""
         if (self.path / "broken_bonds.csv").is_file():
             return True
         with _reading(self.path) as file:
@@ -245,7 +245,7 @@ class ResultsFolder:
                 table = {name: file.numbers(f"broken_bonds/{name}", kind=np.int64) for name in there}
         if not table and (self.path / "broken_bonds.csv").is_file():
             table = _table(self.path / "broken_bonds.csv", self.missing)
-        table.setdefault("second_image", [0] * len(table.get("step", [])))  # an older folder has none
+        table.setdefault("second_image", [0] * len(table.get("step", [])))  # older folders lack this column
         try:
             step, first, second, image = (np.asarray(table.get(name, []), dtype=np.int64).ravel() for name in names)
             ends = np.stack([first, second], axis=1)
@@ -266,7 +266,7 @@ class ResultsFolder:
 
 
 class _reading(Hdf5Reader):
-    """An open results file whose damage is told as that of the folder."""
+    """An open results file whose damage is reported as damage of the folder."""
 
     def __init__(self, path: Path):
         try:
@@ -329,7 +329,7 @@ def read_results_folder(path: Path) -> ResultsFolder:
 
 
 def _edges(spacing: float, along: list, angle: float | None) -> np.ndarray | None:
-    """Of cells that are turned or not square; nothing for others, and for what makes no sense."""
+    """Edges of cells that are turned or not square; None for others, and for invalid values."""
     lengths = [length if length and length > 0.0 else spacing for length in along]
     if max(lengths) > MOST_SPACINGS * min(lengths) or (lengths == [spacing] * len(lengths) and not angle):
         return None
@@ -341,7 +341,7 @@ def _edges(spacing: float, along: list, angle: float | None) -> np.ndarray | Non
 
 
 def _image_kinds(file, dimension: int, missing) -> ImageKinds | None:
-    """Nothing for a body without images, and for kinds that make no sense."""
+    """Image kinds; None for a body without images, and for invalid kinds."""
     if "points/images" not in file:
         return None
     try:
@@ -357,7 +357,7 @@ def _image_kinds(file, dimension: int, missing) -> ImageKinds | None:
 
 
 def _finite(value) -> float | None:
-    """A finite number, or nothing."""
+    """A finite number, or None."""
     try:
         number = float(value)
     except (TypeError, ValueError):
@@ -426,7 +426,7 @@ def _mean_spacing(reference: np.ndarray) -> float:
 
 
 def _history(path: Path, missing) -> dict[str, list]:
-    """The history; empty, with a word about it, if its steps or load factors can't be read."""
+    """The history; empty, with a message, if its steps or load factors can't be read."""
     table = _table(path, missing)
     for column in ("step", "load_factor"):
         values = table.get(column, [])
@@ -453,7 +453,7 @@ def _orders(path: Path) -> dict[int, float]:
 
 
 def _rows(path: Path, missing) -> list[list[str]]:
-    """Rows of a CSV file that are not empty; none, with a word about it, if it can't be read."""
+    """Rows of a CSV file that are not empty; none, with a message, if it can't be read."""
     try:
         if require_plain_file(path) > MOST_TABLE:
             raise ValueError("it is larger than a gigabyte")
@@ -467,7 +467,7 @@ def _rows(path: Path, missing) -> list[list[str]]:
 
 
 def _table(path: Path, missing) -> dict[str, list]:
-    """Columns of a CSV file; numbers where every entry is one. Half-written rows are left out."""
+    """Columns of a CSV file, as numbers if every entry is one. Half-written rows are left out."""
     rows = _rows(path, missing)
     if not rows:
         return {}

@@ -1,4 +1,4 @@
-"""Cells at the rim of a plane body, drawn up to its outline: no stairs where it is round or slanted."""
+"""Cells at the rim of a plane body, fitted to its outline, so that round or slanted sides have no stairs."""
 
 from itertools import product
 
@@ -8,14 +8,14 @@ from cells import corner_signs
 from outline import Outline
 from voronoi import Polygons
 
-FARTHEST = 0.75  # of the mean size that the corner of a cloud's cell may lie inside the outline
+FARTHEST = 0.75  # largest distance of a cloud cell's corner inside the outline, over the mean cell size
 
 
 def rim_offsets(cells, centres: np.ndarray, outline: Outline, fixed: np.ndarray) -> np.ndarray:
-    """Offsets of corners (cells.Cells) of which those at the rim lie on the outline.
+    """Offsets of corners (cells.Cells), with those at the rim moved onto the outline.
 
-    A corner is at the rim if around it a place outside the body is empty: not one that an image beyond a plane of
-    symmetry takes. Corners of fixed cells, such as those of layers in front of the body, stay.
+    A corner is at the rim if a place around it is empty and outside the body; a place that an image beyond a plane
+    of symmetry takes is not empty. Corners of fixed cells, such as those of layers outside the body, stay.
     """
     signs = corner_signs(2)
     at_rim, stays = np.zeros((2, len(centres), 4), dtype=bool)
@@ -29,14 +29,14 @@ def rim_offsets(cells, centres: np.ndarray, outline: Outline, fixed: np.ndarray)
     offsets = np.tile(0.5 * signs, (len(centres), 1, 1))
     moved = at_rim & ~stays
     places = (centres[:, None] + offsets @ cells.edges)[moved]
-    diagonal = np.linalg.norm(signs @ cells.edges, axis=1).max()  # so far a cell with a part of its volume may reach
+    diagonal = np.linalg.norm(signs @ cells.edges, axis=1).max()  # reach of a partly filled cell
     there = outline.with_corners(outline.nearest(places, diagonal), diagonal)
     offsets[moved] += (there - places) @ np.linalg.inv(cells.edges)
     return offsets
 
 
 def fitted(polygons: Polygons, outline: Outline, sizes: np.ndarray) -> Polygons:
-    """A cloud's cells, whose corners at its end lie on the outline if they are near it or outside the body."""
+    """A cloud's cells; corners at the cloud's end move onto the outline if they are near it or outside the body."""
     outer = polygons.beyond == -1
     ends = outer | polygons.before(outer)
     inner = np.where(polygons.beyond < 0, np.arange(len(outer))[:, None], polygons.beyond)
@@ -52,7 +52,7 @@ def fitted(polygons: Polygons, outline: Outline, sizes: np.ndarray) -> Polygons:
 
 
 def _met(polygons: Polygons) -> np.ndarray:
-    """Corners of which those of two neighbours lie in the middle where the side between them ends outside."""
+    """Corners, with the two copies of each end of a side shared by two cells at the rim replaced by their mean."""
     own, after = np.arange(len(polygons.beyond))[:, None], polygons.beyond
     before = polygons.before(after)
     ends_side, begins_side = (before >= 0) & (after == -1), (before == -1) & (after >= 0) & (after != own)

@@ -1,4 +1,4 @@
-"""Lateral displacement of solids that deform visibly, and the points of their middle plane."""
+"""Lateral displacement of solids that deform visibly, and the points of their mid-plane."""
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
@@ -8,7 +8,7 @@ from camera import AXES, Camera
 from solid_pictures import draw_solid
 from style import GHOST, LENGTHS, colour_bar, heading, new_figure, number, step_words, unit_for
 
-VISIBLE = 0.1  # displacement over the body's size from which on lateral pictures are drawn
+VISIBLE = 0.1  # smallest displacement over the body's size for which lateral pictures are drawn
 COLOURS = "coolwarm"
 
 
@@ -18,7 +18,7 @@ def moves_visibly(results, step) -> bool:
 
 
 def _axes_of(results, step):
-    """The axis along which the body moves most, and of the other two the one that is drawn upwards."""
+    """The axis along which the body moves most, and the one of the other two that is drawn upwards."""
     camera = Camera(results.reference, step.displacement)
     along = int(np.argmax(np.ptp(step.displacement, axis=0)))
     others = [axis for axis in range(3) if axis != along]
@@ -32,7 +32,7 @@ def _range(values):
 
 
 def draw_lateral_solid(results, step):
-    """Deformed body coloured by the displacement across its main direction ([CPD] Figs 14 and 15)."""
+    """Deformed body coloured by its displacement transverse to its main direction ([CPD] Figs 14 and 15)."""
     _, up, _ = _axes_of(results, step)
     values = step.displacement[:, up]
     unit, size = unit_for(np.abs(values).max(), LENGTHS)
@@ -41,13 +41,14 @@ def draw_lateral_solid(results, step):
 
 
 def draw_middle_plane(results, step):
-    """Points of the plane through the body's middle, deformed and not, coloured by their lateral displacement."""
+    """Points of the plane through the body's middle, deformed and undeformed, coloured by their lateral
+    displacement."""
     along, up, across = _axes_of(results, step)
     depth = results.reference[:, across]
     middle = 0.5 * (depth.min() + depth.max())
     nearest = np.abs(depth - middle)
     plane = nearest < nearest.min() + 0.1 * results.spacing
-    # Two planes are as near where their number is even: one of them is shown.
+    # With an even number of planes two are equally near; one of them is shown.
     plane &= depth >= middle - 0.1 * results.spacing
     reference = results.reference[plane][:, [along, up]]
     moved = reference + step.displacement[plane][:, [along, up]]

@@ -1,4 +1,4 @@
-"""Which neighbouring cells of a body no longer hang together: pre-cracks and broken bonds lie between them."""
+"""Finds neighbouring cells of a body that are parted by pre-cracks and broken bonds."""
 
 import numpy as np
 
@@ -9,21 +9,21 @@ from rim import fitted, rim_offsets
 from separations_from_images import separate_from_images
 from voronoi import voronoi_cells
 
-LOOSE_DAMAGE = 0.35  # a cell this damaged lies at a crack; it moves with its point alone if more isn't known
-LEAST_VOLUME = 0.01  # of the mean one: a cell of less is drawn as large
-LOST_DAMAGE = 0.65  # a cell this damaged has lost more than a crack takes from it, and moves with its point alone
+LOOSE_DAMAGE = 0.35  # damage of a cell at a crack; it moves with its point alone if the broken bonds are unknown
+LEAST_VOLUME = 0.01  # share of the mean volume; a smaller cell is drawn with this one
+LOST_DAMAGE = 0.65  # damage beyond that of a crack's flank; such a cell moves with its point alone
 
 
 def separate(cells, reference: np.ndarray, cracks, broken: np.ndarray | None = None, reach: int = 2) -> None:
     """Parts the cells (cells.Cells) between which no bond is left: pre-cracks have cut them, or they broke.
 
-    Of the bonds those count that go straight from cell to cell, over the face between them: from one to the
-    other, and where the horizon reaches two spacings also from one to the cell behind the other. Beside a
-    crack single bonds break; the cells hang together all the same.
+    Only bonds that go straight from cell to cell, over the face between them, count: from one cell to the other and,
+    if the horizon reaches two spacings, from one cell to the cell behind the other. Beside a crack single bonds
+    break, and the cells still stay joined.
 
     reference  count x dimension, centres of the cells [m]
     cracks     ends of a segment (2D), vertices of a plane polygon (3D) [m]
-    broken     count x 2, points of the broken bonds; None where cells are no points
+    broken     count x 2, points of the broken bonds; None if cells are averages over points
     reach      of the horizon in whole spacings
     """
     count = len(reference)
@@ -31,7 +31,7 @@ def separate(cells, reference: np.ndarray, cracks, broken: np.ndarray | None = N
     keys = np.unique(pairs[:, 0] * count + pairs[:, 1])
 
     def is_gone(one, other):
-        """Whether there is no bond between cells, be it that there is no cell (-1)."""
+        """Whether there is no bond between cells; true where there is no cell (-1)."""
         gone = np.isin(np.minimum(one, other) * count + np.maximum(one, other), keys)
         for crack in cracks:
             gone |= crosses(reference[one], reference[other], crack)
@@ -48,11 +48,11 @@ def separate(cells, reference: np.ndarray, cracks, broken: np.ndarray | None = N
 
 
 def cells_of(results, step, limit: int, size: float, *fields: np.ndarray):
-    """The cells of a step, parted where its cracks are, and what belongs to them.
+    """The cells of a step, parted at its cracks, and the data that belongs to them.
 
-    At most `limit` cells; lengths in units of `size` metres. Gives the cells, the centres, displacements,
-    whether each floats, whether each moves with its point alone, and the fields. Where the folder does not
-    list broken bonds, or cells stand for many points, damage tells what is loose.
+    At most `limit` cells; lengths in units of `size` metres. Returns the cells, the centres, displacements, whether
+    each floats, whether each moves with its point alone, and the fields. If the folder does not list broken bonds,
+    or if cells are averages over points, damage decides which cells are loose.
     """
     edges, reference, displacement, damage, floating, in_layers, *fields = merged(
         results.reference, results.edges, limit, step.displacement, step.damage, step.floating.astype(float),
@@ -77,7 +77,7 @@ def cells_of(results, step, limit: int, size: float, *fields: np.ndarray):
 
 
 def _separate_lattice(results, step, cells, reference, broken) -> None:
-    """Parts cells of a lattice by cracks and by broken bonds if these are known."""
+    """Parts cells of a lattice by cracks and, if these are known, by broken bonds."""
     separate(cells, reference, results.cracks, broken.inner() if broken else None, results.reach)
     if broken and results.image_kinds and cells.is_lattice:
         separate_from_images(results, cells, broken)
@@ -86,7 +86,7 @@ def _separate_lattice(results, step, cells, reference, broken) -> None:
 
 
 def _polygons(results):
-    """Cells of a cloud [m], found once."""
+    """Cells of a cloud [m], computed once."""
     if "polygons" not in results.drawn:
         positive = np.maximum(np.nan_to_num(results.volume, posinf=0.0), 0.0)
         sizes = results.spacing * np.sqrt(np.clip(positive / (positive.mean() or 1.0), LEAST_VOLUME, 1.0 / LEAST_VOLUME))
@@ -105,7 +105,7 @@ def _offsets(results, reference, edges, in_layers):
 
 
 def _separate_pieces(cells, piece: np.ndarray) -> None:
-    """Parts cells of different pieces: between these there is no bond at all."""
+    """Parts cells of different pieces, between which there is no bond."""
     for axis in range(cells.dimension):
         other = cells.neighbours(axis, 1)
         cells.part(axis, np.flatnonzero((other >= 0) & (piece != piece[other])))

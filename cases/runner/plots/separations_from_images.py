@@ -1,14 +1,14 @@
-"""Which cells at the rim of a body no longer hang together with its images beyond planes of symmetry and periods."""
+"""Finds cells at the rim of a body that are parted from its images beyond planes of symmetry and periods."""
 
 import numpy as np
 
 from crossings import crosses
 
-NEAR = 2  # cells over which bonds part or join two of them
+NEAR = 2  # range, in cells, of the bonds that decide whether two cells are joined
 
 
 class Beyond:
-    """The lattice places of a body's images, and which straight bonds to them are broken or cut."""
+    """The lattice positions of a body's images, and the straight bonds to them that are broken or cut."""
 
     def __init__(self, results, cells, bonds):
         self._reference, self._edges, self._cracks = results.reference, results.edges, results.cracks
@@ -29,7 +29,7 @@ class Beyond:
             self._broken.append(np.unique(points[straight] * (2 * NEAR + 1) + away[straight, axis]))
 
     def _key(self, index: np.ndarray) -> np.ndarray:
-        """A number of each lattice place; -1 of those that lie farther from the body."""
+        """A number for each lattice position; -1 for those that lie farther from the body."""
         inside = ((index >= -NEAR) & (index < self._shape - NEAR)).all(axis=1)
         return np.where(inside, np.ravel_multi_index((index + NEAR).T, self._shape, mode="clip"), -1)
 
@@ -37,11 +37,11 @@ class Beyond:
         return self._index[cell] + away * np.eye(self._index.shape[1], dtype=np.int64)[axis]
 
     def is_image(self, cell, axis, away) -> np.ndarray:
-        """Whether an image stands so many cells away from cells along an axis."""
+        """Whether there is an image at the given number of cells along an axis from cells."""
         return np.isin(self._key(self._place(cell, axis, away)), self._images)
 
     def is_gone(self, cell, axis, away) -> np.ndarray:
-        """Whether there is no bond from cells to the image there, be it that there is none."""
+        """Whether there is no bond from cells to the image there; true where there is no image."""
         gone = np.isin(cell * (2 * NEAR + 1) + away, self._broken[axis]) | ~self.is_image(cell, axis, away)
         start = self._reference[cell]
         for crack in self._cracks:
@@ -50,8 +50,7 @@ class Beyond:
 
 
 def separate_from_images(results, cells, bonds) -> None:
-    """Parts cells at the rim from the body's images if no bond that goes straight to them is left, by the
-    rule of `separate`."""
+    """Parts cells at the rim from the body's images if no straight bond to them is left, by the rule of `separate`."""
     beyond = Beyond(results, cells, bonds)
     for axis in range(cells.dimension):
         for sign in (-1, 1):
@@ -68,7 +67,7 @@ def separate_from_images(results, cells, bonds) -> None:
 
 
 def _join_over_images(cells, beyond: Beyond, axis: int) -> None:
-    """Takes back where `separate` has parted the last two cells of a row although one of them is bonded to the
+    """Rejoins the last two cells of a row that `separate` has parted although one of them is bonded to the
     image behind the other."""
     before, after = cells.neighbours(axis, -1), cells.neighbours(axis, 1)
     first = np.flatnonzero((before < 0) & (after >= 0))

@@ -1,7 +1,7 @@
-"""Lit pictures of three-dimensional bodies, drawn without a graphics card or a display.
+"""Shaded pictures of three-dimensional bodies, drawn without a graphics card or a display.
 
-The body is a heap of cubes, one per point. Only faces without a neighbour that look at the viewer are
-drawn: projected, sorted from far to near, lit by their normal.
+The body is a set of cubes, one per point. Only faces that have no neighbour and look at the viewer are
+drawn: projected, sorted from far to near, shaded by their normal.
 """
 
 import numpy as np
@@ -32,9 +32,10 @@ def draw_deformed_solid(results, step):
 
 
 def draw_cut_solid(results, step):
-    """The half of the deformed body behind its middle plane, coloured by energy density: what is inside is seen.
+    """The half of the deformed body behind its mid-plane, coloured by energy density, to show the inside.
 
-    Colours go by the square root, and begin with a pale one: most of a body has little of what its supports have.
+    Colours follow the square root and begin pale: most of the body stores little compared with the regions at its
+    supports.
     """
     held = held_values(step.energy_density, step.floating)
     low, high, peak = min(float(held.min()), 0.0), float(held.max()), float(np.percentile(held, CLIPPED_SHARE))
@@ -46,15 +47,15 @@ def draw_cut_solid(results, step):
 
 
 def draw_damaged_solid(results, step):
-    """Deformed body coloured by damage, edges of floating pieces marked."""
+    """Deformed body coloured by damage; edges of floating pieces are marked."""
     return draw_solid(results, step, step.damage, (0.0, 1.0), "damage", DAMAGE_COLOURS, mark_pieces=True,
                       words=bond_words(results, step))  # fmt: skip
 
 
 def draw_solid(results, step, values, value_range, label, colours, mark_pieces=False, is_cut=False, words=()):
-    """Deformed body coloured by a value per point, with more words in the heading.
+    """Deformed body coloured by a value per point, with extra words in the heading.
 
-    Pieces are marked if wanted; of a body that is cut the half towards the viewer is left out.
+    Pieces are marked on request; for a cut, the half towards the viewer is left out.
     """
     factor = exaggeration(results.reference, step)
     cells, reference, displacement, floating, loose, values = cells_of(results, step, MOST_CELLS, 1.0, values)
@@ -66,7 +67,7 @@ def draw_solid(results, step, values, value_range, label, colours, mark_pieces=F
         middle = 0.5 * (reference[:, camera.across].min() + reference[:, camera.across].max())
         side = np.sign(camera.towards[camera.across])
         shown = side * (reference[:, camera.across] - middle) <= 0.25 * spacing
-        place = 0.0 if abs(middle) < 1e-9 * spacing else middle  # no round-off of a middle at 0
+        place = 0.0 if abs(middle) < 1e-9 * spacing else middle  # removes the round-off of a mid-plane at 0
         words = [f"cut at {AXES[camera.across]} = {length_words(place)}", *words]
     faces, owners = _visible_faces(cells, corners, loose, camera, shown)
     box = _bounding_box(reference, spacing)
@@ -104,7 +105,7 @@ def length_words(length: float) -> str:
 
 
 def _visible_faces(cells: Cells, corners, loose, camera, shown):
-    """Outer faces of the shown cells that look at the viewer, far to near, and the cell each belongs to."""
+    """Outer faces of the shown cells that look at the viewer, far to near, and the cell of each."""
     faces, owners = [], []
     for (axis, sign), order in FACES.items():
         other = cells.joined(axis, sign)
@@ -125,7 +126,7 @@ def _bounding_box(reference: np.ndarray, spacing: float) -> np.ndarray:
 
 
 def _draw_box(axes, camera, box) -> None:
-    """Outline of the reference body's box behind everything."""
+    """Draws the outline of the reference body's box behind everything."""
     picture = camera.project(box)
     for face in FACES.values():
         axes.plot(*picture[face + face[:1]].T, color=GHOST, linewidth=1.2, zorder=1)

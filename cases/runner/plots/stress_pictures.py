@@ -1,4 +1,4 @@
-"""Pictures of the stress of a step, where results hold it."""
+"""Pictures of the stress of a step, if the results hold it."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from style import STRESSES, number, unit_for
 
 
 def draw_stresses(results, step):
-    """Name and figure of von Mises' and of the largest principal stress."""
+    """Name and figure of the von Mises stress and of the largest principal stress."""
     von_mises = results.field(step.number, "von_mises")
     if von_mises is not None:
         yield "von_mises", _draw(results, step, von_mises, "von Mises stress", "inferno")
@@ -17,8 +17,8 @@ def draw_stresses(results, step):
 
 
 def _draw(results, step, values, meaning, colours):
-    """Colours end at a percentile where a few points stand out, which is said; those of stresses of both signs are
-    centred on zero."""
+    """The colour range ends at a percentile if a few points stand out, which the label says; for stresses of both signs
+    it is symmetric about zero."""
     held = held_values(values, step.floating)
     low, high = float(held.min()), float(held.max())
     end = float(np.percentile(held, CLIPPED_SHARE))

@@ -1,4 +1,4 @@
-"""Looks that all pictures share: fonts, colours, units, titles."""
+"""Style that all pictures share: fonts, colours, units, titles."""
 
 import matplotlib
 
@@ -14,7 +14,7 @@ FAINT = "#8a949e"  # secondary text
 GHOST = "#c3cad1"  # reference configuration
 GRID = "#e6e9ec"
 WARNING = "#b4531b"
-PIECE = "#1668b8"  # pieces that have come off
+PIECE = "#1668b8"  # detached pieces
 LINES = ["#1f6f9f", "#d1603d", "#3f8f5f", "#7a5aa6", "#b58a1b", "#4d5964"]
 
 DOTS_PER_INCH = 100
@@ -39,7 +39,7 @@ matplotlib.rcParams.update(
         "ytick.labelcolor": INK,
         "legend.frameon": False,
         "hatch.linewidth": 1.2,
-        # Every axis has a unit that suits its values: a factor beside it would be overlooked.
+        # Axes show no common factor, which is easily overlooked: each has a unit that suits its values.
         "axes.formatter.limits": (-7, 8),
         "axes.formatter.useoffset": False,
     }
@@ -67,7 +67,7 @@ def unit_for(largest: float, units, least: float = 0.3) -> tuple[str, float]:
 
 
 def round_factor(wanted: float) -> float:
-    """Largest of 1, 2, 5, 10, 20, 50, ... that is not above the wanted factor; at least 1."""
+    """Largest of 1, 2, 5, 10, 20, 50, ... that does not exceed the wanted factor; at least 1."""
     if not np.isfinite(wanted) or wanted <= 1.0:
         return 1.0
     decade = 10.0 ** np.floor(np.log10(wanted))
@@ -75,14 +75,14 @@ def round_factor(wanted: float) -> float:
 
 
 def number(value: float, digits: int = 4) -> str:
-    """A number as a person writes it: 7 500, 0.25, 1.2e-7."""
+    """A number in readable form: 7 500, 0.25, 1.2e-7."""
     if value == int(value) and abs(value) < 1e9:
         return f"{int(value):,}".replace(",", "\u2009")
     return f"{value:.{digits}g}"
 
 
 def load_axis(values) -> tuple[str, float]:
-    """Label of an axis of load factors, and what to divide them by: a load in metres has tiny ones."""
+    """Label of an axis of load factors, and the divisor of its values: a load in metres has tiny ones."""
     largest = float(np.abs(values).max(initial=0.0))
     if largest == 0.0 or 1e-2 <= largest < 1e5:
         return "load factor", 1.0
@@ -98,7 +98,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def heading(figure: Figure, results, words: list[str]) -> None:
-    """Title and a line of facts below it; a run that did not complete says so in colour."""
+    """Title and a line of facts below it; an incomplete run is labelled in colour."""
     width, height = figure.get_size_inches()
     completed = results.status == "completed"
     room = int((width - (0.7 if completed else 2.9)) / 0.17)  # characters of 0.17 inch
@@ -117,7 +117,7 @@ TIMES = (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9))
 
 
 def time_unit(longest: float) -> tuple[str, float]:
-    """The unit that a time [s] is told in, and its size."""
+    """The unit for a time [s], and its size."""
     return next(((unit, size) for unit, size in TIMES if abs(longest) >= size), TIMES[-1 if longest else 0])
 
 
@@ -135,20 +135,20 @@ def step_words(step) -> list[str]:
 
 
 def bond_words(results, step) -> list[str]:
-    """How many bonds had broken at a step as a fact for a heading; nothing if it is not known."""
+    """Number of bonds broken up to a step as a fact for a heading; nothing if unknown."""
     broken = results.in_history(step.number, "broken_bonds")
     return [] if broken is None else [f"{number(broken)} broken bond{'s' * (broken != 1)}"]
 
 
 def piece_words(step) -> str:
-    """How many pieces have come off, and of how many points they are."""
+    """Number of detached pieces, and of their points."""
     pieces = len(np.unique(np.rint(step.fragment[step.floating])))
     points = int(step.floating.sum())
     return f"{number(pieces)} floating piece{'s' * (pieces != 1)}: {number(points)} point{'s' * (points != 1)}"
 
 
 def piece_legend(figure: Figure, words: str, side: str = "left", hatch: str | None = "////") -> None:
-    """Says in a lower corner what the marks of floating pieces mean."""
+    """Explains the marks of floating pieces in a lower corner."""
     mark = Patch(facecolor="none", edgecolor=PIECE, linewidth=1.4, hatch=hatch, label=words)
     margin = 0.25 / figure.get_size_inches()[0]
     figure.legend(handles=[mark], loc=f"lower {side}", fontsize=12, borderaxespad=0.4,

@@ -1,15 +1,15 @@
-"""Picture of running cracks: where their tips are in time, and how fast they run."""
+"""Picture of running cracks: positions of their tips over time, and their speeds."""
 
 import numpy as np
 
 from style import LENGTHS, LINES, heading, new_figure, number, time_unit, unit_for
 
 TIP_FIELDS = ("crack_end", "crack_begin")
-SPACINGS = 4  # to both sides, over which a speed is taken: a tip advances a spacing at a time
+SPACINGS = 4  # to each side, over which a speed is averaged, because a tip advances by a spacing at a time
 
 
 def running_tips(results) -> list[tuple[str, np.ndarray, np.ndarray]]:
-    """Name, times and places of probes of tips that move while the body does."""
+    """Name, times and positions of probes of tips that move while the body does."""
     times = results.numbers("time") if results.is_of_motion else None
     if times is None:
         return []
@@ -22,9 +22,9 @@ def running_tips(results) -> list[tuple[str, np.ndarray, np.ndarray]]:
 
 
 def tip_speeds(times, places, reach) -> tuple[np.ndarray, np.ndarray]:
-    """Times and slopes of the straight lines of least squares through the rows within `reach` of way to both sides.
+    """Times and slopes of least-squares lines through the rows within `reach` of tip travel to both sides.
 
-    Only between the first and the last place where the tip has gone as far from where it began and will go to its end.
+    Covers only rows at which the tip has that much travel behind and ahead of it.
     """
     way = np.abs(np.diff(places)).cumsum()
     way = np.append(0.0, way)

@@ -1,24 +1,24 @@
-"""Voronoi cells of the points of a plane cloud, ended where the cloud ends."""
+"""Voronoi cells of the points of a plane cloud, bounded at the cloud's rim."""
 
 from typing import NamedTuple
 
 import numpy as np
 from matplotlib.tri import Triangulation
 
-WIDEST = 0.95  # radius of a circle between points that their cells fill, in sizes of these: one point may not be missing
+WIDEST = 0.95  # radius over cell size of the largest gap that is filled; one missing point leaves more
 
 
 class Polygons(NamedTuple):
     """A convex polygon per point; those with fewer corners repeat their first one at the end."""
 
     corners: np.ndarray  # count x most x 2
-    beyond: np.ndarray  # count x most: of the side that begins at a corner the point beyond, -1: none; its own: no side
+    beyond: np.ndarray  # count x most: point beyond the side that begins at a corner; -1: none, own point: no side
 
     def scaled(self, factor: float) -> "Polygons":
         return Polygons(factor * self.corners, self.beyond)
 
     def widened(self, most: int) -> "Polygons":
-        """The same with room for so many corners."""
+        """The same polygons with room for the given number of corners."""
         count, new = len(self.beyond), most - self.beyond.shape[1]
         corners = np.concatenate([self.corners, np.repeat(self.corners[:, :1], new, axis=1)], axis=1)
         own = np.repeat(np.arange(count)[:, None], new, axis=1)
@@ -30,7 +30,7 @@ class Polygons(NamedTuple):
         return self.beyond != np.arange(len(self.beyond))[:, None]
 
     def before(self, values: np.ndarray) -> np.ndarray:
-        """Of values of the sides (count x most), at each corner that of the side that ends there."""
+        """For each corner, the value (count x most) of the side that ends there."""
         last = self.is_side.sum(axis=1) - 1
         return np.concatenate([values[np.arange(len(values)), last][:, None], values[:, :-1]], axis=1)
 
@@ -38,7 +38,7 @@ class Polygons(NamedTuple):
 def voronoi_cells(points: np.ndarray, sizes: np.ndarray) -> Polygons:
     """Cells of points (count x 2), each of which fills about a square of its size.
 
-    A cell is its square cut by the bisectors between the point and its neighbours. Where the cloud ends, it is cut half
+    A cell is its square cut by the bisectors between the point and its neighbours. At the cloud's rim it is cut half
     a size beyond the outermost points, parallel to the line through these.
     """
     triangles, is_filled = _triangles(points, sizes)
@@ -58,7 +58,8 @@ def voronoi_cells(points: np.ndarray, sizes: np.ndarray) -> Polygons:
 
 
 def _cuts(points, sizes, triangles, filled):
-    """Lines that bound cells: the cell's point, the normal away from it, the distance, and the point beyond (-1: none)."""
+    """Lines that bound cells: the cell's point, the normal away from it, the distance, and the point beyond (-1:
+    none)."""
     count = len(points)
     sides = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     begin, end = np.divmod(np.unique(sides @ [count, 1]), count)
@@ -66,7 +67,7 @@ def _cuts(points, sizes, triangles, filled):
     distance = np.linalg.norm(apart, axis=1)
     normal = apart / distance[:, None]
 
-    filled = filled[:, [0, 1, 2, 1, 2, 0, 2, 0, 1]].reshape(-1, 3)  # a side, anticlockwise, and the corner opposite
+    filled = filled[:, [0, 1, 2, 1, 2, 0, 2, 0, 1]].reshape(-1, 3)  # a side, anticlockwise, and the opposite corner
     outer = filled[~np.isin(filled[:, 0] * count + filled[:, 1], filled[:, 1] * count + filled[:, 0])]
     along = points[outer[:, 1]] - points[outer[:, 0]]
     outwards = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.linalg.norm(along, axis=1)[:, None]
@@ -81,7 +82,7 @@ def _cuts(points, sizes, triangles, filled):
 
 
 def _triangles(points, sizes):
-    """Delaunay's triangles (anticlockwise), and of each whether the cloud fills it; none of points on a line."""
+    """Delaunay triangles (anticlockwise), and whether the cloud fills each; none for collinear points."""
     try:
         triangles = Triangulation(*(points - points.mean(axis=0)).T).triangles.astype(np.int64)
     except (RuntimeError, ValueError):
@@ -93,7 +94,7 @@ def _triangles(points, sizes):
 
 
 def _cut(cells: Polygons, rows, normal, height, label) -> Polygons:
-    """Cuts off what of some cells (rows) lies beyond a line each."""
+    """Cuts off the parts of some cells (rows) beyond one line each."""
     corners, beyond = cells.corners[rows], cells.beyond[rows]
     above = np.einsum("nkc,nc->nk", corners, normal) - height[:, None]
     after, above_after = np.roll(corners, -1, axis=1), np.roll(above, -1, axis=1)
@@ -102,7 +103,7 @@ def _cut(cells: Polygons, rows, normal, height, label) -> Polygons:
     share = above / np.where(crosses, above - above_after, 1.0)
     met = corners + share[:, :, None] * (after - corners)
 
-    # In the place of each corner: the corner if it stays, and where its side crosses the line.
+    # Two entries per corner: the corner itself if it stays, and the crossing of its side with the line.
     keep = np.stack([is_side & stays, crosses], axis=2).reshape(len(rows), -1)
     place = np.stack([corners, met], axis=2).reshape(len(rows), -1, 2)
     own = np.stack([beyond, np.where(stays, label[:, None], beyond)], axis=2).reshape(len(rows), -1)

@@ -1,4 +1,4 @@
-"""Values that are computed from those of other keys: "loading.steps:=round(0.02/lattice.spacing)"."""
+"""Values computed from those of other keys: "loading.steps:=round(0.02/lattice.spacing)"."""
 
 import ast
 import contextlib
@@ -18,7 +18,7 @@ LARGEST_OF_POWER = 1000
 
 
 def split_computed(text: str) -> tuple[str, str] | None:
-    """Key and expression of "key:=expression"; none for anything else."""
+    """Key and expression of "key:=expression"; None for any other text."""
     key, equals, expression = text.partition("=")
     if not equals or not key.rstrip().endswith(":"):
         return None
@@ -26,21 +26,21 @@ def split_computed(text: str) -> tuple[str, str] | None:
 
 
 class Keys:
-    """The values of a combination's keys: those of the case file, and in their places what it sets."""
+    """The values of a combination's keys: those of the case file, replaced by the combination's settings."""
 
     def __init__(self, case_text: bytes, settings: list[str], later: set[str] = frozenset()):
-        """later: keys that are yet to be computed, whose values in the case file will not be used"""
+        """later: keys that will be computed later, so that their values in the case file must not be used"""
         self._later = later
         try:
             self._case = tomllib.loads(case_text.decode())
         except (UnicodeDecodeError, tomllib.TOMLDecodeError):
-            self._case = {}  # the program tells what is wrong with it
+            self._case = {}  # the program reports the error
         for setting in settings:
             key, _, value = setting.partition("=")
             self._put(_parts(key), _toml_value(value))
 
     def number(self, key: str) -> float | int:
-        """@raises WrongInput where there is none"""
+        """@raises WrongInput if there is none"""
         if key in self._later:
             raise WrongInput(f"{key} is computed later, or from itself: give what it needs before it")
         value = self._case
@@ -54,7 +54,7 @@ class Keys:
         return value
 
     def numbers(self, key: str) -> list[float | int]:
-        """A number, or each one of a list. @raises WrongInput where there is none"""
+        """A number, or the numbers of a list. @raises WrongInput if there is none"""
         try:
             return [self.number(key)]
         except WrongInput as error:
@@ -80,7 +80,7 @@ class Keys:
 
 
 def _parts(key: str) -> list[str | int]:
-    """"a.b[0].c" as its names and places."""
+    """Splits "a.b[0].c" into names and indices."""
     return [int(part[1:-1]) if part[0] == "[" else part.strip() for part in re.findall(r"\[\d+\]|[^.\[\]]+", key)]
 
 
@@ -92,9 +92,9 @@ def _toml_value(text: str):
 
 
 def compute(expression: str, keys: Keys) -> str:
-    """Its value as a case file takes it: an integer where it is one by its operations, as round gives.
+    """The expression's value in the form of a case file: an integer if its operations give one, as round does.
 
-    @raises WrongInput that says what is wrong with it
+    @raises WrongInput with the reason
     """
     try:
         tree = ast.parse(expression.replace("^", "**"), mode="eval")
@@ -119,7 +119,7 @@ def _value(node: ast.expr, keys: Keys):
             return apply(_value(node.operand, keys))
         left, right = _value(node.left, keys), _value(node.right, keys)
         if isinstance(node.op, ast.Pow) and max(abs(left), abs(right)) > LARGEST_OF_POWER:
-            left = float(left)  # powers of integers would take for ever
+            left = float(left)  # integer powers could take forever
         return apply(left, right)
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
         if node.func.id not in FUNCTIONS:

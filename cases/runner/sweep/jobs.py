@@ -1,4 +1,4 @@
-"""How many runs may stand side by side: what cores, memory and other sweeps in the same folder allow."""
+"""Decides how many runs go on at once: limited by cores, memory and other sweeps in the same folder."""
 
 import fcntl
 import os
@@ -14,7 +14,7 @@ SHARE_OF_MEMORY = 0.9
 
 
 def bounded(jobs: int, threads: int | None, cores: int) -> tuple[int, int | None]:
-    """Jobs and threads of each, so that together they take no more than the cores."""
+    """Number of jobs and threads of each, so that together they use no more than the cores."""
     if jobs == 1:
         return 1, threads
     if threads is None:
@@ -24,7 +24,7 @@ def bounded(jobs: int, threads: int | None, cores: int) -> tuple[int, int | None
 
 
 def estimated_memory(told: str) -> tuple[float, float] | None:
-    """What `check` tells that a run takes, and that the machine has [byte]."""
+    """Memory that a run needs according to `check`, and memory that the machine has [byte]."""
     found = re.search(r"^memory +about ([\d.]+) (\w+) of ([\d.]+) (\w+) available", told, re.MULTILINE)
     if not found or found[2] not in BYTES or found[4] not in BYTES:
         return None
@@ -32,7 +32,7 @@ def estimated_memory(told: str) -> tuple[float, float] | None:
 
 
 class FolderLock:
-    """A folder that one sweep alone works in; the kernel opens it again when the process ends."""
+    """A lock that gives one sweep exclusive use of a folder; the kernel releases it when the process ends."""
 
     def __init__(self, folder: Path):
         folder.mkdir(parents=True, exist_ok=True)
@@ -44,25 +44,25 @@ class FolderLock:
         except BlockingIOError:
             self.is_held = False
             self.release()
-        except OSError:  # a file system without locks can't tell
+        except OSError:  # a file system without locks can't report one
             pass
 
     def release(self) -> None:
         if self.is_held:
-            with suppress(OSError):  # of a run that was refused nothing stays
+            with suppress(OSError):  # a refused run leaves nothing behind
                 self._folder.rmdir()
         os.close(self._descriptor)
 
 
 class Jobs:
-    """Runs numbered tasks side by side.
+    """Runs numbered tasks in parallel.
 
-    `memory` gives what a task takes and what there is [byte], or nothing if that is not known; it is asked
-    only where there are several jobs. A task whose lock another sweep holds is put off until nothing else
-    is left, and then waited for.
+    `memory` returns what a task needs and what is available [byte], or None if unknown; it is called only if there
+    are several jobs. A task whose lock another sweep holds is postponed until nothing else is left, and then waited
+    for.
     """
 
-    PATIENCE = 0.2  # s, between two looks at what another sweep is doing
+    PATIENCE = 0.2  # interval between checks on other sweeps [s]
 
     def __init__(self, jobs: int, memory: Callable[[int], tuple[float, float] | None],
                  lock: Callable[[int], FolderLock]):  # fmt: skip
@@ -71,7 +71,7 @@ class Jobs:
 
     def run(self, numbers: Sequence[int], task: Callable[[int], object],
             goes_on: Callable[[], bool], waits: Callable[[int], None]) -> Iterator[tuple[int, object]]:  # fmt: skip
-        """Yields numbers and what their tasks gave, as they end."""
+        """Yields each task's number and result as it ends."""
         waiting = list(numbers)
         told = set()
         with ThreadPoolExecutor(max_workers=self._jobs) as pool:
@@ -101,7 +101,7 @@ class Jobs:
                 taken = sum(memory for _, _, memory in self._running.values())
                 if self._running and taken + needed > SHARE_OF_MEMORY * available:
                     lock.release()
-                    return False  # in order: it is not overtaken again and again by small ones
+                    return False  # keeps the order, so that small tasks do not overtake a large one forever
             waiting.remove(number)
             self._running[pool.submit(task, number)] = (number, lock, needed)
             return True

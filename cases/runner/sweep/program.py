@@ -1,4 +1,4 @@
-"""Runs the program, in as many processes as are asked for, and passes interrupts on to them."""
+"""Runs the program in any number of processes, and passes interrupts on to them."""
 
 import os
 import shutil
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass
 class Ending:
-    """How a run ended: exit code as a shell tells it, and what was said on the two streams."""
+    """How a run ended: exit code as a shell reports it, and the text of both streams."""
 
     code: int
     message: str
@@ -18,16 +18,16 @@ class Ending:
 
 
 class Program:
-    """The program in process groups of its own, so that an interrupt reaches each process once wherever it
-    was sent (to the terminal's group or to this process alone). Should this process be killed, they are too.
-    Calls of `run` may stand side by side, in threads.
+    """Runs the program in process groups of its own, so that an interrupt reaches each process once, whether it was
+    sent to the terminal's group or to this process alone. If this process is killed, so are the others. `run` may be
+    called from several threads at once.
     """
 
     def __init__(self, path: str):
         guard = ["setpriv", "--pdeathsig", "KILL"] if shutil.which("setpriv") else []
         self._command = [*guard, path]
         self._lock = threading.Lock()
-        self._children: dict[subprocess.Popen, int] = {}  # and how many interrupts they have got
+        self._children: dict[subprocess.Popen, int] = {}  # and the number of interrupts that each has received
         self._interrupts = 0
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, self._interrupt)
@@ -39,7 +39,7 @@ class Program:
 
     def run(self, arguments: list[str], told: bool = False, limit: float | None = None) -> Ending:
         """@param told whether standard output is kept
-        @param limit seconds after which it is interrupted
+        @param limit seconds after which the run is interrupted
         """
         child = subprocess.Popen([*self._command, *arguments], text=True, errors="replace",
                                  stdin=subprocess.DEVNULL, stdout=subprocess.PIPE if told else subprocess.DEVNULL,
@@ -60,7 +60,7 @@ class Program:
 
     def _interrupt(self, number, frame) -> None:
         self._interrupts += 1
-        # Elsewhere than here, where a lock may be held by what was interrupted.
+        # In another thread: the interrupted code may hold the lock.
         threading.Thread(target=self._pass_on).start()
 
     def _pass_on(self) -> None:
@@ -71,7 +71,7 @@ class Program:
                 self._children[child] = self._interrupts
 
     def _pause(self, number, frame) -> None:
-        """Stops with the program, and goes on with it."""
+        """Stops the program's processes with this one, and continues them with it."""
         children = list(self._children)
         for child in children:
             child.send_signal(signal.SIGSTOP)

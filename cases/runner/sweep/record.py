@@ -1,7 +1,7 @@
-"""What a combination's results were made from, kept in its folder as sweep.json.
+"""Records the inputs of a combination's results in its folder as sweep.json.
 
-Run as a script it writes the record, python3 record.py FOLDER [key=value]..., or looks whether results are
-of a case, python3 record.py --is-of FOLDER CHECKSUM [key=value]...
+As a script it writes the record, python3 record.py FOLDER [key=value]..., or checks whether results belong to a
+case, python3 record.py --is-of FOLDER CHECKSUM [key=value]...
 """
 
 import hashlib
@@ -17,8 +17,8 @@ from own_files import RECORD, write_own
 def is_done(folder: Path, case_text: bytes, settings: list[str]) -> bool:
     """Whether the folder holds the completed results of this case text, settings and points.
 
-    The checksum of the summary ties the record to its run: a later one in the same folder, by
-    whatever command, replaces the summary.
+    The checksum of the summary ties the record to its run: a later run in the same folder, by whatever command,
+    replaces the summary.
     """
     try:
         record = json.loads((folder / "sweep.json").read_bytes())
@@ -37,7 +37,7 @@ def is_done(folder: Path, case_text: bytes, settings: list[str]) -> bool:
 
 def can_go_on(folder: Path, case_text: bytes, settings: list[str]) -> bool:
     """Whether the folder holds a run of this case text and these settings that was interrupted, killed, or
-    failed by the machine."""
+    failed because of the machine."""
     if not (folder / "results.h5").is_file():
         return False
     try:
@@ -48,7 +48,7 @@ def can_go_on(folder: Path, case_text: bytes, settings: list[str]) -> bool:
         return False
     if status not in ("killed", "interrupted", "failed"):
         return False
-    # In a process of its own, as record_done: and HDF5 may crash on a damaged file.
+    # In a process of its own, for the same reason as record_done, and because HDF5 may crash on a damaged file.
     command = [sys.executable, "-BEs", __file__, "--is-of", str(folder), _checksum(case_text), *settings]
     return subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, process_group=0).returncode == 0
 
@@ -63,9 +63,9 @@ def _is_of(folder: Path, checksum: str, settings: list[str]) -> bool:
 
 
 def record_done(folder: Path, settings: list[str]) -> bool:
-    """Writes the record of a completed run; false if it can't be.
+    """Writes the record of a completed run; returns false if it can't be written.
 
-    In a process of its own: the memory that reading HDF5 takes would count as the next run's.
+    In a process of its own, because the memory used to read HDF5 would count as the next run's.
     """
     command = [sys.executable, "-BEs", __file__, str(folder), *settings]
     return subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, process_group=0).returncode == 0

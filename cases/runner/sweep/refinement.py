@@ -1,5 +1,5 @@
-"""What a refinement of the lattice tells of a quantity: its order of convergence, the value to which it
-goes, and how far from that the finest lattice is (Roache 1994, Celik et al. 2008)."""
+"""Convergence of a quantity under refinement of the lattice: its order, its extrapolated value, and the error
+estimate on the finest lattice (Roache 1994, Celik et al. 2008)."""
 
 import csv
 import io
@@ -9,27 +9,27 @@ from pathlib import Path
 
 from own_files import write_own
 
-SAFETY = 1.25  # Roache's factor for three lattices, and for more whose orders agree
-CAUTION = 3.0  # his factor where nothing shows that the order is settled
-AGREEMENT = 0.25  # of two orders, as a share
-TOLERANCE = 1e-8  # changes below this share of the value are those of the solvers' tolerances
+SAFETY = 1.25  # Roache's safety factor for three lattices, and for more whose orders agree
+CAUTION = 3.0  # his factor if the order is not confirmed
+AGREEMENT = 0.25  # largest relative difference of two orders that agree
+TOLERANCE = 1e-8  # changes below this share of the value are due to the solvers' tolerances
 COLUMNS = ["quantity", "behaviour", "observed_order", "order_before", "extrapolated", "uncertainty",
            "grid_convergence_index"]  # fmt: skip
-SIGN = ",".join(COLUMNS).encode()  # of the table
+SIGN = ",".join(COLUMNS).encode()  # signature of the table
 
 
 @dataclass
 class Refinement:
-    """Of one quantity on lattices from the coarsest to the finest."""
+    """Values of one quantity on lattices from the coarsest to the finest."""
 
     quantity: str
     spacings: list[float]
     values: list[float]
     behaviour: str  # "monotone", "oscillating", "not converging", "constant"
-    order: float | None = None  # p of the three finest
-    order_before: float | None = None  # of the three before them
+    order: float | None = None  # p of the three finest lattices
+    order_before: float | None = None  # p of the three lattices before them
     extrapolated: float | None = None  # to spacing 0
-    uncertainty: float | None = None  # of the value on the finest lattice, absolute
+    uncertainty: float | None = None  # absolute, of the value on the finest lattice
 
     @property
     def index(self) -> float | None:
@@ -47,7 +47,7 @@ class Refinement:
 
 
 def observed_order(spacings: list[float], values: list[float]) -> float | None:
-    """p of f(h) = f0 + C h^p through three points from coarse to fine, whose changes have one sign.
+    """p of f(h) = f0 + C h^p through three points from coarse to fine, whose changes have the same sign.
 
     With r = h1/h2, s = h2/h3: (f1 - f2)/(f2 - f3) = s^p (r^p - 1)/(s^p - 1), solved by bisection.
     """
@@ -66,12 +66,12 @@ def observed_order(spacings: list[float], values: list[float]) -> float | None:
 
 
 def refine(quantity: str, spacings: list[float], values: list[float]) -> Refinement:
-    """Of at least three lattices, from the coarsest to the finest."""
+    """Refinement from at least three lattices, from the coarsest to the finest."""
     found = Refinement(quantity, spacings, values, "not converging")
     last = values[-1]
     change, before = values[-2] - last, values[-3] - values[-2]
     if abs(change) <= TOLERANCE * abs(last):
-        # No order can be told. That both are the same may be by chance: the change before it counts.
+        # No order can be determined. The last two may agree by chance, so the change before them counts.
         is_still = abs(before) <= TOLERANCE * abs(last)
         found.behaviour, found.extrapolated = "constant", last
         found.uncertainty = 0.0 if is_still else abs(before)
@@ -79,7 +79,7 @@ def refine(quantity: str, spacings: list[float], values: list[float]) -> Refinem
     if len(values) > 3:
         found.order_before = observed_order(spacings[-4:-1], values[-4:-1])
     if change * before < 0.0:
-        # No order can be told; the values swing within this range.
+        # No order can be determined; the values oscillate within this range.
         found.behaviour = "oscillating"
         found.uncertainty = CAUTION * 0.5 * (max(values[-3:]) - min(values[-3:]))
         return found

@@ -1,4 +1,4 @@
-"""The picture of a refinement: quantities over the spacing, and where they go as it goes to zero."""
+"""The picture of a refinement: quantities over the spacing, and their extrapolation to zero spacing."""
 
 import tomllib
 from dataclasses import dataclass
@@ -11,11 +11,11 @@ from table import FIELD_UNITS
 
 MOST_PANELS = 6
 COLUMNS = 3
-UNITS = {"m": LENGTHS, "N": FORCES, "J": ENERGIES, "Pa": STRESSES}  # that are scaled
+UNITS = {"m": LENGTHS, "N": FORCES, "J": ENERGIES, "Pa": STRESSES}  # units with prefixes
 
 
 def draw_refinements(case: Path, rows: list[tuple[tuple[str, ...], Refinement]]):
-    """A panel per quantity, with a line for each combination of the other keys; probes come first."""
+    """One panel per quantity, with a line for each combination of the other keys; probes come first."""
     text = tomllib.loads(case.read_text("utf-8"))
     units = {probe["name"]: FIELD_UNITS.get(probe.get("field", "displacement"), "") for probe in text.get("probe", [])}
     names = list(dict.fromkeys(of.quantity for _, of in rows))
@@ -37,7 +37,7 @@ def draw_refinements(case: Path, rows: list[tuple[tuple[str, ...], Refinement]])
 
 
 def _most_telling(rows: list[tuple[tuple[str, ...], Refinement]], names: list[str]) -> list[str]:
-    """Probes and reactions first; nothing that is constant, or the same as what is shown already."""
+    """Probes and reactions first; constant quantities and duplicates of shown ones are left out."""
     order = {"probe": 0, "peak_reaction": 1, "final_reaction": 2}
     shown, seen = [], []
     for name in sorted(names, key=lambda name: order.get(name.partition(":")[0], 3)):

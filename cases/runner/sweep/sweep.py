@@ -31,9 +31,9 @@ STATUS = {DONE: "completed", NOT_CONVERGED: "not_converged", OUT_OF_MEMORY: "out
           INTERRUPTED: "interrupted"}  # fmt: skip
 WORDS = {NOT_CONVERGED: "did not converge", OUT_OF_MEMORY: "out of memory", INTERRUPTED: "interrupted",
          WRONG_INPUT: "refused", MACHINE_FAILED: "the machine failed"}  # fmt: skip
-MADE_OF_THE_TABLE = {"sweep.png": PICTURE, "refinement.csv": SIGN, "refinement.png": PICTURE}  # and their signs
+MADE_OF_THE_TABLE = {"sweep.png": PICTURE, "refinement.csv": SIGN, "refinement.png": PICTURE}  # and signatures
 REFINED = "lattice.spacing"
-# Of what can't be written: the disk is full or failing, or a limit of the shell is met.
+# Errors of writing: the disk is full or failing, or a limit of the shell is reached.
 FAULTS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EMFILE, errno.ENFILE, errno.EIO, errno.ENOMEM}
 
 
@@ -42,7 +42,7 @@ class Combination:
     """One run of the sweep."""
 
     values: tuple[str, ...]  # of the varied keys
-    settings: list[str]  # all "key=value" it is run with
+    settings: list[str]  # all "key=value" settings of the run
     folder: Path
 
 
@@ -50,25 +50,25 @@ class Combination:
 class Sweep:
     case: Path
     case_text: bytes
-    keys: list[str]  # that are varied
+    keys: list[str]  # varied keys
     combinations: list[Combination]
     directory: Path
     threads: int | None
-    overwrite: bool  # also runs of another case in the folders
-    jobs: int = 1  # runs side by side
+    overwrite: bool  # replaces runs of another case in the folders, too
+    jobs: int = 1  # runs at once
     refined: int | None = None  # number of the key that --refine varies
-    linked: frozenset[int] = frozenset()  # numbers of that key, of those that vary with it, and of computed ones
+    linked: frozenset[int] = frozenset()  # numbers of that key, of the keys that vary with it, and of computed ones
 
 
 # ----------------------------------------------------------------------------------------- running
 
 
 def run_all(sweep: Sweep, program: Program) -> int:
-    """Runs what is not done yet; returns the exit code of the sweep."""
+    """Runs all combinations that are not done yet; returns the exit code of the sweep."""
     all_runs = AllRuns(sweep, program)
     code = all_runs.run()
     if code is not None:
-        with contextlib.suppress(OSError):  # nothing stays where the first run was refused
+        with contextlib.suppress(OSError):  # leaves nothing behind if the first run was refused
             sweep.directory.rmdir()
         return code
     _save(sweep, all_runs.rows)
@@ -85,12 +85,12 @@ class Ran:
     """How a run ended."""
 
     ending: Ending
-    is_new: bool  # else the folder's results are of an earlier run
-    is_recorded: bool  # as done, if it is
+    is_new: bool  # false: the folder's results are from an earlier run
+    is_recorded: bool  # as done, if it is done
 
 
 class AllRuns:
-    """The runs of a sweep, side by side or one after the other, and what they gave."""
+    """The runs of a sweep, in parallel or one after the other, and their results."""
 
     def __init__(self, sweep: Sweep, program: Program):
         self.sweep, self.program = sweep, program
@@ -111,7 +111,7 @@ class AllRuns:
         return INTERRUPTED if ends is None and self.program.interrupted else ends
 
     def _run(self, number: int) -> Ran | None:
-        """Nothing if it is done, before or by another sweep meanwhile."""
+        """None if it is done, before or by another sweep meanwhile."""
         combination = self.sweep.combinations[number]
         if number in self.done_before or self._is_done(number):
             return None
@@ -143,7 +143,7 @@ class AllRuns:
             print("  sweep.json could not be written: this combination will be run again", file=sys.stderr)
         self.rows[number] = _row(self.sweep, combination, ending.code, ran.is_new)
         _save(self.sweep, self.rows)
-        if ending.code in (INTERRUPTED, MACHINE_FAILED):  # it would fail the next ones, too
+        if ending.code in (INTERRUPTED, MACHINE_FAILED):  # the next runs would fail, too
             return ending.code
         self.codes.add(ending.code)
         return None
@@ -179,7 +179,7 @@ def _threads(sweep: Sweep) -> list[str]:
 
 
 def say(text: str, end: str = "\n") -> None:
-    """Tells the person; where nobody reads any more, the sweep goes on in silence."""
+    """Prints a message; if nobody reads it any more, the sweep continues silently."""
     try:
         print(text, end=end, flush=True)
     except OSError as error:
@@ -198,7 +198,7 @@ def _values(sweep: Sweep, combination: Combination) -> str:
 
 
 def _stamp(folder: Path):
-    """Tells one summary of a folder from the next."""
+    """Distinguishes one summary of a folder from the next."""
     try:
         status = (folder / "summary.json").stat()
     except OSError:
@@ -207,7 +207,7 @@ def _stamp(folder: Path):
 
 
 def _told(ending: Ending, folder: Path | None) -> str:
-    """How a run ended, in one line; what a completed run complained about follows."""
+    """How a run ended, in one line, followed by the warnings of a completed run."""
     if ending.code == DONE:
         return "\n  ".join(["done", *ending.message.splitlines()])
     words = WORDS.get(ending.code, "failed")
@@ -231,15 +231,15 @@ def _worst(codes: set[int]) -> int:
 
 
 def _save(sweep: Sweep, rows: dict[int, dict]) -> None:
-    """The table of what is done; what was made of an earlier table is removed."""
-    sweep.directory.mkdir(parents=True, exist_ok=True)  # no run has made it if none had the memory
+    """Writes the table of completed runs; files made from an earlier table are removed."""
+    sweep.directory.mkdir(parents=True, exist_ok=True)  # missing if no run had enough memory
     write_table(sweep.directory / "sweep.csv", sweep.keys, [rows[number] for number in sorted(rows)])
     for name, sign in MADE_OF_THE_TABLE.items():
         remove_own(sweep.directory / name, sign)
 
 
 def _refinements(sweep: Sweep, rows: list[dict]) -> list[tuple[tuple[str, ...], Refinement]]:
-    """Of every quantity, for each combination of the other keys whose lattices have all been run."""
+    """Refinement of every quantity, for each combination of the other keys whose lattices have all been run."""
     groups: dict[tuple[str, ...], list[dict]] = {}
     for combination, row in zip(sweep.combinations, rows):
         others = tuple(value for place, value in enumerate(combination.values) if place not in sweep.linked)
@@ -283,9 +283,9 @@ def _sweep_figure(sweep: Sweep, statuses: list[str]):
 
 
 def _draw(path: Path, make: Callable[[], object]) -> int:
-    """Writes a picture. Whatever goes wrong with it, the table is complete.
+    """Writes a picture. The table is complete even if this fails.
 
-    @return DONE, MACHINE_FAILED where the picture can't be written, BUG where drawing has a fault
+    @return DONE, MACHINE_FAILED if the picture can't be written, BUG if the drawing code has a fault
     """
     try:
         figure = make()
@@ -309,7 +309,7 @@ def _draw(path: Path, make: Callable[[], object]) -> int:
 
 
 class _Varied(argparse.Action):
-    """Keeps --vary, --with and --refine in the order in which they are given."""
+    """Keeps --vary, --with and --refine in the given order."""
 
     def __call__(self, parser, namespace, values, option_string=None):
         namespace.varied = [*(getattr(namespace, "varied", None) or []), (self.option_strings[0], values)]
@@ -386,7 +386,7 @@ def _find_combinations(sweep: Sweep, arguments: argparse.Namespace) -> None:
     axes, computed = _read_axes(sweep, arguments)
     keys = [key for axis in axes for key in axis.keys]
     given = arguments.settings
-    if sweep.refined is not None:  # what is set is the spacing of the coarsest lattice
+    if sweep.refined is not None:  # the setting is the spacing of the coarsest lattice
         given = [setting for setting in given if setting.partition("=")[0].strip() != REFINED]
     set_as_given = [setting for setting in given if not split_computed(setting)]
     computed_by_set = [found for setting in given if (found := split_computed(setting))]
@@ -410,7 +410,7 @@ def _find_combinations(sweep: Sweep, arguments: argparse.Namespace) -> None:
 
 
 def _read_axes(sweep: Sweep, arguments: argparse.Namespace) -> tuple[list[Axis], list[tuple[str, str]]]:
-    """What is varied, and keys with the expressions that they are computed from."""
+    """The variations, and keys with the expressions that they are computed from."""
     axes, computed, refined = [], [], None
     for option, text in getattr(arguments, "varied", None) or []:
         if option == "--refine":
@@ -435,7 +435,7 @@ def _read_axes(sweep: Sweep, arguments: argparse.Namespace) -> tuple[list[Axis],
 
 
 def _lattices(text: str, ratio: float, keys: Keys) -> Axis:
-    """Of --refine: spacings from that of the case on."""
+    """Axis of --refine: spacings from that of the case on."""
     if not text.isdecimal() or not 3 <= int(text) <= 20:
         raise WrongInput(f"--refine {text}: must be a number of lattices from 3 to 20: an order needs three")
     if not 1.05 <= ratio <= 10.0:
@@ -449,7 +449,7 @@ def _lattices(text: str, ratio: float, keys: Keys) -> Axis:
 
 
 def _spacing(text: str) -> float:
-    """The geometric mean of spacings as they are given, which is what the horizon is measured in."""
+    """The geometric mean of the given spacings, in which the horizon is measured."""
     lengths = [float(length) for length in text.strip("[] ").split(",")]
     return math.prod(lengths) ** (1 / len(lengths)) if len(lengths) > 1 else lengths[0]
 

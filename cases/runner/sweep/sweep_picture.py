@@ -1,5 +1,5 @@
-"""The picture of a sweep: load curves of all combinations, a field along the midline of the body, and what
-came out (peak reaction, probes) over what was varied."""
+"""The picture of a sweep: load curves of all combinations, a field along the midline of the body, and outcomes
+(peak reaction, probes) over the varied values."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,20 +14,20 @@ from table import FIELD_UNITS
 DASHES = ["-", (0, (5, 2)), (0, (1.2, 1.5)), (0, (7, 2, 1.5, 2))]
 MOST_LABELS = 24  # entries of the legend
 LONGEST_LABEL = 30  # characters
-MOST_QUANTITIES = 4  # panels of what came out
-UNITS = {"m": LENGTHS, "N": FORCES, "J/m³": ENERGY_DENSITIES, "Pa": STRESSES}  # that are scaled
+MOST_QUANTITIES = 4  # panels of outcomes
+UNITS = {"m": LENGTHS, "N": FORCES, "J/m³": ENERGY_DENSITIES, "Pa": STRESSES}  # units with prefixes
 
 
 @dataclass
 class Curves:
-    """What is drawn of one combination."""
+    """The data drawn for one combination."""
 
     title: str
     label: str
-    looks: dict  # colour and line
+    looks: dict  # colour and line style
     completed: bool
     load: np.ndarray  # load factors of the accepted steps
-    reactions: dict[str, np.ndarray]  # their norm by support set [N]
+    reactions: dict[str, np.ndarray]  # norm by support set [N]
     midlines: list["Midline"]  # along each axis
     largest_damage: float  # of all points
     values: tuple[str, ...] = ()  # of the varied keys
@@ -38,7 +38,7 @@ class Curves:
 class Midline:
     place: np.ndarray  # along an axis [m], NaN in gaps
     damage: np.ndarray
-    displacement: np.ndarray  # its magnitude [m]
+    displacement: np.ndarray  # magnitude [m]
 
 
 @dataclass
@@ -104,7 +104,7 @@ def _curves(results: ResultsFolder, label: str, looks: dict, completed: bool) ->
 
 
 def _outcomes(results: ResultsFolder) -> dict[str, tuple[float, str]]:
-    """Numbers that a run comes down to, with units: its largest reaction, and its probes at the last step."""
+    """Scalar outcomes of a run, with units: its largest reaction, and its probes at the last step."""
     peaks = [values.max() for values in _reactions(results.history).values()]
     outcomes = {"peak reaction": (float(max(peaks)), "N")} if peaks else {}
     fields = {probe.get("name"): probe.get("field", "displacement") for probe in results.tables("probe")}
@@ -126,10 +126,10 @@ def _reactions(history: dict[str, list]) -> dict[str, np.ndarray]:
 
 
 def midline(results: ResultsFolder, axis: int, *fields: np.ndarray) -> list[np.ndarray]:
-    """Places and fields of the points nearest to the line along an axis through the middle of the body.
+    """Positions and fields of the points nearest to the line along an axis through the middle of the body.
 
-    Points of layers are no part of the body. Points that are equally near (the two rows beside the
-    line) are averaged. NaN stands where the body has no point near the line, as in a hole.
+    Points of layers are not part of the body. Points that are equally near (the two rows beside the line) are
+    averaged. NaN marks gaps where the body has no point near the line, as in a hole.
     """
     spacing = results.spacing
     body = np.ones(len(results.volume), dtype=bool)
@@ -155,7 +155,7 @@ def midline(results: ResultsFolder, axis: int, *fields: np.ndarray) -> list[np.n
 
 
 def labels(keys: list[str], values: list[tuple[str, ...]]) -> list[str]:
-    """The varied values as a legend tells them: short names of the keys that have several values."""
+    """Legend texts of the varied values: short names of the keys that have several values."""
     short = [key.rpartition(".")[2] for key in keys]
     names = [name if short.count(name) == 1 else key for name, key in zip(short, keys)]
     several = [len(set(column)) > 1 for column in zip(*values)]
@@ -170,7 +170,7 @@ def labels(keys: list[str], values: list[tuple[str, ...]]) -> list[str]:
 
 
 def _entry(name: str, value: str) -> str:
-    """What is too long loses the middle of the key, which tells least, and then the end of the value."""
+    """Shortens a long label: first the middle of the key, which says least, then the end of the value."""
     table, _, rest = name.partition(".")
     room = LONGEST_LABEL - len(f"{table}… = {value}")
     if 3 <= room < len(rest):
@@ -185,7 +185,7 @@ def _shortened(text: str, most: int = LONGEST_LABEL) -> str:
 def line_looks(values: list[tuple[str, ...]]) -> list[dict]:
     """Colour by one key, dashes by the others if they have few values; else colour by combination.
 
-    The key that colours is numeric if there is one, and has the most values.
+    The colour key is numeric if possible, and has the most values.
     """
     columns = [list(dict.fromkeys(column)) for column in zip(*values)]
     key = main_key(values)
@@ -199,7 +199,7 @@ def line_looks(values: list[tuple[str, ...]]) -> list[dict]:
 
 
 def main_key(values: list[tuple[str, ...]]) -> int:
-    """Place of the key that colours lines and that outcomes are drawn over: numeric if one is, with most values."""
+    """Index of the key for colours and for the abscissa of outcomes: numeric if possible, with the most values."""
     columns = [list(dict.fromkeys(column)) for column in zip(*values)]
     return max(range(len(columns)), key=lambda place: (len(columns[place]) > 1, _is_numeric(columns[place]),
                                                        len(columns[place])))  # fmt: skip
@@ -213,7 +213,7 @@ def _is_numeric(texts: list[str]) -> bool:
 
 
 def _colours(texts: list[str]) -> dict:
-    """Numbers get the shades of an ordered map by rank, a few words distinct colours."""
+    """Numbers get the shades of an ordered map by rank, a few words get distinct colours."""
     if _is_numeric(texts):
         return dict(zip(sorted(texts, key=float), _shades(len(texts))))
     return dict(zip(texts, LINES if len(texts) <= len(LINES) else _shades(len(texts))))
@@ -253,7 +253,7 @@ def _draw_reactions(axes, shown: list[Curves]) -> None:
 
 
 def _draw_midlines(axes, shown: list[Curves]) -> None:
-    """Damage, if there is any, or displacement at the last step, along the midline that has most of it."""
+    """Damage, if there is any, or displacement at the last step, along the midline with the largest value."""
     damaged = max(curves.largest_damage for curves in shown) > 0.0
 
     def largest(axis: int) -> float:
@@ -271,7 +271,7 @@ def _draw_midlines(axes, shown: list[Curves]) -> None:
 
 
 def _quantities(shown: list[Curves]) -> list[str]:
-    """Names of the outcomes to draw: those that are no zero, the largest component of a vector first."""
+    """Names of the outcomes to draw: those that are not zero, the largest component of a vector first."""
     names = dict.fromkeys(name for curves in shown for name in curves.outcomes)
     size = {name: max(abs(curves.outcomes[name][0]) for curves in shown if name in curves.outcomes) for name in names}
     vectors = {name.rpartition(" ")[0] for name in names if name[-2:] in (" x", " y", " z")}
@@ -319,7 +319,7 @@ def _field(line: Midline, damaged: bool) -> np.ndarray:
 
 
 def _widths(count: int):
-    """Of lines; the later is the thinner, so that the earlier are seen beneath where lines coincide."""
+    """Line widths: later lines are thinner, so that earlier ones stay visible where lines coincide."""
     return np.linspace(3.2 if count > 1 else 1.8, 1.4 if count > 1 else 1.8, count)
 
 
@@ -328,7 +328,7 @@ def _draw_axis(axes) -> None:
 
 
 def _draw_legend(figure, axes, shown: list[Curves]) -> None:
-    """Beside the panels; of many combinations, evenly chosen ones are named."""
+    """The legend beside the panels; of many combinations, evenly chosen ones are named."""
     handles, texts = axes.get_legend_handles_labels()
     chosen = np.unique(np.linspace(0, len(handles) - 1, min(MOST_LABELS, len(handles))).round().astype(int))
     handles, texts = [handles[place] for place in chosen], [texts[place] for place in chosen]

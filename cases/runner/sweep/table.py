@@ -25,13 +25,13 @@ COSTS = ["seconds_total", "peak_memory_bytes"]
 
 
 def figures(folder: Path) -> dict:
-    """The columns that a results folder fills; empty if its run has not ended."""
+    """The columns that come from a results folder; empty if its run has not ended."""
     try:
         summary = json.loads((folder / "summary.json").read_bytes())
     except (OSError, ValueError):
         return {}
     row = {name: summary.get(name, "") for name in FIGURES}
-    if summary.get("steps") or summary.get("max_displacement"):  # zeros of a body at rest are no results
+    if summary.get("steps") or summary.get("max_displacement"):  # the zeros of a body at rest are no results
         row |= {column: summary.get("energy", {}).get(name, "") for column, name in ENERGIES.items()}
         row |= {f"peak_reaction:{name}": peak for name, peak in _peak_reactions(folder).items()}
         for name, reaction in summary.get("reactions", {}).items():
@@ -51,7 +51,7 @@ def _probe_columns(name: str, value) -> dict:
 
 
 def _peak_reactions(folder: Path) -> dict[str, float]:
-    """Per support set the largest norm of its reaction over all accepted steps [N]."""
+    """Largest norm of each support set's reaction over all accepted steps [N]."""
     peaks: dict[str, float] = {}
     try:
         with open(folder / "history.csv", newline="", encoding="utf-8") as file:
@@ -67,9 +67,9 @@ def _peak_reactions(folder: Path) -> dict[str, float]:
 
 
 def quantities(rows: list[dict]) -> dict[str, list[float]]:
-    """What rows of a refinement tell of the body, by column: reactions, probes, energies, displacement.
+    """The refined quantities of rows by column: reactions, probes, energies, displacement.
 
-    Components of a vector that are round-off of its others are left out, and what is always zero.
+    Components of a vector that are round-off relative to its others are left out, as are columns of zeros.
     """
     names = [name for name in rows[0] if name.partition(":")[0] in ("peak_reaction", "final_reaction", "probe")]
     names += ["energy_stored", "energy_dissipated", "max_displacement"]
@@ -87,7 +87,7 @@ def quantities(rows: list[dict]) -> dict[str, list[float]]:
 def write_table(path: Path, keys: list[str], rows: list[dict]) -> None:
     """Replaces the table by a complete new one in one rename.
 
-    A set or probe that only some combinations have gets a column all the same.
+    A set or probe that exists in some combinations only still gets a column.
     """
     fixed = [*keys, "status", "exit_code", *FIGURES, *ENERGIES]
     found = dict.fromkeys(column for row in rows for column in row)

@@ -1,4 +1,4 @@
-"""What is varied: reads --vary and --with, and names the folders of the combinations."""
+"""Varied keys: reads --vary and --with, and names the folders of the combinations."""
 
 import hashlib
 import os
@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from itertools import product
 
 CLOSING = {"[": "]", "{": "}", "(": ")"}
-LONGEST_NAME = 150  # of a folder, in characters
+LONGEST_NAME = 150  # limit on a folder's name, in characters
 
 
 class WrongInput(Exception):
-    """A sentence for a person: what is wrong and what is allowed."""
+    """An error message for the user: what is wrong and what is allowed."""
 
 
 def split_values(text: str) -> list[str]:
-    """Parts between the commas that are outside of brackets and quotes."""
+    """Splits at the commas that are outside brackets and quotes."""
     parts, begin, expected, quote, escaped = [], 0, [], "", False
     for position, character in enumerate(text):
         if quote:
@@ -42,10 +42,10 @@ def split_values(text: str) -> list[str]:
 
 @dataclass
 class Axis:
-    """Keys that vary together: in the k-th of its places each has its k-th value."""
+    """Keys that vary together: at the k-th position each has its k-th value."""
 
     keys: list[str]
-    values: list[list[str]]  # per key
+    values: list[list[str]]  # one list per key
 
     def __len__(self) -> int:
         return len(self.values[0])
@@ -69,7 +69,7 @@ def read_variation(option: str, text: str) -> tuple[str, list[str]]:
 
 
 def vary(text: str) -> Axis:
-    """Of --vary."""
+    """Axis of --vary."""
     key, parts = read_variation("--vary", text)
     twice = [value for number, value in enumerate(parts) if value in parts[:number]]
     if twice:
@@ -78,7 +78,7 @@ def vary(text: str) -> Axis:
 
 
 def vary_with(axes: list[Axis], text: str) -> None:
-    """Of --with: another key of the last axis."""
+    """Adds the key of --with to the last axis."""
     key, parts = read_variation("--with", text)
     if not axes:
         raise WrongInput(f"--with {text}: needs a --vary before it, with which {key} varies")
@@ -89,7 +89,7 @@ def vary_with(axes: list[Axis], text: str) -> None:
 
 
 def check_keys(varied: list[str], settings: list[str]) -> None:
-    """Refuses a key that is given twice, also by --set, and folders of results."""
+    """Refuses keys that are given twice, also by --set, and the key of the results folder."""
     set_keys = [setting.partition("=")[0].strip().removesuffix(":").strip() for setting in settings]
     for place, key in enumerate(varied):
         if key in varied[:place]:
@@ -101,7 +101,7 @@ def check_keys(varied: list[str], settings: list[str]) -> None:
 
 
 def combinations(axes: list[Axis]) -> list[tuple[str, ...]]:
-    """Every combination of the axes' places, as values of all keys; the last axis changes fastest."""
+    """All combinations of the axes' positions, as values of all keys; the last axis changes fastest."""
     places = product(*(range(len(axis)) for axis in axes))
     return [tuple(values[k] for axis, k in zip(axes, place) for values in axis.values) for place in places]
 
@@ -109,7 +109,7 @@ def combinations(axes: list[Axis]) -> list[tuple[str, ...]]:
 def folder_name(settings: list[str]) -> str:
     """The settings as a file name: "key=value,key2=value2".
 
-    Where characters had to be replaced, or the name cut, a checksum keeps names apart.
+    If characters had to be replaced, or the name was cut, a checksum keeps names distinct.
     """
     wanted = ",".join(settings)
     parts = [setting.partition("=") for setting in settings]

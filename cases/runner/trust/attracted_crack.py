@@ -1,6 +1,6 @@
-"""Beam with three holes, bent at three points, whose eccentric crack ends in the middle hole, as in beams of PMMA [Ingraffea
-and Grigoriu 1990]. No digits of the measured path are at hand: judged
-by whether the crack meets that hole."""
+"""Beam with three holes in three-point bending, whose eccentric crack ends in the middle hole, as in beams of PMMA
+[Ingraffea and Grigoriu 1990]. The measured path is not available as numbers, so the criterion is whether the crack
+meets that hole."""
 
 import math
 import tomllib
@@ -15,7 +15,7 @@ INCH, THICKNESS = 0.0254, 0.0127
 HALF, DEPTH, SUPPORT = 10 * INCH, 8 * INCH, 9 * INCH
 HOLES, RADIUS = [(-4 * INCH, y * INCH) for y in (2.75, 4.75, 6.75)], 0.25 * INCH
 NOTCH, ASIDE = 1.5 * INCH, -5 * INCH
-OPENING = 4 * math.sqrt(FRACTURE_ENERGY * NOTCH / (math.pi * MODULUS))  # of a crack as long in a wide plate that tears
+OPENING = 4 * math.sqrt(FRACTURE_ENERGY * NOTCH / (math.pi * MODULUS))  # such a crack in a wide plate at failure
 
 
 def text(lattice: Lattice, h: float) -> str:
@@ -51,7 +51,7 @@ stop_below = 0.25
 
 
 def missed_by(folder: Path) -> float:
-    """1 + how far the crack stays away from the rim of the middle hole, in horizons."""
+    """1 + the distance of the crack from the rim of the middle hole, in horizons."""
     lattice = tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]
     away = [math.dist(place, HOLES[1]) - RADIUS for place in crack_path.broken_middles(folder)]
     return 1 + max(min(away), 0.0) / (lattice["spacing"] * lattice["horizon_ratio"])

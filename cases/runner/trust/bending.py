@@ -1,8 +1,9 @@
-"""What beams bent at three points have in common."""
+"""Common parts of beams in three-point bending."""
 
 
 def rollers(support: float, depth: float) -> str:
-    """Under both ends, `support` from the middle, and above it, where the beam is pushed down and held along its axis."""
+    """Supports under both ends, `support` from the middle, and above it the load, where the beam is also held along its
+    axis."""
     return f"""\
 [[roller]]
 name = "left"
@@ -29,7 +30,7 @@ normal = [1, 0]
 
 
 def mouth_sets(x: float, h: float) -> str:
-    """Sets to both sides of a notch at x, beside its mouth."""
+    """Sets on both sides of a notch at x, beside its mouth."""
     return f"""\
 [[set]]
 name = "mouth_right"

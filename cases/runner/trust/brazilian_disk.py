@@ -1,6 +1,6 @@
-"""Disk with a central crack along the line on which it is pressed together by two points, under the opening of the crack's
-middle [Atkinson et al. 1982]. Followed to its peak: once split, the halves bear more than the whole did. One of the two tips cannot
-grow: otherwise they compete, and which one runs is round-off's choice."""
+"""Disk with a central crack along the line on which two points compress it, under control of the opening at the crack's
+middle [Atkinson et al. 1982]. The run ends at its peak: once split, the halves bear more than the whole disk. One of
+the two tips cannot grow: otherwise round-off would decide which tip runs."""
 
 import math
 from pathlib import Path
@@ -10,9 +10,9 @@ from setting import FRACTURE_ENERGY, MODULUS, setting
 from specimen import Lattice, Measure, Specimen, aside, peak, rows
 
 RADIUS, THICKNESS, SHARE = 0.02, 1e-3, 0.5
-CRACK = SHARE * RADIUS  # half of it
+CRACK = SHARE * RADIUS  # half length
 TOUGHNESS = lefm.toughness(MODULUS, FRACTURE_ENERGY)
-FACTORS = {0.0: 1.0, 0.2: 1.0600, 0.3: 1.1356, 0.4: 1.2431, 0.5: 1.3872, 0.6: 1.5783}  # of a / R
+FACTORS = {0.0: 1.0, 0.2: 1.0600, 0.3: 1.1356, 0.4: 1.2431, 0.5: 1.3872, 0.6: 1.5783}  # by a / R
 
 
 def factor(share: float) -> float:
@@ -27,7 +27,7 @@ def load(crack: float) -> float:
 
 def text(lattice: Lattice, h: float) -> str:
     x = aside(lattice, h)
-    opening = 4 * load(CRACK) / (math.pi * RADIUS * THICKNESS) * CRACK / MODULUS  # of a crack in a wide plate, at its middle
+    opening = 4 * load(CRACK) / (math.pi * RADIUS * THICKNESS) * CRACK / MODULUS  # such a crack in a wide plate
     return setting(h, lattice, THICKNESS, ["elastic"]) + f"""
 [[lattice.shape]]
 add = "disk"

@@ -1,5 +1,6 @@
-"""Panel with a central crack, pulled at its ends, under the opening of the crack's middle. Along the lattice it is
-half of one up to a plane of symmetry, with one tip; a turned lattice does not go on beyond such a plane."""
+"""Panel with a central crack, pulled at its ends, under control of the opening at the crack's middle. Along the
+lattice only half of it up to a plane of symmetry is modelled, with one tip; a turned lattice cannot continue beyond
+such a plane."""
 
 from pathlib import Path
 
@@ -8,7 +9,7 @@ from setting import FRACTURE_ENERGY, MODULUS, setting, under_opening
 from specimen import Lattice, Measure, Specimen, aside, peak, rows
 
 WIDTH, HEIGHT, THICKNESS = 0.04, 0.1, 1e-3
-CRACK = 0.25 * WIDTH  # half of it
+CRACK = 0.25 * WIDTH  # half length
 TOUGHNESS = lefm.toughness(MODULUS, FRACTURE_ENERGY)
 
 
@@ -37,7 +38,7 @@ displacement = [0, "-load"]
 
 def text(lattice: Lattice, h: float) -> str:
     y = aside(lattice, h)
-    opening = 4 * load(CRACK) / (WIDTH * THICKNESS) * CRACK / MODULUS  # of a crack in a wide panel, at its middle
+    opening = 4 * load(CRACK) / (WIDTH * THICKNESS) * CRACK / MODULUS  # at the middle of a crack in a wide panel
     return setting(h, lattice, THICKNESS, ["ends"]) + f"""
 [[lattice.shape]]
 add = "box"

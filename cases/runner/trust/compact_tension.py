@@ -1,4 +1,4 @@
-"""Compact tension on two pins that turn, ASTM E399, under the opening of its mouth."""
+"""Compact-tension specimen on two rotating pins, ASTM E399, under control of its mouth opening."""
 
 from pathlib import Path
 
@@ -68,7 +68,8 @@ def highest(folder: Path) -> float:
 
 
 def growing(folder: Path) -> float:
-    """The discs about the pins, which turn as a whole, stiffen the arms: by what they do to the whole specimen."""
+    """Stiffness of the whole specimen relative to its closed form: the discs around the pins rotate rigidly and stiffen
+    the arms."""
     force, opening = "reaction_y:upper", lambda a: lefm.tension_opening(a / WIDTH) / (MODULUS * THICKNESS)
     stiffer = elastic_factor(folder, force, opening(CRACK))
     return toughness(folder, force, lambda a: stiffer * opening(a), load, CRACK, 0.85 * WIDTH, GROWN)

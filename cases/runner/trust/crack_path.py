@@ -1,4 +1,4 @@
-"""Where a crack has run, from the bonds that have broken, and how far that is from a path that was measured."""
+"""The path of a crack from the broken bonds, and its distance from a measured path."""
 
 import csv
 import math
@@ -8,7 +8,7 @@ Place = tuple[float, float]
 
 
 def broken_middles(folder: Path) -> list[Place]:
-    """Middles of the broken bonds [m]."""
+    """Midpoints of the broken bonds [m]."""
     import h5py
 
     with h5py.File(folder / "results.h5") as file:
@@ -19,7 +19,8 @@ def broken_middles(folder: Path) -> list[Place]:
 
 
 def line(middles: list[Place], along: int, step: float, least: int = 3) -> list[Place]:
-    """Means of the middles in slices `step` thick across an axis, of at least so many bonds: the crack's middle line."""
+    """The crack's centre line: mean midpoints in slices of thickness `step` across an axis, with a least number of
+    bonds each."""
     slices: dict[int, list[Place]] = {}
     for middle in middles:
         slices.setdefault(math.floor(middle[along] / step), []).append(middle)
@@ -27,7 +28,7 @@ def line(middles: list[Place], along: int, step: float, least: int = 3) -> list[
 
 
 def distance(place: Place, path: list[Place]) -> float:
-    """To the nearest point of a polyline."""
+    """Distance to the nearest point of a polyline."""
     return min(_to_piece(place, *piece) for piece in zip(path, path[1:]))
 
 

@@ -1,5 +1,5 @@
-"""Double cantilever, whose ends are driven apart: its crack grows stably along a groove, which only bonds cross that
-can fail. Judged by the load, and by the energy that bonds take up on the way."""
+"""Double cantilever whose ends are driven apart: its crack grows stably along a groove, because only bonds that cross
+the groove can fail. Compared are the load and the energy dissipated by bonds."""
 
 import math
 import tomllib
@@ -10,8 +10,8 @@ from setting import FRACTURE_ENERGY, MODULUS, setting
 from specimen import Lattice, Measure, Specimen, aside, rows
 
 ARM, LENGTH, THICKNESS = 0.01, 0.066, 1e-3
-FIRST, LAST = 0.025, 0.044  # crack lengths from and to which it is followed
-ROOT = 0.673  # of an arm, by which its root makes it longer [Foote and Buchwald 1985]
+FIRST, LAST = 0.025, 0.044  # crack lengths between which the growth is followed
+ROOT = 0.673  # extra crack length for the rotation of an arm's root, over the arm's height [Foote and Buchwald 1985]
 
 
 def longer(crack: float) -> float:
@@ -19,7 +19,7 @@ def longer(crack: float) -> float:
 
 
 def opening(crack: float, modulus: float = MODULUS) -> float:
-    """At which G = 3 E h^3 D^2 / (16 a'^4) is the fracture energy."""
+    """Opening at which G = 3 E h^3 D^2 / (16 a'^4) is the fracture energy."""
     return 4 * longer(crack) ** 2 * (FRACTURE_ENERGY / (3 * modulus * ARM**3)) ** 0.5
 
 
@@ -28,7 +28,7 @@ def elastic_load(crack: float, apart: float, modulus: float = MODULUS) -> float:
 
 
 def growing_load(apart: float, modulus: float) -> float:
-    """P of arms that are `apart` while G is the fracture energy: whatever their root is."""
+    """P of arms whose ends are `apart` while G is the fracture energy, for any compliance of their root."""
     arm = (3 * modulus * ARM**3 * apart**2 / (16 * FRACTURE_ENERGY)) ** 0.25
     return modulus * THICKNESS * ARM**3 * apart / (8 * arm**3)
 
@@ -87,7 +87,7 @@ steps = 7
 
 
 def load_while_growing(folder: Path) -> float:
-    """Mean of P over that of a cantilever as stiff as this one at first, where the crack has grown by half an arm."""
+    """Mean of P over that of a cantilever with the same initial stiffness, once the crack has grown by half an arm."""
     found = rows(folder)
     apart = [row["load_factor"] * opening(LAST) for row in found]
     modulus = MODULUS * found[0]["reaction_y:upper"] / elastic_load(FIRST, apart[0])
@@ -97,8 +97,8 @@ def load_while_growing(folder: Path) -> float:
 
 
 def energy_over_area(folder: Path) -> float:
-    """Slope of the dissipated energy over the tip's place once the crack has grown by a quarter of an arm, over what a
-    straight tear in the direction of the crack takes: G_c is the mean over all directions."""
+    """Slope of the dissipated energy over the tip's position once the crack has grown by a quarter of an arm, over the
+    energy of a straight tear in the direction of the crack: G_c is the mean over all directions."""
     found = [row for row in rows(folder) if row["tip"] > FIRST + 0.25 * ARM]
     taken = slope([row["tip"] for row in found], [row["dissipated_energy"] for row in found]) / THICKNESS
     lattice = tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]
@@ -106,8 +106,8 @@ def energy_over_area(folder: Path) -> float:
 
 
 def share_of_direction(ratio: float, angle: float, samples: int = 720) -> float:
-    """What a straight tear at an angle to the lattice takes over the mean of all angles: bonds that cross it are as
-    many as |xi . n|, and take energies like |xi| and their share of volume."""
+    """Energy of a straight tear at an angle to the lattice over the mean of all angles. The number of bonds across it
+    is proportional to |xi . n|, and the energy of each to |xi| times its volume weight."""
     reach = range(-math.ceil(ratio), math.ceil(ratio) + 1)
     bonds = [(i, j, math.hypot(i, j)) for i in reach for j in reach if (i, j) != (0, 0)]
     weighted = [(i, j, length * min(max(ratio + 0.5 - length, 0.0), 1.0)) for i, j, length in bonds]
@@ -116,7 +116,7 @@ def share_of_direction(ratio: float, angle: float, samples: int = 720) -> float:
 
 
 def slope(x: list[float], y: list[float]) -> float:
-    """Of the line with the least squares."""
+    """Slope of the least-squares line."""
     x_mean, y_mean = sum(x) / len(x), sum(y) / len(y)
     return sum((a - x_mean) * (b - y_mean) for a, b in zip(x, y)) / sum((a - x_mean) ** 2 for a in x)
 

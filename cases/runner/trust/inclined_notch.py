@@ -13,15 +13,15 @@ from specimen import Lattice, Measure, Specimen
 RADIUS, THICKNESS = 0.05, 5e-3
 SUPPORT, NOTCH, INCLINED = 0.43 * RADIUS, 0.3 * RADIUS, math.radians(30)
 TIP = (NOTCH * math.sin(INCLINED), NOTCH * math.cos(INCLINED))
-# Digits of the measured path as github.com/floiseau/gcrack has them, m, the load at (0, RADIUS).
+# The measured path in m, digitised in github.com/floiseau/gcrack; the load is at (0, RADIUS).
 MEASURED = [
     (0.00727, 0.01314), (0.00625, 0.01492), (0.00459, 0.01735), (0.00344, 0.01939), (0.00191, 0.02245), (0.0014, 0.02436),
     (0.00102, 0.02615), (0.00077, 0.02793), (0.00051, 0.02985), (0.00038, 0.03176), (0.00026, 0.03342), (0.00013, 0.03508),
     (0.0, 0.03661), (-0.00013, 0.03827), (-0.00026, 0.0412), (-0.00026, 0.04349), (-0.00051, 0.04643), (-0.00038, 0.04885),
     (-0.00038, 0.05),
 ]  # fmt: skip
-FOLLOWED = 0.03  # height up to which it is compared
-OPENING = 4 * math.sqrt(FRACTURE_ENERGY * NOTCH / (math.pi * MODULUS))  # of a crack as long in a wide plate that tears
+FOLLOWED = 0.03  # height up to which the paths are compared
+OPENING = 4 * math.sqrt(FRACTURE_ENERGY * NOTCH / (math.pi * MODULUS))  # such a crack in a wide plate at failure
 
 
 def text(lattice: Lattice, h: float) -> str:
@@ -68,7 +68,7 @@ stop_below = 0.3
 
 
 def deviation(folder: Path) -> float:
-    """1 + the largest distance of the crack's middle line from the measured one, in horizons."""
+    """1 + the largest distance of the crack's centre line from the measured one, in horizons."""
     lattice = tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]
     horizon = lattice["spacing"] * lattice["horizon_ratio"]
     middles = [place for place in crack_path.broken_middles(folder) if TIP[1] < place[1] < FOLLOWED]

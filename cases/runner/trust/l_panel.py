@@ -1,8 +1,8 @@
-"""Panel of concrete in the shape of an L, 500 x 500 x 100 mm less a quarter, held at its foot and lifted near the end of
-its arm: a crack leaves the corner [Winkler 2001]. With the strength that the horizon gives, and with the measured one.
+"""L-shaped panel of concrete, 500 x 500 x 100 mm less a quarter, held at its foot and lifted near the end of its arm:
 
-Elasticity alone gives 60 kN/mm at the loaded point, in plane stress with the foot held, where 40 were measured, so that
-loads are what can be compared, not displacements."""
+a crack starts at the corner [Winkler 2001]. It runs with the strength that the horizon gives, and with the measured
+one. Elasticity alone gives 60 kN/mm at the loaded point, in plane stress with a clamped foot, where 40 were
+measured. So loads can be compared, and displacements cannot."""
 
 from pathlib import Path
 
@@ -12,8 +12,8 @@ from specimen import Lattice, Measure, Specimen, peak, rows
 
 MODULUS, FRACTURE_ENERGY, TENSILE = 25.85e9, 89.0, 2.7e6
 SIDE, THICKNESS, ARM_END = 0.5, 0.1, 0.47
-# Largest measured load and the displacement of the loaded point there: series A, digits as
-# github.com/PSAAPGroupLinder/lShapedPanelBenchmark has them.
+# Largest measured load and the displacement of the loaded point there: series A, digitised in
+# github.com/PSAAPGroupLinder/lShapedPanelBenchmark.
 LOAD, DISPLACEMENT = 7219.1, 0.207754e-3
 
 

@@ -1,4 +1,4 @@
-"""Linear elastic fracture mechanics: closed forms that specimens are judged by."""
+"""Linear elastic fracture mechanics: closed forms that specimens are compared with."""
 
 import math
 
@@ -20,7 +20,7 @@ def bend_load(toughness: float, width: float, crack: float, thickness: float) ->
 
 
 def bend_opening(a: float) -> float:
-    """E B V / P of a notched beam with S = 4 W, V the opening of its mouth, a over W: 24 a v(a)
+    """E B V / P of a notched beam with S = 4 W; V is the mouth opening, a stands for a / W: 24 a v(a)
     [Tada, Paris and Irwin 2000]."""
     return 24 * a * (0.76 - 2.28 * a + 3.87 * a**2 - 2.04 * a**3 + 0.66 / (1 - a) ** 2)
 
@@ -35,7 +35,7 @@ def tension_load(toughness: float, width: float, crack: float, thickness: float)
 
 
 def tension_opening(a: float) -> float:
-    """E B V / P of a compact-tension specimen, V the opening of its mouth at the edge [Saxena and Hudak 1978]."""
+    """E B V / P of a compact-tension specimen; V is the mouth opening at the edge [Saxena and Hudak 1978]."""
     shape = 1.6137 + 12.678 * a - 14.231 * a**2 - 16.610 * a**3 + 35.050 * a**4 - 14.494 * a**5
     return (1 + 0.25 / a) * ((1 + a) / (1 - a)) ** 2 * shape
 
@@ -49,19 +49,19 @@ def panel_load(toughness: float, width: float, crack: float, thickness: float) -
 
 def cantilever_crack(modulus: float, fracture_energy: float, arm: float, opening: float) -> float:
     """Crack length of a double cantilever whose ends are `opening` apart [m]: 3 E h^3 D^2 / (16 (a + 0.64 h)^4) = G_c,
-    with what the arms turn at their root as 0.64 of their height [Kanninen 1973]."""
+    where 0.64 of the arms' height accounts for the rotation at their root [Kanninen 1973]."""
     return (3 * modulus * arm**3 * opening**2 / (16 * fracture_energy)) ** 0.25 - 0.64 * arm
 
 
 def cantilever_load(modulus: float, arm: float, thickness: float, crack: float, opening: float) -> float:
-    """P of its ends [N]."""
+    """P at the ends of a double cantilever [N]."""
     return modulus * thickness * arm**3 * opening / (8 * (crack + 0.64 * arm) ** 3)
 
 
 def williams_opening(toughness: float, modulus: float, poisson_ratio: float, x: str, y: str,
                      is_plane_strain: bool = False) -> tuple[str, str]:  # fmt: skip
-    """Displacements of mode I about a tip at the origin in plane stress or strain, as expressions of x and y given as
-    texts: K / (2 mu) sqrt(r / 2 pi) (kappa - cos t) (cos t/2, sin t/2)."""
+    """Displacements of mode I around a tip at the origin in plane stress or strain, as expressions in x and y, which
+    are given as texts: K / (2 mu) sqrt(r / 2 pi) (kappa - cos t) (cos t/2, sin t/2)."""
     shear = modulus / (2 * (1 + poisson_ratio))
     kappa = 3 - 4 * poisson_ratio if is_plane_strain else (3 - poisson_ratio) / (1 + poisson_ratio)
     r, t = f"sqrt(({x})^2+({y})^2)", f"atan2({y},{x})"

@@ -1,4 +1,4 @@
-"""Single-edge notched beams in three-point bending, ASTM E399 (S = 4 W), under their mouth opening."""
+"""Single-edge notched beams in three-point bending, ASTM E399 (S = 4 W), under control of their mouth opening."""
 
 from pathlib import Path
 

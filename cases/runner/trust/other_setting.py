@@ -1,10 +1,10 @@
-"""The one setting with other material constants, and with a groove: law, horizon, corrections and solver stay."""
+"""The setting with other material constants, and with a groove; law, horizon, corrections and solver stay."""
 
 import setting
 
 
 def of_material(text: str, modulus: float, fracture_energy: float, strength: float | None = None) -> str:
-    """The case of another material: Pa, J/m2, Pa; without a strength it is what the horizon gives."""
+    """The case with another material: Pa, J/m2, Pa; without a given strength, the horizon determines it."""
     text = text.replace("no_fail = []\n", "")  # an empty list is refused
     text = _replaced(text, f"youngs_modulus = {setting.MODULUS}", f"youngs_modulus = {modulus}")
     damage = f"fracture_energy = {fracture_energy}" + (f"\nstrength = {strength}" if strength else "")
@@ -12,7 +12,7 @@ def of_material(text: str, modulus: float, fracture_energy: float, strength: flo
 
 
 def grooved(text: str, y: float) -> str:
-    """Only bonds that cross the line at y can fail: two elastic regions, and the law of damage between them alone."""
+    """Only bonds across the line at y can fail: two elastic regions, with the damage law only between them."""
     begin, damage, end = (text.index(head) for head in ("[material]\n", "[material.damage]\n", "[solver]\n"))
     material, law = text[begin:damage], text[damage:end]
     law = "".join(line for line in law.splitlines(True) if not line.startswith("no_fail"))

@@ -1,5 +1,5 @@
-"""Runs what is missing, side by side, each run in a folder of its own, so that an interrupted suite goes on where
-it was and two of them in one folder share the work."""
+"""Runs the missing cases in parallel, each in a folder of its own, so that an interrupted suite continues and two
+suites in one folder share the work."""
 
 import json
 import time
@@ -13,11 +13,11 @@ from program import Ending, Program
 from record import can_go_on, is_done, record_done
 
 
-LIMIT = 900.0  # s of one run: the suite ends, and what was not done by then goes on the next time
+LIMIT = 900.0  # s; a run that takes longer is interrupted, and the next suite resumes it
 
 
 class Failed(Exception):
-    """A run that has no results to be judged by."""
+    """A run without usable results."""
 
 
 @dataclass
@@ -29,7 +29,7 @@ class Ran:
     failure: str = ""  # why there are no results
 
     def value(self, of: Callable[[Path], float]) -> float:
-        """@raise Failed also where the results lack what is asked of them"""
+        """@raise Failed also if the results lack the requested quantity"""
         if self.failure:
             raise Failed(self.failure)
         try:
@@ -39,7 +39,7 @@ class Ran:
 
     @property
     def seconds(self) -> float:
-        """What the run took, now or earlier."""
+        """Duration of the run, in this or an earlier suite."""
         return json.loads((self.results / "summary.json").read_text())["seconds"]["total"] if not self.failure else 0.0
 
 
@@ -53,7 +53,7 @@ class Runs:
         return self._program.interrupted
 
     def run(self, texts: dict[str, str]) -> Iterator[Ran]:
-        """Runs of case texts by name, as they end; fewer where the suite is interrupted."""
+        """Runs case texts by name and yields them as they end; fewer if the suite is interrupted."""
         texts = {name: CASE.decode() + text for name, text in texts.items()}
         names = list(texts)
         jobs = Jobs(self._jobs, lambda number: self._memory(names[number], texts[names[number]]),
@@ -84,7 +84,7 @@ class Runs:
         is_known = case.is_file()
         goes_on = is_known and case.read_text() == text and can_go_on(out, text.encode(), [])
         write_own(case, text.encode(), CASE)
-        # The suite may have been moved: its results then tell the earlier place of the case.
+        # The suite may have been moved; then its results name the case's earlier path.
         moved = ["--overwrite"] if is_known else []
         words = ["resume", str(out)] if goes_on else ["run", str(case), "--output", str(out), *moved]
         began = time.monotonic()
@@ -96,7 +96,7 @@ class Runs:
         return Ran(name, out)
 
     def _failure(self, ending: Ending, case: Path, seconds: float) -> str:
-        """Without the place of the suite's folder."""
+        """A message without the path of the suite's folder."""
         if seconds >= LIMIT and not self.interrupted:
             return f"no end within {LIMIT:.0f} s"
         first = ending.message.splitlines()[0] if ending.message else f"exit code {ending.code}"

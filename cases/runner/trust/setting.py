@@ -1,4 +1,4 @@
-"""The one setting: found on the notched beam with a/W = 0.5, and the same for every specimen."""
+"""The one setting, calibrated on the notched beam with a/W = 0.5 and used for every specimen."""
 
 from specimen import Lattice
 
@@ -38,8 +38,8 @@ every = 1000000
 
 
 def under_opening(first: str, second: str, weights: str, largest: float, follow_growth: bool) -> str:
-    """Control by how far one set opens from the other [m], until the force has passed its peak, or further, until the
-    crack has grown."""
+    """Control of the opening between two sets [m], until the force has passed its peak or, if growth is followed, until
+    the crack has grown."""
     below = 0.45 if follow_growth else 0.97
     return f"""\
 [[control]]

@@ -1,5 +1,5 @@
-"""Size effect: notched beams of four sizes, S = 4 D, of concrete with its strength and its toughness, on one spacing. Their
-nominal strengths follow Bažant's law, and its slope is the toughness."""
+"""Size effect: notched beams of four sizes, S = 4 D, of concrete with its strength and toughness, on one spacing. Their
+nominal strengths follow Bažant's law, whose slope gives the toughness."""
 
 import math
 from pathlib import Path
@@ -13,19 +13,21 @@ from specimen import Lattice, Measure, Specimen, aside, peak, rows
 MODULUS, FRACTURE_ENERGY, TENSILE = 25.85e9, 89.0, 2.7e6  # concrete of the panels of [Winkler 2001]
 DEPTHS, NOTCH, THICKNESS, COARSEST = (0.2, 0.32, 0.52, 0.8), 0.3, 0.1, 0.04
 TOUGHNESS = lefm.toughness(MODULUS, FRACTURE_ENERGY)
-# Of the length E G / f_t^2, by which a process zone with linear softening makes long cracks longer [Cusatis and Schauffert 2009].
+# Share of the length E G / f_t^2 by which a process zone with linear softening extends long cracks [Cusatis and
+# Schauffert 2009].
 ZONE = 0.44 * MODULUS * FRACTURE_ENERGY / TENSILE**2
 
 
 def law(depth: float) -> float:
-    """Bažant's nominal strength P / (B D) for the data: K_Ic / sqrt(g D + g' c) with g = (4 f)^2 [Bažant and Planas 1998]."""
+    """Bažant's nominal strength P / (B D) for the data: K_Ic / sqrt(g D + g' c) with g = (4 f)^2 [Bažant and Planas
+    1998]."""
     shape = lambda notch: (4 * lefm.bend_factor(notch)) ** 2
     growth = (shape(NOTCH + 1e-5) - shape(NOTCH - 1e-5)) / 2e-5
     return TOUGHNESS / math.sqrt(shape(NOTCH) * depth + growth * ZONE)
 
 
 def toughness_of(depths: list[float], strengths: list[float]) -> tuple[float, float]:
-    """K_Ic by the slope of 1 / strength^2 over the depth, (4 f / K_Ic)^2, and r^2 of that line."""
+    """K_Ic from the slope (4 f / K_Ic)^2 of 1 / strength^2 over the depth, and r^2 of that line."""
     inverse = [1 / strength**2 for strength in strengths]
     x_mean, y_mean = sum(depths) / len(depths), sum(inverse) / len(inverse)
     xx = sum((x - x_mean) ** 2 for x in depths)
@@ -37,7 +39,7 @@ def toughness_of(depths: list[float], strengths: list[float]) -> tuple[float, fl
 def case(depth: float):
     def text(lattice: Lattice, h: float) -> str:
         x, crack = aside(lattice, h), NOTCH * depth
-        half = h * math.ceil(2.1 * depth / h)  # as many points to each side of the notch
+        half = h * math.ceil(2.1 * depth / h)  # the same number of points on each side of the notch
         mouth = 24 * law(depth) * crack / MODULUS * (0.76 - 2.28 * NOTCH + 3.87 * NOTCH**2 - 2.04 * NOTCH**3 + 0.66 / (1 - NOTCH) ** 2)
         concrete = of_material(setting(h, lattice, THICKNESS, ["ends"]), MODULUS, FRACTURE_ENERGY, TENSILE)
         return concrete + f"""
@@ -68,7 +70,7 @@ def name(depth: float) -> str:
 
 
 def of_all_sizes(folder: Path) -> tuple[float, float]:
-    """K_Ic by the slope of the law through all sizes, over the given one, and r^2: the other sizes' runs lie beside.
+    """K_Ic from the slope of the law through all sizes, over the given one, and r^2; reads the other sizes' runs.
 
     @raise ValueError if one has not run
     """

@@ -1,4 +1,4 @@
-"""What an entry of the suite is: runs of one setting, and numbers of each that a reference knows."""
+"""An entry of the suite: runs of one setting, and quantities of each that have a reference."""
 
 import csv
 from collections.abc import Callable
@@ -11,7 +11,8 @@ MIDDLE = SPACINGS[1]
 
 @dataclass(frozen=True)
 class Lattice:
-    """Of one run: the spacing over the specimen's coarsest one, and what else the answer must not hang on."""
+    """Lattice of one run: its refinement relative to the specimen's coarsest spacing, and choices that must not affect
+    the answer."""
 
     refinement: float = 1.0
     ratio: float = RATIOS[0]
@@ -23,25 +24,26 @@ class Lattice:
 
     @property
     def is_straight(self) -> bool:
-        """Whether it differs from the first one by its spacing alone."""
+        """Whether it differs from the reference lattice by its spacing alone."""
         return (self.ratio, self.angle) == (RATIOS[0], 0.0)
 
 
 def aside(lattice: Lattice, spacing: float) -> float:
-    """What a crack along a side of the lattice is moved by [m]: points of a turned one stand on it."""
+    """Offset of a crack along a side of the lattice [m]; on a turned lattice points lie on the crack."""
     return 0.0 if lattice.angle == 0.0 else 0.23 * spacing
 
 
 @dataclass
 class Measure:
-    """A number of a run over what the reference says: 1 is right."""
+    """A quantity of a run over its reference: 1 is exact."""
 
     quantity: str
     value: Callable[[Path], float]
     allowed: float = 0.02
-    at: float = SPACINGS[-1]  # the refinement at which it is judged
-    on_every_lattice: bool = False  # at that spacing, where it is judged by the worst
-    # Reference of a specimen whose crack is longer by that much, over its own: what a crack of finite width errs by.
+    at: float = SPACINGS[-1]  # refinement at which it is judged
+    on_every_lattice: bool = False  # also on the other lattices of that spacing, of which the worst counts
+    # Reference of a specimen with a crack longer by the argument, over the reference itself: the error of a crack of
+    # finite width.
     of_longer_crack: Callable[[float], float] | None = None
 
 
@@ -49,15 +51,15 @@ class Measure:
 class Specimen:
     name: str
     title: str
-    reference: str  # where the answers are from
+    reference: str  # source of the reference
     coarsest: float  # spacing [m]
-    case: Callable[[Lattice, float], str]  # lattice, spacing
+    case: Callable[[Lattice, float], str]  # of lattice and spacing
     measures: tuple[Measure, ...]
-    # Refinements, the coarsest first: finer ones where runs are cheap, closer ones where cracks run far.
+    # Refinements, the coarsest first: finer where runs are cheap, closer together where cracks run far.
     spacings: tuple[float, ...] = SPACINGS
 
     def lattices(self, quick: bool) -> list[Lattice]:
-        """Three spacings or more, two horizons, four angles; quick: the coarsest alone."""
+        """Three spacings or more, two horizons, four angles; quick: the coarsest only."""
         if quick:
             return [Lattice()]
         others = [Lattice(self.middle, RATIOS[1]), *(Lattice(self.middle, angle=angle) for angle in ANGLES[1:])]
@@ -65,7 +67,7 @@ class Specimen:
 
     @property
     def middle(self) -> float:
-        """The refinement of the other horizon and of the angles."""
+        """The refinement for the other horizon and the angles."""
         return self.spacings[1]
 
     def spacing(self, lattice: Lattice) -> float:
@@ -76,7 +78,7 @@ class Specimen:
 
 
 def rows(folder: Path, name: str = "history") -> list[dict]:
-    """Rows of a table, numbers as such; of the history without step 0, the body at rest."""
+    """Rows of a table, with numbers as such; rows of the history without step 0, the body at rest."""
 
     def value(text):
         try:
@@ -90,7 +92,7 @@ def rows(folder: Path, name: str = "history") -> list[dict]:
 
 
 def peak(values: list[float]) -> float:
-    """Largest value, between rows by the parabola through the three that are highest."""
+    """Largest value, interpolated by the parabola through the three highest rows."""
     top = max(range(len(values)), key=lambda k: values[k])
     if top in (0, len(values) - 1):
         return values[top]

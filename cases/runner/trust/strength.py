@@ -1,5 +1,5 @@
-"""Strengths of a body without a crack: a cell that repeats is strained until its stress has passed a peak. Data of
-soda-lime glass, of the nine circles of elastic brittle fracture [Nine circles 2026], second-hand."""
+"""Strengths of a body without a crack: a periodic cell is strained until its stress has passed a peak. The data for
+soda-lime glass are second-hand, from the nine circles of elastic brittle fracture [Nine circles 2026]."""
 
 import math
 import tomllib
@@ -10,19 +10,20 @@ from setting import setting
 from specimen import Lattice, Measure, Specimen, rows
 
 MODULUS, FRACTURE_ENERGY, TENSILE, BIAXIAL, SHEAR = 70e9, 10.0, 40e6, 27e6, 44.4e6
-POISSON_RATIO = 1 / 3  # of bonds in plane stress
-CELLS, COARSEST, THICKNESS = 12, 5e-5, 1e-3  # cells a side of the one that repeats
+POISSON_RATIO = 1 / 3  # of bond-based models in plane stress
+CELLS, COARSEST, THICKNESS = 12, 5e-5, 1e-3  # cells per side of the periodic cell
 
 
 def turned(first: float, second: float, angle: float) -> tuple[float, float, float]:
-    """Components xx, yy, xy of a tensor whose principal values lie at an angle."""
+    """Components xx, yy, xy of a tensor whose principal directions are turned by an angle."""
     mean, half = 0.5 * (first + second), 0.5 * (first - second)
     return mean + half * math.cos(2 * angle), mean - half * math.cos(2 * angle), half * math.sin(2 * angle)
 
 
 def case(second: float, most: float):
-    """Of strains that grow as 1 : second up to that many times the strain at the tensile strength, beyond the peak, or
-    six tenths of the critical stretch. What is repeated cannot be turned: the strains are, against the lattice."""
+    """Case text for strains in the ratio 1 : second. They grow to `most` times the strain at the tensile strength,
+    which is beyond the peak, but to at most six tenths of the critical stretch. A periodic cell cannot be turned, so
+    the strains are turned against the lattice."""
 
     def text(lattice: Lattice, h: float) -> str:
         critical = 4 * math.pi * FRACTURE_ENERGY * MODULUS / (9 * TENSILE**2 * h * lattice.ratio)
@@ -60,7 +61,7 @@ def specimen(name: str, title: str, second: float, largest: float, known: float)
     return Specimen(name, title, "glass, second-hand", COARSEST, case(second, largest), (strength,))
 
 
-# Uniaxial: the strain across is the elastic one, so that the stress across is not quite zero when bonds soften.
+# Uniaxial: the lateral strain is the elastic one, so the lateral stress is not quite zero when bonds soften.
 SPECIMENS = [
     specimen("strength_uniaxial", "Glass under tension", -POISSON_RATIO, 4.0, TENSILE),
     specimen("strength_biaxial", "Glass under equal biaxial tension", 1.0, 1.5, BIAXIAL),

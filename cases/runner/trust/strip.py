@@ -1,4 +1,4 @@
-"""Surfing boundary condition: the field of a crack moves steadily through a strip, and the crack after it
+"""Surfing boundary condition: the field of a crack tip moves steadily through a strip, and the crack follows it
 [Hossain, Hsueh, Bourdin and Bhattacharya 2014]."""
 
 import math
@@ -9,29 +9,29 @@ from setting import FRACTURE_ENERGY, MODULUS, setting
 from specimen import Lattice, aside
 
 THICKNESS = 1e-3  # in 2D
-LAYERS = 3  # in 3D, between two planes of symmetry: spacings
+LAYERS = 3  # in 3D, number of layers between two planes of symmetry
 
 
 @dataclass(frozen=True)
 class Strip:
-    """Sizes in horizons."""
+    """Lengths in horizons."""
 
     half_height: float = 10.0
     half_length: float = 13.0
-    way: float = 8.0  # that the field goes
-    inner: float = 6.5  # radii of the ring of J, about the middle
+    way: float = 8.0  # travel of the field
+    inner: float = 6.5  # radii of the ring of J around the middle
     outer: float = 8.5
     dimension: int = 2
-    turn: float = 0.0  # angle by which the field turns on its way [rad]: the crack's path is an arc
+    turn: float = 0.0  # angle by which the field turns on its way [rad]; the crack's path is then an arc
 
     @property
     def poisson_ratio(self) -> float:
-        """That of bonds, in plane stress and in 3D."""
+        """Poisson's ratio of bond-based models, in plane stress and in 3D."""
         return 1 / 3 if self.dimension == 2 else 1 / 4
 
     @property
     def modulus(self) -> float:
-        """E of a crack's opening: plane stress, or plane strain [Pa]."""
+        """E that governs the opening of a crack: plane stress, or plane strain [Pa]."""
         return MODULUS if self.dimension == 2 else MODULUS / (1 - self.poisson_ratio**2)
 
     @property
@@ -39,7 +39,7 @@ class Strip:
         return lefm.toughness(self.modulus, FRACTURE_ENERGY)
 
     def crack_area(self, unit: float) -> float:
-        """Over which the field goes [m2], the horizon being `unit`."""
+        """Area that the field passes [m2]; `unit` is the horizon."""
         return self.way * unit * THICKNESS
 
     def text(self, lattice: Lattice, h: float) -> str:
@@ -47,7 +47,7 @@ class Strip:
         height, length = self._whole(self.half_height, lattice, h), self._whole(self.half_length, lattice, h)
         start = -0.5 * self.way * unit
         u, v = self._field(unit, y)
-        # Of a crack that turns, what is behind it leaves the line of the field: that edge is free.
+        # If the field turns, the crack behind it does not lie on the field's axis: that edge is free.
         behind = "abs(x)" if self.turn == 0.0 else "x"
         thick = LAYERS * h
         corner, other, still, along = ("", "", "", "") if self.dimension == 2 else (", 0.0", f", {thick:.17g}", ", 0", ", 0")
@@ -82,7 +82,8 @@ steps = 40
 """  # fmt: skip
 
     def _whole(self, horizons: float, lattice: Lattice, h: float) -> float:
-        """That many horizons, and in 3D whole spacings, as planes of symmetry have the lattice in line."""
+        """The given number of horizons; in 3D rounded up to whole spacings, because planes of symmetry need an aligned
+        lattice."""
         return horizons * (h * lattice.ratio) if self.dimension == 2 else math.ceil(horizons * lattice.ratio) * h
 
     def _crack(self, begin: float, end: float, y: float, thick: float) -> str:
@@ -94,7 +95,7 @@ steps = 40
         return "vertices = [" + ", ".join(f"[{x}, {y}, {z}]" for x, z in corners) + "]"
 
     def _tip(self, load: float, start: float) -> tuple[float, float]:
-        """Of the arc at that load factor, which is level in its middle."""
+        """Position on the arc at a load factor; the arc is horizontal in its middle."""
         radius = -2 * start / self.turn
         angle = (load - 0.5) * self.turn
         return radius * math.sin(angle), radius * (1 - math.cos(angle))

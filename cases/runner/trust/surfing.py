@@ -1,4 +1,4 @@
-"""A steady crack in a strip: J on its way is what it resists with, and what it dissipates is G_c on its area."""
+"""A steady crack in a strip: J along the way is its resistance, and the dissipated energy is G_c times its area."""
 
 import tomllib
 from pathlib import Path
@@ -9,14 +9,14 @@ from strip import Strip
 
 
 def resistance(folder: Path) -> float:
-    """sqrt(J / G_c) where the crack runs steadily: mean over the last half of the way."""
+    """sqrt(J / G_c) while the crack runs steadily: mean over the second half of the way."""
     found = [row["tip_J"] for row in rows(folder)]
     steady = found[len(found) // 2 :]
     return (sum(steady) / len(steady) / FRACTURE_ENERGY) ** 0.5
 
 
 def dissipation(folder: Path) -> float:
-    """Energy that bonds have taken up over the area, over G_c, on the last half of the way."""
+    """Energy dissipated by bonds per area, over G_c, on the second half of the way."""
     lattice = tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]
     area = STRIP.crack_area(lattice["spacing"] * lattice["horizon_ratio"])
     found = rows(folder)

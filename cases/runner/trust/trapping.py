@@ -1,5 +1,5 @@
-"""What a lattice holds a running crack up with: K- and K+, the least and the largest stress intensity at which it
-goes on, over K_Ic, by law, horizon ratio, angle and perturbation (surfing.py)."""
+"""Lattice trapping of a running crack: K- and K+, the least and the largest stress intensity at which it runs, over
+K_Ic, by law, horizon ratio, angle and perturbation (surfing.py)."""
 
 import csv
 import io
@@ -15,14 +15,14 @@ from specimen import ANGLES, RATIOS, Lattice, rows
 from strip import Strip
 
 HORIZON = 3.015e-3  # m
-# Of the table [material.damage], and the mode that follows the law without teeth.
+# The table [material.damage], and the mode without saw teeth.
 LAWS = {
     "brittle": ('law = "critical_stretch"', "path"),
     "linear": ('law = "linear"', "newton"),
     "exponential": ('law = "exponential"', "newton"),
     "tanh": ('law = "tanh_continuous"', "newton"),
 }
-ONSET = 8.90504e6 / MODULUS  # of linear bonds of that energy and horizon for which none is given: as `check` tells
+ONSET = 8.90504e6 / MODULUS  # default onset for linear bonds of that energy and horizon, as `check` prints it
 PATHS = {
     "straight": Strip(),
     "arc": Strip(turn=math.radians(30), way=10.0),
@@ -30,7 +30,7 @@ PATHS = {
     "like_3d": Strip(half_height=6.0, half_length=8.0, way=4.0, inner=2.5, outer=4.5),
 }
 COLUMNS = ["law", "strength", "path", "horizon_ratio", "angle", "perturbation", "least_K", "largest_K", "note"]
-SIGN = ",".join(COLUMNS).encode()  # of the table
+SIGN = ",".join(COLUMNS).encode()  # signature of the table
 
 
 @dataclass(frozen=True)
@@ -84,8 +84,8 @@ def resistance(of: Setting, folder: Path) -> tuple[float, float]:
 
 
 def resistance_by_work(strip: Strip, folder: Path) -> tuple[float, float]:
-    """By what is not stored any more over the area, in each of the last three quarters of the way: a ring of J takes
-    no crack that turns."""
+    """Energy per area that is no longer stored, in each of the last three quarters of the way: the ring of J does not
+    apply to a crack that turns."""
     history = rows(folder)
     lost = []
     for quarter in (0.25, 0.5, 0.75, 1.0):
@@ -97,7 +97,7 @@ def resistance_by_work(strip: Strip, folder: Path) -> tuple[float, float]:
 
 
 def measure(runs: Runs, directory: Path, quick: bool, tell: Callable[[str], None]) -> None:
-    """Writes trapping.csv, and trapping.svg where there are angles."""
+    """Writes trapping.csv, and trapping.svg if several angles were run."""
     by_name = {f"trapping/{setting.name}": setting for setting in settings(quick)}
     found = []
     for ran in runs.run({name: text(setting) for name, setting in by_name.items()}):
@@ -120,7 +120,7 @@ def measure(runs: Runs, directory: Path, quick: bool, tell: Callable[[str], None
 
 
 def draw(found: list[list], path: Path) -> None:
-    """K- to K+ over the angle of the lattice, a fourfold one, in polar coordinates."""
+    """K- to K+ over the angle of the lattice, with fourfold symmetry, in polar coordinates."""
     import matplotlib
 
     matplotlib.use("Agg")

@@ -1,7 +1,7 @@
-"""One setting beside references that it was not fitted to: a table of what agrees and what does not
-(docs/trustworthy-peaks.md).
+"""Compares one setting with references that it was not fitted to; the table says what agrees and what does not
 
-The program to run is named by the environment variable PERISTAT_PROGRAM, which the launcher sets.
+(docs/trustworthy-peaks.md).
+The environment variable PERISTAT_PROGRAM, which the launcher sets, names the program to run.
 """
 
 import argparse
@@ -36,15 +36,15 @@ MODULES = (surfing, notched_beam, compact_tension, centre_crack, double_cantilev
            inclined_notch, attracted_crack, strength)  # fmt: skip
 ENTRIES: dict[str, Specimen] = {s.name: s for module in MODULES for s in module.SPECIMENS}
 STEADY = "surfing"
-TABLE = HEADING[0].encode()  # the sign of our table
+TABLE = HEADING[0].encode()  # the signature of the table
 PASSED, RED, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 3, 2, 5, 130
 
 
 def verdicts(specimens: list[Specimen], runs: Runs, quick: bool, tell: Callable[[str], None]) -> list[Verdict]:
-    """One per specimen and quantity; what is interrupted has no values."""
+    """One verdict per specimen and quantity; an interrupted one has no values."""
     places = {f"{specimen.name}/{lattice.name}": (specimen, lattice) for specimen in specimens for lattice in specimen.lattices(quick)}
     found = {specimen.name: [Verdict(specimen, measure, {}, {}, 0.0, {}) for measure in specimen.measures] for specimen in specimens}
-    # Judged when all have run: some quantities are of several sizes.
+    # Judged after all runs, because some quantities need several sizes.
     for ran in list(runs.run({name: specimen.text(lattice) for name, (specimen, lattice) in places.items()})):
         specimen, lattice = places[ran.name]
         for verdict in found[specimen.name]:
@@ -59,14 +59,14 @@ def take(verdict: Verdict, lattice: Lattice, ran: Ran, tell: Callable[[str], Non
         verdict.seconds += ran.seconds
         tell(f"{name}: {verdict.values[lattice]:.4f} of the reference")
     except Failed as failure:
-        # Runs on the finest lattices end where the peak is behind them: they owe nothing that is judged on coarser ones.
+        # Runs on the finest lattices end behind the peak, so quantities judged on coarser lattices do not need them.
         if lattice.refinement >= verdict.measure.at:
             verdict.failures[lattice] = str(failure)
             tell(f"{name}: {failure}")
 
 
 def extend_cracks(found: list[Verdict]) -> None:
-    """Gives every verdict kappa as the notched beam of the setting has it, if that beam and the strip were run."""
+    """Sets kappa of every verdict from the setting's notched beam, if that beam and the strip were run."""
     first = {}
     for verdict in found:
         first.setdefault(verdict.specimen.name, verdict)
@@ -81,7 +81,7 @@ def extend_cracks(found: list[Verdict]) -> None:
 
 def table(found: list[Verdict]) -> str:
     seconds: dict[str, float] = {}
-    for verdict in found:  # of which not every quantity counts all runs
+    for verdict in found:  # some quantities do not use all runs
         seconds[verdict.specimen.name] = max(verdict.seconds, seconds.get(verdict.specimen.name, 0.0))
     cost = ", ".join(f"{name} {second:.0f} s" for name, second in seconds.items())
     return "\n".join([*HEADING, *map(row, found)]) + f"\n\nSeconds of the runs: {cost}.\n"

@@ -1,11 +1,11 @@
-"""What the runs of an entry say of one quantity: pass, or red with its reason."""
+"""The result of an entry's runs for one quantity: pass, or red with the reason."""
 
 from dataclasses import dataclass
 
 from refinement import Refinement, refine
 from specimen import Lattice, Measure, Specimen
 
-CALIBRATION = "senb_05"  # the specimen that the setting, and the extension of cracks below, are from
+CALIBRATION = "senb_05"  # the specimen that the setting and the crack extension below come from
 
 
 @dataclass
@@ -15,16 +15,17 @@ class Verdict:
     values: dict[Lattice, float]  # over the reference
     failures: dict[Lattice, str]
     seconds: float
-    extension: dict[Lattice, float]  # kappa, see `extension_of`; empty: not known
+    extension: dict[Lattice, float]  # kappa, see `extension_of`; empty: unknown
 
     @property
     def straight(self) -> list[Lattice]:
-        """From the coarsest to the finest."""
+        """Straight lattices from the coarsest to the finest."""
         return sorted((lattice for lattice in self.values if lattice.is_straight), key=lambda lattice: -lattice.refinement)
 
     @property
     def judged_at(self) -> Lattice | None:
-        """The lattice that the quantity is asked on, or the finest that was run and is not finer."""
+        """The lattice at which the quantity is judged; if it was not run, the finest one that was run and is no
+        finer."""
         return next((lattice for lattice in reversed(self.straight) if lattice.refinement >= self.measure.at), None)
 
     @property
@@ -32,7 +33,7 @@ class Verdict:
         return None if self.judged_at is None else self.values[self.judged_at]
 
     def corrected_on(self, lattice: Lattice) -> float:
-        """The value over the reference of a crack that is longer by kappa horizons."""
+        """The value over the reference for a crack that is longer by kappa horizons."""
         value = self.values[lattice]
         if lattice not in self.extension or self.measure.of_longer_crack is None:
             return value
@@ -45,8 +46,8 @@ class Verdict:
 
     @property
     def refinement(self) -> Refinement | None:
-        """Where the values go with the spacing, and how far from that the finest is. Of a peak, of its inverse
-        square, which a process zone of fixed length makes linear in the spacing [Bažant and Planas 1998]."""
+        """Convergence of the values with the spacing. A peak is replaced by its inverse square, which a process zone of
+        fixed length makes linear in the spacing [Bažant and Planas 1998]."""
         if len(self.straight) < 3:
             return None
         values = [self.values[lattice] for lattice in self.straight]
@@ -56,7 +57,8 @@ class Verdict:
 
     @property
     def extrapolated(self) -> tuple[float | None, float | None]:
-        """To spacing 0, and the uncertainty of the finest value: its grid convergence index times the value."""
+        """The value at spacing 0, and the uncertainty of the finest value: its grid convergence index times the
+        value."""
         found = self.refinement
         if found is None:
             return None, None
@@ -70,7 +72,7 @@ class Verdict:
 
     @property
     def spread(self) -> float:
-        """Half the range over angles and horizons at the middle spacing, of the corrected values."""
+        """Half the range of the corrected values over angles and horizons at the middle spacing."""
         found = [self.corrected_on(lattice) for lattice in self.values if lattice.refinement == self.specimen.middle]
         return 0.5 * (max(found) - min(found)) if found else 0.0
 

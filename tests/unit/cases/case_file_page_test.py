@@ -1,8 +1,8 @@
-"""The tables of docs/case-file.md are what `peristat keys` prints.
+"""The tables of docs/case-file.md are the output of `peristat keys`.
 
     PERISTAT_PROGRAM=build/release/peristat /usr/bin/python3 -BEs tests/unit/cases/case_file_page_test.py --write
 
-writes them anew, after a key has changed; the text around them is written by hand.
+rewrites them after a key has changed; the text around them is written by hand.
 """
 
 import os
@@ -25,7 +25,7 @@ def keys(*table):
 
 
 def printed_tables():
-    """By name; every other piece between headings is one."""
+    """Tables by name, split at the headings."""
     _, *parts = HEADING.split(keys().stdout)
     return {"document" if parts[k] else parts[k + 1]: parts[k + 2].rstrip("\n") + "\n" for k in range(0, len(parts), 3)}
 

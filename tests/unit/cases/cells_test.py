@@ -1,4 +1,4 @@
-"""Cells that pictures are made of: of clouds of points, at the outlines of bodies, and beside the cracks of solids.
+"""Cells for pictures: of clouds of points, at the outlines of bodies, and at the cracks of solids.
 
 Run with /usr/bin/python3 tests/unit/cases/cells_test.py.
 """
@@ -28,7 +28,7 @@ ROUND_OFF = 1e-12  # of lengths of some units
 
 
 def lattice(*counts: int) -> np.ndarray:
-    """Middles of cells of size 1 that fill a box at the origin, count x dimension."""
+    """Centres of cells of size 1 that fill a box at the origin, count x dimension."""
     grid = np.meshgrid(*[np.arange(count) for count in counts], indexing="ij")
     return np.stack(grid, axis=-1).reshape(-1, len(counts)) + 0.5
 
@@ -40,14 +40,15 @@ def cloud(*counts: int) -> np.ndarray:
 
 
 def areas(corners: np.ndarray) -> np.ndarray:
-    """Of polygons that go round anticlockwise, count x corners x 2."""
+    """Areas of anticlockwise polygons, count x corners x 2."""
     x, y = corners[:, :, 0], corners[:, :, 1]
     return 0.5 * (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1)
 
 
 class Clouds(unittest.TestCase):
     def test_cells_of_a_lattice_are_its_squares(self):
-        """Also at its end, in its corners, and around a hole and the gap of a point, but for their corners' own."""
+        """Cells tile the cloud, also at its rim, in its corners, and around a hole and the gap of a missing point,
+        except at their own corners."""
         points = lattice(12, 9)
         points = points[(np.abs(points - [6.5, 4.5]).max(axis=1) > 1.2) & (np.abs(points - [2.5, 8.5]).max(axis=1) > 0.1)]
         cells = voronoi_cells(points, np.ones(len(points)))
@@ -69,7 +70,7 @@ class Clouds(unittest.TestCase):
         cells = voronoi_cells(points, np.ones(len(points)))
         cell, side = np.nonzero(cells.is_side & (cells.beyond >= 0))
         begin, end = cells.corners[cell, side], cells.corners[cell, (side + 1) % cells.beyond.shape[1]]
-        for corner in (begin, end):  # as far from the one point as from the other
+        for corner in (begin, end):  # equally far from both points
             far, as_far = (np.linalg.norm(corner - points[number], axis=1) for number in (cell, cells.beyond[cell, side]))
             np.testing.assert_allclose(far, as_far, rtol=0, atol=1e-9)
         inner = cells.is_side & (cells.before(cells.beyond) >= 0)
@@ -84,7 +85,7 @@ class Clouds(unittest.TestCase):
         self.assertGreater(len(pairs), 400)
 
     def test_cells_end_half_a_size_beyond_the_outermost_points(self):
-        """Also that of a point between two of these and a little inside, whose bisectors meet far outside."""
+        """Also the cell of a point between two such points and slightly inside, whose bisectors meet far outside."""
         points = np.array([[-0.65, 0.0], [0.0, -0.28], [0.65, 0.0], [-0.65, -0.9], [0.0, -1.1], [0.65, -0.9]])
         cells = voronoi_cells(points, np.ones(len(points)))
         self.assertAlmostEqual(cells.corners[:, :, 1].max(), 0.5, delta=ROUND_OFF)
@@ -168,7 +169,7 @@ class Outlines(unittest.TestCase):
     def test_outline_of_a_plate_with_a_hole(self):
         outline = read_outline([PLATE, HOLE], 1.0, lattice(20, 12))
         length = np.linalg.norm(outline.pieces[:, 1] - outline.pieces[:, 0], axis=1)
-        self.assertAlmostEqual(length.sum(), 2 * (20 + 12) + 2 * np.pi * 3.3, delta=0.01)  # the hole's has corners
+        self.assertAlmostEqual(length.sum(), 2 * (20 + 12) + 2 * np.pi * 3.3, delta=0.01)  # the hole is a polygon
         self.assertLess(length.max(), 0.5 + ROUND_OFF)
         self.assertEqual(sorted(map(tuple, outline.corners)), [(0, 0), (0, 12), (20, 0), (20, 12)])
         places = np.array([[1.0, 1.0], [10.0, 6.0], [10.0, 9.0], [10.0, 9.4], [21.0, 6.0],
@@ -218,23 +219,23 @@ class Outlines(unittest.TestCase):
         corners = points[:, None] + offsets
         radius = np.linalg.norm(corners[moved] - [10.0, 6.0], axis=1)
         self.assertGreater(len(radius), 40)
-        np.testing.assert_allclose(radius, 3.3, rtol=0, atol=3e-3)  # the hole is a polygon of sides of a quarter
-        self.assertGreater(np.linalg.norm(corners - [10.0, 6.0], axis=2).min(), 3.295)  # and nothing is left in it
+        np.testing.assert_allclose(radius, 3.3, rtol=0, atol=3e-3)  # the hole is a polygon with sides of a quarter
+        self.assertGreater(np.linalg.norm(corners - [10.0, 6.0], axis=2).min(), 3.295)  # nothing remains inside it
         area = areas(corners[:, [0, 2, 3, 1]]).sum()
         self.assertTrue(0.0 < area - (240.0 - np.pi * 3.3**2) < 0.7)  # chords of about one
 
     def test_cells_of_layers_keep_their_corners(self):
         points = held(lattice(20, 12))
-        layer = np.array([[-0.5, 3.5], [-0.5, 4.5]])  # in front of a part of the side
+        layer = np.array([[-0.5, 3.5], [-0.5, 4.5]])  # outside a part of the side
         fixed = np.arange(len(points) + 2) >= len(points)
         both = np.concatenate([points, layer])
         offsets = self.offsets([PLATE, HOLE], both, fixed)
         np.testing.assert_array_equal(offsets[-2:], np.tile(0.5 * corner_signs(2), (2, 1, 1)))
-        self.assertGreater((np.abs(offsets - 0.5 * corner_signs(2)) > 1e-9).any(axis=2).sum(), 40)  # the hole's have moved
+        self.assertGreater((np.abs(offsets - 0.5 * corner_signs(2)) > 1e-9).any(axis=2).sum(), 40)  # at the hole
         self.assertGreater(np.abs(self.offsets([PLATE, HOLE], both)[-2:] - 0.5 * corner_signs(2)).max(), 0.4)
 
     def test_corners_on_a_plane_of_symmetry_stay_on_it(self):
-        """The shapes go on beyond it: what is empty there is no hole."""
+        """The shapes continue beyond it: an empty place there is no hole."""
         points = held(lattice(20, 12))
         points = points[points[:, 1] > 6.0]
         corners = points[:, None] + self.offsets([PLATE, HOLE], points)
@@ -274,7 +275,8 @@ class Outlines(unittest.TestCase):
         return fitted(voronoi_cells(points, np.ones(len(points))), outline, np.ones(len(points))).corners
 
     def test_a_corner_that_the_body_cannot_hold_lies_on_its_outline(self):
-        """Of a cell between two others, and, however far outside, of a point in the corner of the body."""
+        """The corner of a cell between two others, and of the cell of a point in the corner of the body, however far
+        outside."""
         points = np.array([[-0.65, 0.0], [0.0, -0.35], [0.65, 0.0], [-0.65, -0.9], [0.0, -1.1], [0.65, -0.9]])
         wide = {"add": "box", "min": [-9.0, -9.0], "max": [9.0, 0.35]}
         self.assertAlmostEqual(voronoi_cells(points, np.ones(6)).corners[1, :, 1].max(), 0.4286, delta=1e-4)
@@ -284,7 +286,7 @@ class Outlines(unittest.TestCase):
         np.testing.assert_array_equal(np.clip(corners, [0.0, 0.0], [20.0, 12.0]), corners)
 
     def test_a_cloud_that_ends_inside_the_body_keeps_its_end(self):
-        """At a plane of symmetry, say."""
+        """As at a plane of symmetry."""
         points = lattice(20, 12)
         points = points[points[:, 1] > 6.0]
         self.assertAlmostEqual(self.fitted_corners(points)[:, :, 1].min(), 6.0, delta=ROUND_OFF)
@@ -294,7 +296,7 @@ class CrackSurfaces(unittest.TestCase):
     COUNTS = (6, 4, 3)
 
     def results(self, broken=(), cracks=(), kinds=None):
-        """A block of cells of size 1, of which some bonds are broken: (step, first, second, image)."""
+        """A block of cells of size 1, some of whose bonds are broken: (step, first, second, image)."""
         rows = np.array(broken, dtype=int).reshape(-1, 4)
         reference = lattice(*self.COUNTS)
         bonds = BrokenBonds(rows[:, 1:3], rows[:, 3], rows[:, 0])
@@ -325,7 +327,7 @@ class CrackSurfaces(unittest.TestCase):
         self.assertEqual(surface.faces.shape, (12, 4, 3))
         np.testing.assert_array_equal(surface.faces[:, :, 0], 3.0)
         np.testing.assert_array_equal(surface.steps, np.floor(surface.faces[:, :, 1].mean(axis=1)) + 1)
-        np.testing.assert_array_equal(surface.damage, 0.5)  # of the more damaged side
+        np.testing.assert_array_equal(surface.damage, 0.5)  # that of the more damaged side
         self.assertTrue(surface.has_grown)
         self.assertEqual(len(surface.body), 2 * (6 * 4 + 4 * 3 + 3 * 6))
         self.assertEqual(len(self.surface(self.results(self.torn()), last=2).faces), 6)
@@ -364,7 +366,7 @@ class CrackSurfaces(unittest.TestCase):
         self.assertEqual(set(surface.steps), {-1})
         self.assertTrue(surface.has_grown)
         self.assertFalse(self.surface(self.results(), 0.8 * damage).has_grown)
-        self.assertEqual(len(self.surface(self.results(self.torn(0)), damage).faces), 12)  # where bonds tell, they alone do
+        self.assertEqual(len(self.surface(self.results(self.torn(0)), damage).faces), 12)  # known bonds alone decide
 
 
 if __name__ == "__main__":

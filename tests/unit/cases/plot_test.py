@@ -1,4 +1,4 @@
-"""The pictures of a results folder: which exist, that they show something, and how bad folders end.
+"""The pictures of a results folder: which are drawn, their content, and the handling of bad folders.
 
 Run with /usr/bin/python3 tests/unit/cases/plot_test.py; it builds its own folders.
 """
@@ -107,7 +107,7 @@ def write_folder(folder: Path, reference: np.ndarray, steps: int = 3, damaged: b
 
 
 def rewrite(path: Path, change) -> None:
-    """Lets a function change the rows (dictionaries) of a CSV file."""
+    """Changes the rows (dictionaries) of a CSV file by a function."""
     with open(path, newline="") as file:
         table = csv.DictReader(file)
         names, rows = table.fieldnames, list(table)
@@ -120,10 +120,10 @@ def rewrite(path: Path, change) -> None:
 
 
 def write_cracked_folder(folder: Path, counts: tuple[int, int], steps: int = 12) -> None:
-    """A plate pulled in x: from half of the load on a crack runs up its middle and tears it in two.
+    """A plate pulled in x: from half of the load on, a crack runs up its middle and tears it in two.
 
-    The steps of the crack are found by relaxation. A crumb beside the crack comes off near the end. Bonds reach
-    over three points, stiffness falls with the crack's length, dissipated energy grows with it.
+    The steps of the crack are found by relaxation. A small piece beside the crack comes off near the end. Bonds
+    reach over three points, stiffness falls with the crack's length, dissipated energy grows with it.
     """
     reference = lattice(*counts)
     write_folder(folder, reference, steps)
@@ -191,7 +191,7 @@ class Pictures(unittest.TestCase):
         self.folder = Path(temporary.name) / "results"
 
     def plot(self, expected_code: int = 0, *options: str) -> str:
-        """Draws the folder's pictures, where a warning is an error too; gives what is said."""
+        """Draws the folder's pictures, with warnings as errors; returns the output."""
         said = io.StringIO()
         with warnings.catch_warnings(), redirect_stdout(said), redirect_stderr(said):
             warnings.simplefilter("error")
@@ -200,7 +200,7 @@ class Pictures(unittest.TestCase):
         return said.getvalue()
 
     def assert_pictures(self, *names: str) -> None:
-        """Exactly these pictures exist, of a size to look at and with more than a few colours."""
+        """Exactly these pictures exist, with a reasonable size and more than a few colours."""
         drawn = sorted(path.stem for path in (self.folder / "plots").glob("*.png"))
         self.assertLessEqual(set(drawn), PICTURES)
         listed = (self.folder / "plots" / ".pictures").read_text().split()
@@ -292,7 +292,7 @@ class Pictures(unittest.TestCase):
         self.assertFalse((self.folder / "plots" / "crack.gif").exists())
 
     def test_cracked_plate_of_an_older_folder(self):
-        """Without fragments, stretches, broken bonds, decisions, and with damage alone in the history."""
+        """Without fragments, stretches, broken bonds, decisions; only the history has damage."""
         write_cracked_folder(self.folder, (20, 20), steps=6)
         with h5py.File(self.folder / "results.h5", "a") as file:
             del file["broken_bonds"]
@@ -325,11 +325,11 @@ class Pictures(unittest.TestCase):
         self.assertIn("do not exist", self.plot())
         with h5py.File(self.folder / "results.h5", "a") as file:
             del file["broken_bonds/second_point"]
-            file["broken_bonds/second_point"] = np.zeros(2, dtype=int)  # not as many as the others
+            file["broken_bonds/second_point"] = np.zeros(2, dtype=int)  # fewer than the others
         self.assertIn("broken bonds can't be read", self.plot())
 
     def write_cell(self, crack=""):
-        """A plate of 8 x 6 points, half of one about y = 0 and a cell that repeats along x."""
+        """A plate of 8 x 6 points, half of a body about y = 0, and a cell that repeats along x."""
         write_folder(self.folder, lattice(8, 6), steps=1)
         with h5py.File(self.folder / "results.h5", "a") as file:
             kinds = [(mirror, period) for mirror in (1, -1) for period in (0, 1, -1) if (mirror, period) != (1, 0)]
@@ -366,10 +366,10 @@ class Pictures(unittest.TestCase):
         results = read_results_folder(self.folder)
         step = results.step(1)
         cells = deformed_plate(results, step, 1.0, step.damage).cells
-        self.assertEqual(np.flatnonzero(cells.parted(1, -1)).tolist(), [0, 6])  # of the third others hang on
+        self.assertEqual(np.flatnonzero(cells.parted(1, -1)).tolist(), [0, 6])  # the third has other bonds left
         self.assertEqual(sum(cells.parted(axis, sign).sum() for axis in (0, 1) for sign in (-1, 1)), 2)
         with h5py.File(self.folder / "results.h5", "a") as file:
-            file["broken_bonds/second_image"][...] = 0  # bonds within the body: of points with themselves, and neighbours
+            file["broken_bonds/second_image"][...] = 0  # within the body: points with themselves, neighbours
         results = read_results_folder(self.folder)
         cells = deformed_plate(results, step, 1.0, step.damage).cells
         self.assertEqual(cells.parted(1, -1).sum(), 0)
@@ -455,7 +455,7 @@ class Pictures(unittest.TestCase):
                 self.assertTrue((self.folder / "plots" / "damage.png").is_file())
 
     def with_resistance(self, place):
-        """A cracked plate that probes tell the resistance of, and one more field."""
+        """A cracked plate with probes of the resistance, and one more field."""
         write_cracked_folder(self.folder, (20, 20), steps=12)
         probes = "".join(f'[[probe]]\nname = "{name}"\nset = "left"\nfield = "{field}"\n'
                          for name, field in (("taken", "crack_resistance"), ("far", place)))  # fmt: skip
@@ -517,10 +517,10 @@ class Pictures(unittest.TestCase):
             self.assertEqual(hand_overs(results, action), [(step, step / 6)])
             self.assertAlmostEqual(on_the_way(results, places, step, step / 6), place, delta=1e-12)
         self.assertAlmostEqual(on_the_way(results, places, 5, 4.5 / 6), 6.5, delta=1e-12)
-        self.assertAlmostEqual(on_the_way(results, places, 7, 7 / 6), 9.0, delta=1e-12)  # was never accepted
+        self.assertAlmostEqual(on_the_way(results, places, 7, 7 / 6), 9.0, delta=1e-12)  # never accepted
 
     def write_events(self, **columns):
-        """A run of mode path whose six steps snap back at the third and come back to its load with the fifth."""
+        """A run of mode path whose six steps snap back at the third and return to its load with the fifth."""
         write_folder(self.folder, lattice(20, 10), steps=6)
         rows = {"mode": ["path"] * 6, "load_factor": [0.2, 0.4, 0.3, 0.35, 0.4, 1.0],
                 "reaction_x:right": [2e3, 4e3, 2.5e3, 2.8e3, 3e3, 5e3], "on_response": [1, 1, 0, 0, 1, 1],
@@ -608,7 +608,7 @@ class Pictures(unittest.TestCase):
         self.assertEqual(number_of_columns(4, 0.25), 2)  # a beam
         self.assertEqual(number_of_columns(6, 1.0), 3)  # a square
 
-    # ---- what is written and removed --------------------------------------------------------------
+    # ---- files that are written and removed --------------------------------------------------------
 
     def test_pictures_drawn_before_go_and_others_stay(self):
         write_folder(self.folder, lattice(10, 10))
@@ -673,13 +673,13 @@ class Pictures(unittest.TestCase):
             for name in CRACKED:
                 content = (self.folder / "plots" / f"{name}.{ending}").read_bytes()
                 self.assertTrue(content.startswith(beginning), name)
-            self.assertTrue((self.folder / "plots" / "deformed.png").exists())  # the same run, and still true
+            self.assertTrue((self.folder / "plots" / "deformed.png").exists())  # from the same run, and still valid
         self.plot(2, "--format", "jpg")
 
     # ---- cracks -----------------------------------------------------------------------------------
 
     def test_a_pre_crack_opens_without_damage(self):
-        """Points left and right of a cut move apart: no square is stretched across it, whatever damage says."""
+        """Points left and right of a cut move apart: no square is stretched across it, for any damage."""
         write_folder(self.folder, lattice(10, 6), steps=1)
         with h5py.File(self.folder / "results.h5", "a") as file:
             x, y = file["points/reference"][...].T / SPACING
@@ -733,7 +733,7 @@ class Pictures(unittest.TestCase):
         for frame in frames:
             self.assertGreater(results.in_history(frame, "broken_bonds"), 0)
         grown = [results.in_history(frame, "broken_bonds") for frame in frames]
-        # Six frames of a crack that runs evenly: between two lies at most a third of it.
+        # Six frames of a crack that runs evenly: it grows by at most a third between two of them.
         self.assertLess(max(np.diff(grown)), grown[-1] / 3)
 
     # ---- curves -----------------------------------------------------------------------------------
@@ -748,7 +748,7 @@ class Pictures(unittest.TestCase):
         self.assertEqual(curves[0].others, ["right opposite"])
         self.assertGreater(curves[0].values[-1], 0.0)
         results.case["support"] = [{"set": "right", "displacement": ["1e-5*load", "free"]}]
-        self.assertEqual([curve.name for curve in reactions(results)], ["right"])  # the one that is moved
+        self.assertEqual([curve.name for curve in reactions(results)], ["right"])  # the driven one
 
     def test_the_displacement_is_that_of_the_driven_support(self):
         write_folder(self.folder, lattice(10, 10))
@@ -814,7 +814,7 @@ class Pictures(unittest.TestCase):
         values, (low, high), label = displacement_magnitude(step)
         size = {"[µm]": 1e-6, "[mm]": 1e-3}[label.split()[-1]]
         self.assertAlmostEqual(high * size, held, delta=1e-12 * held)
-        self.assertEqual(beyond(values, low, high), "max")  # and the colour bar says that there is more
+        self.assertEqual(beyond(values, low, high), "max")  # and the colour bar shows that there is more
 
     def test_solid(self):
         write_folder(self.folder, lattice(20, 5, 5))
@@ -858,7 +858,7 @@ class Pictures(unittest.TestCase):
         return read_results_folder(self.folder)
 
     def drawn_colours(self, axes) -> np.ndarray:
-        """Colours of the faces of cracks, which are drawn after those of the body."""
+        """Colours of the crack faces, which are drawn after those of the body."""
         return axes.collections[1].get_facecolor()
 
     def test_a_crack_surface_is_coloured_by_its_steps(self):
@@ -873,7 +873,7 @@ class Pictures(unittest.TestCase):
         results.history = {}
         figure = draw_crack_surface(results, results.step(4), surface)
         self.assertEqual([label.get_text() for label in figure.axes[-2].get_yticklabels()], ["2", "3", "4"])
-        one = surface._replace(steps=np.full(12, 2))  # a colour bar would tell nothing
+        one = surface._replace(steps=np.full(12, 2))  # a colour bar would show nothing
         self.assertEqual(len(draw_crack_surface(results, results.step(4), one).axes), len(figure.axes) - 1)
         self.plot()
         self.assert_pictures("deformed", "cut", "damage", "crack_surface", "sequence", "load_displacement", "convergence")
@@ -930,7 +930,7 @@ class Pictures(unittest.TestCase):
         colours = np.unique(faces.get_facecolor()[:, :3].round(2), axis=0)
         self.assertGreater(np.median(faces.get_facecolor()[:, :3].min(axis=1)), 0.5)
         bar = figure.axes[-1]
-        self.assertGreater(len(colours), 4)  # of three values, on faces that are lit differently
+        self.assertGreater(len(colours), 4)  # of three values, on differently shaded faces
         ticks = bar.get_yticks()
         self.assertEqual(bar.get_yscale(), "function")  # the square root
         self.assertTrue((np.diff(ticks) > 0).all())
@@ -963,7 +963,7 @@ class Pictures(unittest.TestCase):
         points = points[np.linalg.norm(points - [10, 6], axis=1) > 3.3]
         results = self.shaped(self.PLATE, points)
         plate = deformed_plate(*self.last(results), 0.0, np.zeros(len(points)), SPACING)
-        self.assertFalse(plate.cells.is_image)  # and not drawn as one
+        self.assertFalse(plate.cells.is_image)  # and not drawn as an image
         near = np.linalg.norm(plate.still.reshape(-1, 2) - [10, 6], axis=1)
         np.testing.assert_allclose(near[near < 3.4], 3.3, rtol=0, atol=0.02)
         self.assertGreater((near < 3.4).sum(), 40)
@@ -978,7 +978,7 @@ class Pictures(unittest.TestCase):
         layer = "[[lattice.layer]]\nname = 'left'\nside = 'x-'\nthickness = 1\n"
         points = np.concatenate([[[-0.5, 3.5]], lattice(20, 12) / SPACING])
         points = points[np.linalg.norm(points - [10, 6], axis=1) > 3.3]
-        results = self.shaped(self.PLATE, points, layer)  # the set is what stands at less than two spacings
+        results = self.shaped(self.PLATE, points, layer)  # the set is the points at less than two spacings
         np.testing.assert_array_equal(results.in_layers, points[:, 0] < 2.0)
         plate = deformed_plate(*self.last(results), 0.0, np.zeros(len(points)), SPACING)
         np.testing.assert_allclose(np.ptp(plate.still[0], axis=0), [1, 1], rtol=0, atol=1e-9)
@@ -1159,7 +1159,7 @@ def link_to_itself_outside(file):
 def huge(path, dtype="f8"):
     def change(file):
         del file[path]
-        file.create_dataset(path, shape=(1_000_000_000,), dtype=dtype, chunks=(1024,))  # of some bytes on disk
+        file.create_dataset(path, shape=(1_000_000_000,), dtype=dtype, chunks=(1024,))  # a few bytes on disk
 
     return change
 
@@ -1185,7 +1185,7 @@ def values_of_another_dataset(file):
 
 
 LAST = "steps/000003"
-# What is done to results.h5, and what the message must name.
+# Damage to results.h5, and the name that the message must contain.
 DAMAGE = {
     "points that are linked to themselves": (link_in_a_circle, "/points is a link"),
     "steps that are linked to themselves": (link_to_itself_outside, None),
@@ -1214,14 +1214,14 @@ def huge_new(file, path):
 
 
 def drawn(folder: Path, told: int) -> None:
-    """What the command does, but for another import of matplotlib."""
+    """The command, with a different import of matplotlib."""
     os.dup2(told, 1)
     os.dup2(told, 2)
     os._exit(plot.guarded([str(folder)]))
 
 
 class DamagedFolders(unittest.TestCase):
-    """Each is drawn in a process of its own: it ends by itself, with code 2 and a sentence, or draws."""
+    """Each folder is drawn in a process of its own: it ends by itself, with code 2 and a message, or draws."""
 
     def setUp(self):
         temporary = tempfile.TemporaryDirectory(prefix="peristat_plot_test_")
@@ -1232,7 +1232,7 @@ class DamagedFolders(unittest.TestCase):
         with tempfile.TemporaryFile("w+", encoding="utf-8") as told:
             process = multiprocessing.get_context("fork").Process(target=drawn, args=(self.folder, told.fileno()))
             process.start()
-            process.join(300)  # two seconds; an end by all means
+            process.join(300)  # takes two seconds; the limit catches a hang
             if process.is_alive():
                 process.kill()
                 self.fail("plot did not end")
@@ -1358,7 +1358,7 @@ class Parts(unittest.TestCase):
         spacing, places, values = merged(reference, SPACING, 100, reference[:, 0])
         self.assertTrue(0 < len(places) <= 100)
         self.assertAlmostEqual(spacing, 3 * SPACING)  # ceil(sqrt(800 / 100))
-        whole = places[:, 0] < 0.039  # blocks of three columns; the last has one
+        whole = places[:, 0] < 0.039  # blocks of three columns; the last block has one
         np.testing.assert_allclose(values[whole], places[whole, 0], rtol=0, atol=1e-15)
 
 

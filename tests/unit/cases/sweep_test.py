@@ -1,5 +1,5 @@
-"""Pieces of a sweep: how values are split and computed, folders named, curves taken from fields and told
-apart, refinements extrapolated."""
+"""Parts of a sweep: splitting and computing values, naming folders, curves from fields and their looks, and
+extrapolation of refinements."""
 
 import math
 import sys
@@ -76,7 +76,7 @@ class OwnFiles(unittest.TestCase):
 class SideBySide(unittest.TestCase):
     def test_jobs_and_threads_take_no_more_than_the_processors(self):
         self.assertEqual(bounded(1, None, 8), (1, None))
-        self.assertEqual(bounded(1, 16, 8), (1, 16))  # one run may have what it is given
+        self.assertEqual(bounded(1, 16, 8), (1, 16))  # a single run may have what it is given
         self.assertEqual(bounded(4, None, 8), (4, 2))
         self.assertEqual(bounded(3, None, 8), (3, 2))
         self.assertEqual(bounded(20, None, 8), (8, 1))
@@ -89,7 +89,7 @@ class SideBySide(unittest.TestCase):
         self.assertIsNone(estimated_memory("memory      enough\n"))
 
     def run_jobs(self, jobs, memory):
-        """The largest number of tasks that ran at one time, and the order of their ends."""
+        """The largest number of tasks that ran at the same time, and the order of their ends."""
         running, most, lock = set(), [0], threading.Lock()
 
         def task(number):
@@ -110,7 +110,7 @@ class SideBySide(unittest.TestCase):
         self.assertEqual(self.run_jobs(3, lambda number: (4.0, 10.0))[0], 2)
         self.assertEqual(self.run_jobs(3, lambda number: (8.0, 10.0))[0], 1)
         self.assertEqual(self.run_jobs(3, lambda number: (80.0, 10.0))[0], 1)  # alone: the run itself refuses
-        self.assertEqual(self.run_jobs(3, lambda number: None)[0], 1)  # not known
+        self.assertEqual(self.run_jobs(3, lambda number: None)[0], 1)  # unknown
         most, ended = self.run_jobs(1, None)
         self.assertEqual((most, ended), (1, list(range(6))))
 
@@ -339,7 +339,7 @@ class Picture(unittest.TestCase):
                 self.assertEqual(first.max() > 0.0, not damaged)
 
     def draw_outcomes(self, keys, values):
-        """The panels of outcomes over the first key, of bodies that all came to the same."""
+        """The panels of outcomes over the first key, for bodies with equal results."""
         with tempfile.TemporaryDirectory() as name:
             folders = [Path(name) / str(number) for number in range(len(values))]
             for folder in folders:

@@ -1,4 +1,4 @@
-"""Closed forms and small pieces of the entries of the suite of known answers."""
+"""Closed forms and small parts of the entries of the suite of known answers."""
 
 import math
 import sys
@@ -48,7 +48,7 @@ class OtherSettings(unittest.TestCase):
 
 class OneSetting(unittest.TestCase):
     def test_no_entry_has_a_key_of_its_own(self):
-        """Lattice, quadrature, law and solver are those of the setting, on every lattice."""
+        """Lattice, quadrature, law and solver agree with the setting on every lattice."""
         modules = (attracted_crack, brazilian_disk, cantilever, inclined_notch, l_panel, size_effect, strength)
         specimens = [specimen for module in modules for specimen in module.SPECIMENS]
         self.assertEqual(len({specimen.name for specimen in specimens}), len(specimens))
@@ -82,7 +82,7 @@ class Cantilevers(unittest.TestCase):
         self.assertAlmostEqual(half, 0.5**0.25, delta=1e-12)
 
     def test_a_tear_takes_what_check_foretells(self):
-        """`peristat check` of the ratio 3.015 with linear volumes: 9.781 to 10.08 J/m2 for 10 in the mean."""
+        """`peristat check` for the ratio 3.015 with linear volumes: 9.781 to 10.08 J/m2 for a mean of 10."""
         shares = [cantilever.share_of_direction(3.015, math.radians(angle)) for angle in range(46)]
         self.assertAlmostEqual(min(shares), 0.9781, delta=5e-5)
         self.assertAlmostEqual(max(shares), 1.008, delta=5e-4)
@@ -126,7 +126,7 @@ class BrazilianDisk(unittest.TestCase):
     def test_the_factor_goes_through_the_table(self):
         for share, value in brazilian_disk.FACTORS.items():
             self.assertAlmostEqual(brazilian_disk.factor(share), value, delta=1e-12)
-        self.assertAlmostEqual(brazilian_disk.factor(0.1), 1.0150, delta=5e-4)  # of the table, not used
+        self.assertAlmostEqual(brazilian_disk.factor(0.1), 1.0150, delta=5e-4)  # in the table, but unused
 
 
 class CrackPaths(unittest.TestCase):

@@ -1,4 +1,4 @@
-"""Pieces of the suite of known answers: closed forms beside numbers of handbooks, peaks, verdicts."""
+"""Parts of the suite of known answers: closed forms against handbook values, peaks, verdicts."""
 
 import math
 import sys
@@ -19,7 +19,7 @@ from strip import Strip  # noqa: E402
 from verdict import Verdict, extension_of, row  # noqa: E402
 
 
-FALLS = lambda by: 1 / (1 + 10 * by)  # with the crack
+FALLS = lambda by: 1 / (1 + 10 * by)  # decreases with the crack length
 
 
 def bar(measure: Measure) -> Specimen:
@@ -41,7 +41,8 @@ class ClosedForms(unittest.TestCase):
 
     def test_openings_of_the_standard(self):
         """E B V / P of compact tension is tabulated as 54.7 at the edge for a/W = 0.5; the mouth of a short edge crack
-        opens by 4 * 1.454 sigma a / E [Tada, Paris and Irwin 2000], sigma = 6 P / (B W); both rise with the crack."""
+        opens by 4 * 1.454 sigma a / E [Tada, Paris and Irwin 2000], sigma = 6 P / (B W). Both increase with the
+        crack."""
         self.assertAlmostEqual(lefm.tension_opening(0.5), 54.7, delta=0.5)
         self.assertAlmostEqual(lefm.bend_opening(1e-3) / (4 * 1.454 * 6e-3), 1, delta=0.03)
         for opening in (lefm.bend_opening, lefm.tension_opening):
@@ -49,7 +50,7 @@ class ClosedForms(unittest.TestCase):
             self.assertEqual(values, sorted(values))
 
     def test_williams_opening_is_that_of_irwin(self):
-        """Behind the tip the faces are 8 K / E sqrt(r / 2 pi) apart, and on its line ahead nothing opens."""
+        """Behind the tip the faces are 8 K / E sqrt(r / 2 pi) apart; ahead of it nothing opens."""
         names = {name: getattr(math, name) for name in ("sqrt", "atan2", "cos", "sin")}
         at = lambda x, y: [eval(text.replace("^", "**"), names | {"x": x, "y": y})
                            for text in lefm.williams_opening(2.0, 70e9, 1 / 3, "x", "y")]  # fmt: skip
@@ -108,7 +109,7 @@ class Verdicts(unittest.TestCase):
         self.assertIn("-10.0 % on h0.5_m3.015_45", row(strict))
 
     def test_peaks_go_to_their_limit_as_a_size_effect(self):
-        """1 / P^2 = 1 + h: first order, 1 at spacing 0, and the finest with 1.25 times its distance from there."""
+        """1 / P^2 = 1 + h: first order, 1 at spacing 0, and for the finest lattice 1.25 times its distance from it."""
         values = {Lattice(h): (1 + h) ** -0.5 for h in (1.0, 0.5, 0.25)}
         limit, uncertainty = verdict(values).extrapolated
         self.assertAlmostEqual(limit, 1, delta=1e-9)
@@ -130,7 +131,7 @@ class Strips(unittest.TestCase):
                 self.assertAlmostEqual(one / other, 1, delta=1e-9)
 
     def test_an_arc_ends_turned(self):
-        """At the end the field is that of the middle, turned by half the angle about the arc's centre."""
+        """The field at the end is the field in the middle, turned by half the angle about the arc's centre."""
         arc, half = Strip(way=10.0, turn=0.5), 0.25
         radius = 10.0 * 3.015e-3 / 0.5
         x, y = 0.02, 0.01
@@ -149,7 +150,7 @@ class Strips(unittest.TestCase):
         self.assertAlmostEqual(gap / (8 * strip.toughness / strip.modulus * math.sqrt(0.01 / (2 * math.pi))), 1, delta=1e-6)
 
     def test_dissipation_is_that_of_the_last_half(self):
-        """The field goes 8 horizons of 3 mm in a strip of 1 mm: half of it at 9 J/m2, over G_c = 10."""
+        """The field moves 8 horizons of 3 mm in a strip of 1 mm thickness: half of the way at 9 J/m2, over G_c = 10."""
         folder = Path(self.enterContext(tempfile.TemporaryDirectory())) / "out"
         folder.mkdir()
         (folder.parent / "case.toml").write_text("[lattice]\nspacing = 1e-3\nhorizon_ratio = 3.0\n")
@@ -173,7 +174,7 @@ class Compliance(unittest.TestCase):
         return folder
 
     def test_toughness_of_a_growing_crack(self):
-        """Opening over load is the crack squared, and it grows at the load 1.1 / crack where 1 / crack is due."""
+        """Opening over load is the squared crack length, and it grows at the load 1.1 / crack instead of 1 / crack."""
         cracks = [1.0, 1.2, 1.6, 2.0]
         folder = self.history((0, 0), (0.5, 0.5), *((1.1 / a, 1.1 * a) for a in cracks))
         of = lambda least: toughness(folder, "force", lambda a: a * a, lambda a: 1 / a, 1.0, 3.0, least)
