@@ -78,7 +78,7 @@ class Square(PrintedTest):
     def test_crack(self):
         cracked = run(SQUARE, "crack[0].from=[-0.012, 0.0]", "crack[0].to=[-0.003, 0.0]", "output.count_cracks=true")
         torn = next(row for row in cracked.history if row["broken_bonds"] > 100)
-        self.prints("The peak falls to {} kN,", cracked.peak("top", "y") / 1e3, within=PEAK)
+        self.prints("The peak falls to {} kN.", cracked.peak("top", "y") / 1e3, within=PEAK)
         self.prints("at load {}, and runs in several bursts before it goes through at {}.",
                     cracked.first("broken_bonds")["load_factor"], torn["load_factor"], within=PEAK)  # fmt: skip
         # damage beside a straight crack: "about 0.4", the share of bonds that cross it
@@ -117,7 +117,7 @@ class Square(PrintedTest):
         moving = run(SQUARE, "solver.mode=relaxation", "relaxation.load=moving", "relaxation.steps=100")
         self.assertIn("`--set relaxation.load=moving --set relaxation.steps=100`", (ROOT / TUTORIAL).read_text())
         self.prints("its peak is {} kN, and more than", moving.peak("top", "y") / 1e3, within=PEAK)
-        (least,) = numbers(TUTORIAL, "and more than {} N are left where the plate is in two")
+        (least,) = numbers(TUTORIAL, "and more than {} N remain where the plate is in two")
         self.assertGreater(max(abs(force) for force in moving.reactions("top", "y")[-20:]), least.value)
         (least,) = numbers("docs/theory.md", "still carry more than {} N where")
         self.assertGreater(max(abs(force) for force in moving.reactions("top", "y")[-20:]), least.value)
