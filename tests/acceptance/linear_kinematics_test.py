@@ -395,9 +395,9 @@ class Refusals(CommandLine):
         fft = "solver.operator=fft"
         for settings, words in (
             ([fft, "material.kinematics=finite"], ("solver.operator", "linear")),
-            ([fft, "lattice.perturbation=0.1"], ("solver.operator", "lattice has its places")),
+            ([fft, "lattice.perturbation=0.1"], ("solver.operator", "sites of the lattice")),
             ([fft, "quadrature.surface_correction=volume"], ("solver.operator", "surface_correction")),
-            ([fft, "lattice.volumes=fractional"], ("solver.operator", "same volume")),
+            ([fft, "lattice.volumes=fractional"], ("solver.operator", "equal volume")),
             ([fft, "solver.linear=cholesky"], ("solver.linear", "pcg")),
             ([fft, "solver.preconditioner=rigid_pieces"], ("solver.preconditioner", "sines")),
             ([fft, "solver.tangent=stored"], ("solver.tangent", "products")),
