@@ -100,7 +100,8 @@ TEST(Consistency, FindsEnergiesOfTheWrongSign) {
   const Trial& trial = pulled.result.state;
   Ledger negative = pulled.ledger;
   negative.stored = -negative.stored;
-  EXPECT_NE(pulled.fault(trial, {}, negative).find("stored energy is -"), std::string::npos);
+  EXPECT_NE(pulled.fault(trial, {}, negative).find("stored energy is negative, -"),
+            std::string::npos);
   Ledger before = pulled.ledger;
   before.dissipated = pulled.ledger.stored;
   EXPECT_NE(pulled.fault(trial, before, pulled.ledger).find("falls"), std::string::npos);
