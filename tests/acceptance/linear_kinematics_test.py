@@ -403,7 +403,7 @@ class Refusals(CommandLine):
             ([fft, "solver.tangent=stored"], ("solver.tangent", "products")),
             ([fft, "solver.mode=arc_length"], ("solver.operator", "bonds")),
             ([fft, 'load=[{side="y+", pressure=1e6}]'], ("load[0].pressure", "traction")),
-            ([FAILING, "loading.max_broken_bonds=10"], ("max_broken_bonds", "points")),
+            ([FAILING, "loading.max_broken_bonds=10"], ("max_broken_bonds", "a point that fails")),
             (['material.damage={law="critical_stretch", critical=0.01}'], ("material.damage.law", "energy_density")),
             (['material.damage={law="energy_density"}'], ("fracture_energy", "missing")),
             (["material.kinematics=finite", 'material.damage={law="energy_density", fracture_energy=1.0}'], ("damage.law", "linear")),

@@ -372,7 +372,7 @@ class Probes(Stressed):
                             ('set = "top"\nat = [0.0, 0.0]\n', "exactly one of"),
                             ('from = [0.0, 0.0]\nfield = "damage"\n', "to"),
                             ('from = [0.0, 0.0]\nto = [0.0, 0.0]\nfield = "damage"\n', "same place"),
-                            ('set = "top"\nto = [0.0, 0.0]\n', "needs from"),
+                            ('set = "top"\nto = [0.0, 0.0]\n', "needs the key from"),
                             ('at = [0.0, 0.0]\nfield = "crack_length"\n', "every point"),
                             ('at = [0.0, 0.0]\nstatistic = "max"\n', "over a set"),
                             ('at = [0.0, 0.1]\n', "within two spacings"),
