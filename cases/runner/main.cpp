@@ -92,32 +92,34 @@ void add_case_options(CLI::App& command, CommandLine& line) {
 void add_run_options(CLI::App& command, CommandLine& line) {
   command
       .add_option("--stop-after", line.steps,
-                  "stop after so many accepted steps, in mode dynamics rows of the history, as if "
-                  "interrupted; resume goes on")
+                  "stop after this many accepted steps (in mode dynamics, rows of the history), as "
+                  "if interrupted; resume continues")
       ->type_name("STEPS")
       ->check(at_least_one());
   command
       .add_option("--ranks", line.ranks,
-                  "run on so many ranks, which mpirun starts (docs/cluster.md)")
+                  "run on this many ranks, which mpirun starts (docs/cluster.md)")
       ->check(at_least_one());
   command.add_flag("--no-plots", line.no_plots,
                    "draw no pictures at the end (./peristat draws them)");
-  command.add_flag("--quiet", line.quiet, "print nothing but problems");
-  command.add_option("--log", line.log_file, "write all that is said, and every iteration, here");
+  command.add_flag("--quiet", line.quiet, "print only problems");
+  command.add_option("--log", line.log_file,
+                     "write everything that is printed, and every iteration, to this file");
 }
 
 void add_calibration(CLI::App& command, CommandLine& line) {
   CLI::Option* file =
-      command.add_option("case", line.case_file, "case file: its lattice and material");
+      command.add_option("case", line.case_file, "case file, whose lattice and material are used");
   add_settings(command, line);
   CalibrationQuestion& asked = line.calibration;
-  command.add_flag("--strengths", asked.with_strengths,
-                   "with a law of damage: strengths under tension, biaxial tension, shear and "
-                   "compression");
-  command.add_option("--dimension", asked.dimension, "2 or 3; of bonds also 1")->excludes(file);
-  command.add_option("--spacing", asked.spacing, "of the lattice [m]")->excludes(file);
+  command.add_flag(
+      "--strengths", asked.with_strengths,
+      "with a law of damage: also strengths under tension, biaxial tension, shear and compression");
+  command.add_option("--dimension", asked.dimension, "2 or 3; for bonds also 1")->excludes(file);
+  command.add_option("--spacing", asked.spacing, "spacing of the lattice [m]")->excludes(file);
   command.add_option("--horizon-ratio", asked.horizon_ratio, "horizon / spacing")->excludes(file);
-  command.add_option("--thickness", asked.thickness, "2D [m] (default: 1)")->excludes(file);
+  command.add_option("--thickness", asked.thickness, "thickness in 2D [m] (default: 1)")
+      ->excludes(file);
   const auto add = [&](const char* name, std::optional<double>& value, const char* text) {
     command.add_option(name, value, text)->excludes(file);
   };
@@ -126,7 +128,7 @@ void add_calibration(CLI::App& command, CommandLine& line) {
   add("--lambda", asked.lambda, "[Pa], with --mu");
   add("--mu", asked.mu, "[Pa]");
   add("--c1", asked.c1, "[N/m6], one-neighbour constant");
-  add("--c2", asked.c2, "[N/m10], two-neighbour constant; in 3D also beside moduli");
+  add("--c2", asked.c2, "[N/m10], two-neighbour constant; in 3D also with moduli");
   add("--c3", asked.c3, "[N/m14], three-neighbour constant, 3D");
 }
 
@@ -155,8 +157,8 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
   add("--model", line.calibrated_model, "cpd (default) or bond")
       ->transform(
           names<MaterialModel>({{"cpd", MaterialModel::cpd}, {"bond", MaterialModel::bond}}));
-  add_of_bonds("--area", asked.area, "bond, 1D [m2] (default: 1)");
-  add_of_bonds("--angle", asked.angle, "bond: of the lattice [degrees]");
+  add_of_bonds("--area", asked.area, "bond: area in 1D [m2] (default: 1)");
+  add_of_bonds("--angle", asked.angle, "bond: angle of the lattice [degrees]");
   add_of_bonds("--volume-correction", asked.volume_correction,
                "bond: none (default), linear, exact or exact_centroids")
       ->transform(names<Volume>({{"none", Volume::none},
@@ -179,7 +181,7 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
           {{"continuum", Calibration::continuum}, {"lattice", Calibration::lattice}}));
   add("--influence", material.influence, "influence function, as in case files");
   add_of_bonds("--micromodulus", material.micromodulus, "bond: c [N/m6]");
-  add("--law", damage.law, "of damage, as in case files")
+  add("--law", damage.law, "law of damage, as in case files")
       ->transform(names<Law>({{"critical_stretch", Law::critical_stretch},
                               {"tanh", Law::tanh},
                               {"tanh_continuous", Law::tanh_continuous},
@@ -309,14 +311,14 @@ const Communicator* start_ranks_of(const CLI::App& program, int asked_for) {
   if (asked_for > 0 && asked_for != all_ranks()->count()) {
     throw InputError(
         "--ranks", std::to_string(asked_for),
-        fmt::format("does not agree with the {} that have been started", all_ranks()->count()));
+        fmt::format("does not match the number of ranks started, {}", all_ranks()->count()));
   }
   if (all_ranks()->count() == 1) {
     all_have_failed() = false;
     return nullptr;
   }
   if (!program.got_subcommand("run") && !program.got_subcommand("resume")) {
-    throw InputError("", "", "no command but run and resume is for more than one rank");
+    throw InputError("", "", "only the commands run and resume are for more than one rank");
   }
   all_have_failed() = false;
   return all_ranks().get();
@@ -372,8 +374,8 @@ int main(int count, char** arguments) try {
                         "replace the results of another case, or of version 1, in the folder");
   add_run_options(*run_command, line);
   CLI::App* resume_command =
-      program.add_subcommand("resume", "go on with a run that has not come to its end");
-  resume_command->add_option("results", line.results, "its results folder")->required();
+      program.add_subcommand("resume", "continue a run that has not reached its end");
+  resume_command->add_option("results", line.results, "results folder of the run")->required();
   add_settings(*resume_command, line);
   add_threads(*resume_command, line);
   add_run_options(*resume_command, line);
@@ -388,7 +390,7 @@ int main(int count, char** arguments) try {
       ->add_option("table", line.table,
                    "one table, such as solver or lattice.shape (default: all)");
   CLI::App* const calibration = program.add_subcommand(
-      "calibrate", "constants from moduli and data of fracture, and back; prints JSON");
+      "calibrate", "constants from moduli and fracture data, and back; prints JSON");
   add_calibration(*calibration, line);
   add_bond_calibration(*calibration, line);
   try {

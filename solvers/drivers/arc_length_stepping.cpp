@@ -309,12 +309,12 @@ Advance ArcLengthStepping::branch_off(std::int64_t modes) {
       {.outcome = name(Outcome::converged),
        .action = Decision::branch_off,
        .next_increment = increment_.value(),
-       .reason = modes == 1 ? "along the eigenvector of the vanishing pivot; the path that goes "
-                              "on straight is unstable from here on"
-                            : "along one of " + std::to_string(modes) +
-                                  " eigenvectors whose pivots vanish together; their "
-                                  "combinations need not be paths, so choose one by a small "
-                                  "load or a perturbed lattice"});
+       .reason = modes == 1
+                     ? "along the eigenvector of the vanishing pivot; the path straight on is "
+                       "unstable from here"
+                     : "along one of " + std::to_string(modes) +
+                           " eigenvectors whose pivots vanish together; their combinations need "
+                           "not be paths, so choose one with a small load or a perturbed lattice"});
   return Advance::goes_on;
 }
 

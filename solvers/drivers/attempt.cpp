@@ -29,7 +29,7 @@ Attempt to_attempt(NewtonResult result, const LoadPoint& at) {
   std::string note;
   if (result.is_at_round_off) {
     note = "converged to round-off: the residual is " + number_text(result.state.residual_norm) +
-           " N, above the tolerance, but displacements of this size are not known better than to " +
+           " N, above the tolerance, but round-off of displacements of this size limits it to " +
            number_text(result.largest_residual) + " N";
   }
   Attempt attempt = common_attempt(std::move(result), at);

@@ -91,7 +91,8 @@ Advance Dynamics::begin() {
   if (options_.start == MotionStart::equilibrium) {
     Attempt found = find_equilibrium();
     if (!found.has_converged()) {
-      const std::string reason = "no equilibrium to begin with: " + reason_of(found, found.note);
+      const std::string reason =
+          "no equilibrium found at the start: " + reason_of(found, found.note);
       return path_.stop(std::move(found), 0.0, reason);
     }
     start.displacement = std::move(found.state.displacement);
@@ -142,7 +143,7 @@ Attempt Dynamics::find_equilibrium() {
   if (growth.degrading > 0) {
     found.outcome = Outcome::damage_begins;
     found.note = std::to_string(growth.degrading) + " bonds or points at " +
-                 number_text(growth.utilisation) + " of what they bear";
+                 number_text(growth.utilisation) + " of their strength";
   }
   return found;
 }
@@ -222,13 +223,13 @@ std::string Dynamics::choose_step(const Trial& state, double time) {
   if (options_.time_step > 0.0) {
     dynamics.step = options_.time_step;
     if (dynamics.step <= stable) return {};
-    return "the step is " + number_text(dynamics.step) + " s, the stable one " +
+    return "the time step is " + number_text(dynamics.step) + " s, longer than the stable one, " +
            number_text(stable) + " s";
   }
   const double before = dynamics.step, wanted = options_.step_share * stable;
   if (!std::isfinite(stable)) {  // any step is stable: all that moves has come apart
     if (before > 0.0) return {};
-    return "nothing has a stiffness, so that no step is the stable one; give dynamics.time_step";
+    return "nothing has a stiffness, so there is no stable step; give dynamics.time_step";
   }
   if (before > 0.0 && wanted >= before && wanted < least_growth * before) return {};
   dynamics.step = wanted;
@@ -263,7 +264,9 @@ Advance Dynamics::move() {
     double dt = state.dynamics.step, next = time + dt;
     is_last = end - time <= dt * (1.0 + remainder);
     if (is_last) dt = end - time, next = end;
-    if (!(next > time)) return fail(Outcome::unstable_step, time, "the step is lost in the time");
+    if (!(next > time))
+      return fail(Outcome::unstable_step, time,
+                  "the time step is lost in the round-off of the time");
     Outcome outcome = Outcome::converged;
     try {
       outcome = motion->step(dt, next);
@@ -419,19 +422,19 @@ std::string Dynamics::fault_of_balance(const Ledger& after, double energy_of_ons
            number_text(dynamics.largest_energy) + " J";
   }
   if (!(after.drained >= -allowed)) {
-    return "layers that absorb have given " + number_text(-after.drained) + " J to the motion";
+    return "absorbing layers have given " + number_text(-after.drained) + " J to the motion";
   }
   const double scheme = std::abs(dynamics.correction_at_start + dynamics.correction);
   if (balances && path_.state().steps >= steps_of_onset &&
       !(scheme <= unresolved * std::max(put_in, energy))) {
     return "the time step does not resolve the motion: " + number_text(scheme) +
-           " J of its energy hang on the step, and " + number_text(dynamics.largest_energy) +
-           " J have been put in; take a shorter step, or begin with fields that are smooth over "
-           "a horizon";
+           " J of its energy depend on the step, and " + number_text(dynamics.largest_energy) +
+           " J have been put in; take a shorter step, or start from fields that are smooth over a "
+           "horizon";
   }
   const double growth = balances ? growth_of_instability : growth_without_potential;
   if (!(energy <= growth * put_in)) {
-    return "the motion holds " + number_text(energy) + " J, and no more than " +
+    return "the motion holds " + number_text(energy) + " J, but no more than " +
            number_text(dynamics.largest_energy) + " J have been put in";
   }
   return {};

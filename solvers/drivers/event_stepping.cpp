@@ -62,13 +62,14 @@ bool has_softened_smoothly(Path& path) {
 EventStepping::EventStepping(Path& path) : Driver(path) {
   if (!fails_by_steps(path.damaged().model())) {
     throw InputError("mode", "path",
-                     "needs bonds that break, by laws that fall in steps: give the body teeth");
+                     "needs bonds that break by laws that fall in steps (a saw-tooth); set "
+                     "BodySpecification::teeth");
   }
   if (has_softened_smoothly(path)) {
-    throw InputError("mode", "path",
-                     "can't go on where bonds have softened in another mode: this one follows a "
-                     "saw-tooth of their law, in which they would bear other forces; begin it from "
-                     "rest");
+    throw InputError(
+        "mode", "path",
+        "can't continue where bonds have softened in another mode: it follows a saw-tooth of their "
+        "law, in which they would bear other forces; start from rest");
   }
 }
 
@@ -282,7 +283,7 @@ bool EventStepping::book_event(const State& at, const PathLedger& ledger, const 
   const double turned_over = std::abs(lost) + std::abs(after.stored) + std::abs(drained);
   if (drained < -share_from_nothing * turned_over) {
     settled.outcome = Outcome::inconsistent;
-    settled.fault = number_text(-drained) + " J come from nothing as bonds break";
+    settled.fault = number_text(-drained) + " J appear without a source as bonds break";
     return false;
   }
   after.drained += drained;
@@ -353,7 +354,7 @@ EventStepping::Step EventStepping::run_avalanche() {
   int passes = 0;
   if (utilisation(state.accepted, borne_) < share_at_strength * (1.0 - tie)) {
     step.attempt = undefined_attempt(state.accepted, load_point(state.accepted));
-    step.fault = "no load is admissible, and yet no bond is at its strength";
+    step.fault = "no load is admissible, although no bond is at its strength";
     return step;
   }
   for (;; ++passes) {
@@ -407,7 +408,7 @@ void EventStepping::settle_work(Step& step) const {
   if (std::abs(error) >
       share_of_work * turned_over + share_of_total * std::abs(after.external_work)) {
     step.attempt.outcome = Outcome::sharp_turn;
-    step.fault = "the work of the step is known to " + number_text(std::abs(error)) + " J only";
+    step.fault = "the work of the step has an error of " + number_text(std::abs(error)) + " J";
   }
   after.numerical_work -= error;
 }

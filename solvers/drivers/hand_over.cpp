@@ -85,7 +85,7 @@ Advance HandOver::approach_damage(const ImplicitStep& step) {
   const double rest = share_to_onset * std::min(share, 1.0) * step.attempted;
   const std::string why = bonds_text(step.growth.degrading) +
                           " would be damaged, the most stretched to " +
-                          std::to_string(step.growth.utilisation) + " of what it bears";
+                          std::to_string(step.growth.utilisation) + " of its limit";
   const bool near = rest < relaxed_.increment().value() || state.hand_over.is_near_onset;
   if (near || !implicit_.increment().can_cut_to(rest)) return hand_over(step, why);
   state.hand_over.is_near_onset = true;
@@ -104,8 +104,8 @@ Advance HandOver::hand_over(const ImplicitStep& step, std::string reason) {
     double jump = 0.0;
     if (take_up_body(jump) == Advance::ended) return Advance::ended;
     reason +=
-        "; the body with the horizon of damage takes the place of its stand-in: at the same "
-        "load reactions change by " +
+        "; the body with the horizon of damage replaces its stand-in: at the same load, reactions "
+        "change by " +
         number_text(100.0 * jump) + " %";
   }
   if (path_.is_preloading()) relaxed_.increment().cut_to(relaxed_.increment().value());
@@ -183,7 +183,7 @@ bool HandOver::cuts_to_peak(const RelaxedStepping::Found& found, bool falls) {
                           .outcome = name(attempt.outcome),
                           .action = Decision::cut,
                           .next_increment = next,
-                          .reason = "the force falls within this step: its peak is searched"});
+                          .reason = "the force falls within this step: searching for its peak"});
   return true;
 }
 

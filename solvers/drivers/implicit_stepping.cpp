@@ -115,11 +115,12 @@ void ImplicitStepping::establish(ImplicitStep& step) {
 bool ImplicitStepping::refines_preload(const ImplicitStep& step) {
   const bool damages = path_.is_preloading() && step.growth.degrading > 0;
   if (!damages || !increment_.refine_preload(step.attempted)) return false;
-  path_.tell(step.attempt.at, {.increment = step.attempted,
-                               .outcome = name(Outcome::converged),
-                               .action = Decision::cut,
-                               .next_increment = increment_.value(),
-                               .reason = "what acts at load 0 would damage the body"});
+  path_.tell(step.attempt.at,
+             {.increment = step.attempted,
+              .outcome = name(Outcome::converged),
+              .action = Decision::cut,
+              .next_increment = increment_.value(),
+              .reason = "the loads and displacements at load 0 would damage the body"});
   return true;
 }
 
@@ -131,12 +132,12 @@ bool ImplicitStepping::approach_failure(const ImplicitStep& step) {
   const double rest = (1.0 + 0.5 * most_overload - before) / (after - before) * step.attempted;
   if (before >= 1.0 || !increment_.can_cut_to(rest)) return false;
   increment_.cut_to(rest);
-  path_.tell(step.attempt.at,
-             {.increment = step.attempted,
-              .outcome = name(Outcome::converged),
-              .action = Decision::cut,
-              .next_increment = rest,
-              .reason = "points would fail at " + number_text(after) + " of the load they bear"});
+  path_.tell(step.attempt.at, {.increment = step.attempted,
+                               .outcome = name(Outcome::converged),
+                               .action = Decision::cut,
+                               .next_increment = rest,
+                               .reason = "points would fail at " + number_text(after) +
+                                         " of the load that they can bear"});
   return true;
 }
 
@@ -206,7 +207,7 @@ void ImplicitStepping::run_avalanche(ImplicitStep& step) {
   if (!step.attempt.has_converged()) return name_snap_back(step);
   step.growth = step.found.growth;
   step.avalanche = std::to_string(step.attempt.iterations) + " iterations in " +
-                   std::to_string(passes) + " passes at a control that stands still, while " +
+                   std::to_string(passes) + " passes at a fixed control, while " +
                    bonds_text(step.growth.breaking) + " broke";
   establish(step);
   name_snap_back(step);
@@ -223,7 +224,7 @@ void ImplicitStepping::name_snap_back(ImplicitStep& step) {
                         outcome == Outcome::fragmented || outcome == Outcome::undefined_condition;
   if (is_other || step.found.growth.breaking == 0) return;
   step.fault = "a snap-back: " + bonds_text(step.found.growth.breaking) +
-               " broke at the control that stands still, and then " +
+               " broke at a fixed control, and then " +
                (step.fault.empty() ? explanation(outcome) : step.fault);
   attempt.outcome = Outcome::no_answer;
 }

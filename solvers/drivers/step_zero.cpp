@@ -48,7 +48,7 @@ void begin_programme(Path& path, const Attempt& step_zero, const FoundStep& foun
   }
   const Preload preload = preload_of(path);
   if (!preload.acts()) return;
-  std::string reason = fmt::format("at load 0 there act {}, put on slowly from rest: work {:.6g} J",
+  std::string reason = fmt::format("at load 0: {}, applied slowly from rest: work {:.6g} J",
                                    preload.description(), found.ledger.external_work);
   const double dissipated = found.ledger.dissipated;
   if (dissipated > 0.0 || found.record.broken_bonds > 0) {

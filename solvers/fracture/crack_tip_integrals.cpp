@@ -30,7 +30,7 @@ CrackTipFrame frame_of(const CrackTipSpecification& tip, int dimension, const st
   frame.e3 = dimension == 2 ? Coordinates{0.0, 0.0, 1.0} : unit(tip.front, key + ".front");
   constexpr double right_angle = 1e-9;
   if (std::abs(dot<3>(frame.e1, frame.e3)) > right_angle) {
-    throw InputError(key + ".front", "", "must stand at a right angle on direction");
+    throw InputError(key + ".front", "", "must be at a right angle to direction");
   }
   frame.e2 = cross(frame.e3, frame.e1);
   return frame;
@@ -53,14 +53,14 @@ CrackTipIntegrals::CrackTipIntegrals(const Points& points, const CrackTipSpecifi
   if (tip_.outer == 0.0) tip_.outer = std::max(outer_horizons * setting.horizon, 2.0 * tip_.inner);
   if (!(tip_.inner >= inner_horizons * setting.horizon * (1.0 - 1e-9))) {
     throw InputError(key + ".inner", number_text(tip_.inner),
-                     "must be 2 horizons at least, " +
+                     "must be at least 2 horizons, " +
                          number_text(inner_horizons * setting.horizon) +
-                         " m: nearer to the tip the body is nonlocal");
+                         " m: closer to the tip the body is nonlocal");
   }
   if (!(tip_.outer >= tip_.inner + setting.horizon * (1.0 - 1e-9))) {
-    throw InputError(
-        key + ".outer", number_text(tip_.outer),
-        "must be a horizon more than the inner radius of " + number_text(tip_.inner) + " m");
+    throw InputError(key + ".outer", number_text(tip_.outer),
+                     "must be at least a horizon larger than the inner radius, " +
+                         number_text(tip_.inner) + " m");
   }
   check_planes(key);
   check_ring(key);
@@ -97,9 +97,9 @@ void CrackTipIntegrals::check_planes(const std::string& key) {
       } else if (distance < reach) {
         throw InputError(key + ".at", place_text(tip_.at, points_.dimension),
                          "a plane of symmetry passes " + number_text(distance) +
-                             " m from it and cuts the ring; the crack may lie in the plane, or "
-                             "keep the ring and a horizon, " +
-                             number_text(reach) + " m, away from it");
+                             " m from it and cuts the ring; the crack must lie in the plane, or "
+                             "the distance must be at least the outer radius plus a horizon, " +
+                             number_text(reach) + " m");
       }
     }
   }
@@ -130,11 +130,11 @@ void CrackTipIntegrals::check_ring(const std::string& key) const {
   for (double& most : extent) most = sums().largest_of_all(most);
   above = sums().of_all(above);
   const auto refuse = [&](const std::string& where) {
-    throw InputError(key + ".outer", number_text(tip_.outer),
-                     "the ring from " + number_text(tip_.inner) + " to " + number_text(tip_.outer) +
-                         " m meets the body's edge or a hole, or comes nearer to it than half a "
-                         "horizon, " +
-                         where + "; take a smaller ring, which a finer spacing allows");
+    throw InputError(
+        key + ".outer", number_text(tip_.outer),
+        "the ring from " + number_text(tip_.inner) + " to " + number_text(tip_.outer) +
+            " m meets the body's edge or a hole, or comes closer to it than half a horizon, " +
+            where + "; take a smaller ring, for which a finer spacing makes room");
   };
   if (is_on_plane_) extent[above > 0.0 ? 3 : 2] = outer;
   constexpr std::array<const char*, 4> names{"ahead of the tip", "behind the tip",

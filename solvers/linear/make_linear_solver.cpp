@@ -324,8 +324,8 @@ std::string what_is_against(PreconditionerKind preconditioner, bool is_symmetric
       break;
   }
   if (is_symmetric) return "";
-  return "is for symmetric tangents, and this model's is not; take local_operator, block_jacobi or "
-         "jacobi";
+  return "is for symmetric tangents, but the tangent of this model is not symmetric; take "
+         "local_operator, block_jacobi or jacobi";
 }
 
 bool can_be_matrix_free(const LinearSolverOptions& options) {
@@ -348,7 +348,7 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const Linear
               Seconds(problem).direct, "as the case asks"};
     case LinearMethod::ldlt:
       return {std::make_unique<Ldlt>(), true, Seconds(problem).direct,
-              "it bears the negative pivots beyond a limit point, and counts them"};
+              "it handles the negative pivots beyond a limit point, and counts them"};
     case LinearMethod::conjugate_gradients:
     case LinearMethod::minres:
     case LinearMethod::gmres:

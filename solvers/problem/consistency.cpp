@@ -95,16 +95,16 @@ std::string check_equilibrium(const EquilibriumProblem& problem, const FoundStat
   // The committed histories may change the last digits of forces that were summed before.
   const double allowed = 2.0 * found.largest_residual;
   if (!again.degenerate && again.residual_norm <= allowed) return {};
-  return "evaluated anew the residual is " + number_text(again.residual_norm) +
-         " N, accepted was " + number_text(found.largest_residual) + " N";
+  return "evaluated again, the residual is " + number_text(again.residual_norm) +
+         " N; the accepted one was " + number_text(found.largest_residual) + " N";
 }
 
 std::string check_strength(Assembler& damaged, const FoundState& found) {
   const DamageGrowth growth = damaged.growth(found.trial.at());
   if (growth.degrading == 0) return {};
   return std::to_string(growth.degrading) +
-         " unbroken bonds are stretched beyond what they bear, to " +
-         number_text(growth.utilisation) + " of it";
+         " unbroken bonds are stretched beyond their limit, to " + number_text(growth.utilisation) +
+         " of it";
 }
 
 std::string check_resultants(const EquilibriumProblem& problem, const TangentOperator& tangent,
@@ -127,12 +127,12 @@ std::string check_resultants(const EquilibriumProblem& problem, const TangentOpe
   const double force = std::hypot(sums.force[0], sums.force[1], sums.force[2]);
   const double moment = std::hypot(sums.moment[0], sums.moment[1], sums.moment[2]);
   if (owed.force_sum && !(force <= round_off)) {
-    return "the internal forces add up to " + number_text(force) + " N where round-off leaves " +
-           number_text(round_off) + " N";
+    return "the internal forces add up to " + number_text(force) +
+           " N, but round-off explains only " + number_text(round_off) + " N";
   }
   if (owed.moment_sum && !(moment <= round_off * sums.reach)) {
     return "the moments of the internal forces add up to " + number_text(moment) +
-           " N m where round-off leaves " + number_text(round_off * sums.reach) + " N m";
+           " N m, but round-off explains only " + number_text(round_off * sums.reach) + " N m";
   }
   return {};
 }
@@ -149,7 +149,7 @@ std::string check_energies(const EquilibriumProblem& problem, const TangentOpera
              differenced_forces(tangent, found.trial.displacement) * norm(found.trial.displacement);
   }
   if (owed.positive_energy && after.stored < -least) {
-    return "the stored energy is " + number_text(after.stored) + " J";
+    return "the stored energy is negative, " + number_text(after.stored) + " J";
   }
   const double dissipated = after.dissipated - before.dissipated;
   if (dissipated < -round_off * std::abs(before.dissipated)) {
@@ -167,8 +167,9 @@ std::string check_energies(const EquilibriumProblem& problem, const TangentOpera
   // Where all has come apart nothing is turned over but the rounding of the sums.
   const double rounding = round_off * (std::abs(after.external_work) + after.dissipated);
   if (drained >= -work_error * turned_over - rounding) return {};
-  return number_text(-drained) + " J come from nothing: " + number_text(work) + " J of work for " +
-         number_text(stored) + " J stored and " + number_text(dissipated) + " J dissipated";
+  return number_text(-drained) + " J appear without a source: " + number_text(work) +
+         " J of work for " + number_text(stored) + " J stored and " + number_text(dissipated) +
+         " J dissipated";
 }
 
 std::string check_magnitude(const Sums& sums, const FoundState& found) {

@@ -63,7 +63,7 @@ std::string explanation(Outcome outcome) {
       return "the residual is still above the tolerance after the largest number of iterations "
              "(solver.max_iterations, relaxation.max_iterations)";
     case Outcome::not_positive_definite:
-      return "the tangent has negative pivots: the body buckles, or another limit point is passed";
+      return "the tangent has negative pivots: the body buckles, or has passed another limit point";
     case Outcome::singular_tangent:
       return "the tangent is singular: some points can move without resistance (too few bonds, "
              "bonds in one line only, or too few supports)";
@@ -78,8 +78,8 @@ std::string explanation(Outcome outcome) {
     case Outcome::linear_solver_inaccurate:
       return "the linear solution is inaccurate: the tangent is close to singular";
     case Outcome::limit_point:
-      return "a limit point: softening bonds give the tangent negative pivots, and however small "
-             "the step of the load, no equilibrium near the last one is found";
+      return "a limit point: softening bonds give the tangent negative pivots, and no equilibrium "
+             "near the last one is found, however small the load step";
     case Outcome::damage_limit:
       return "more bonds break at one load than loading.max_broken_bonds allows, however small the "
              "step: a limit point, from which the crack runs by itself";
@@ -88,19 +88,19 @@ std::string explanation(Outcome outcome) {
     case Outcome::undefined_condition:
       return "supports or loads have no value at this load factor, or contradict each other";
     case Outcome::no_answer:
-      return "the controlled displacement does not answer to the load: here the path turns back in "
-             "it, or nothing that is loaded moves it";
+      return "the controlled displacement does not respond to the load: the path turns back in it "
+             "here, or no load moves it";
     case Outcome::sharp_turn:
-      return "the path turns too sharply for so long a step along it";
+      return "the path turns too sharply for the length of the step";
     case Outcome::step_limit:
-      return "the load has not come to its end after the largest number of steps; arc_length.steps "
-             "ends the path after as many as it says";
+      return "the load has not reached its end after the largest number of steps; with "
+             "arc_length.steps the path ends after that many steps";
     case Outcome::damage_begins:
-      return "bonds would be damaged where their integrities are to stay as they are";
+      return "bonds would be damaged in a search that must not change their integrities";
     case Outcome::inconsistent:
-      return "the state that was found contradicts a balance that it owes";
+      return "the state that was found violates a balance that it must satisfy";
     case Outcome::unstable_step:
-      return "the time step is longer than the stable one of the present stiffness";
+      return "the time step is longer than the stable one for the present stiffness";
     case Outcome::interrupted:
       return "interrupted";
   }

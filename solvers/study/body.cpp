@@ -54,7 +54,7 @@ void require_resolved(const Points& points, double horizon) {
   if (farthest * std::numeric_limits<double>::epsilon() <= horizon_tolerance * horizon) return;
   throw InputError("points.reference", "",
                    "a point stands at " + number_text(farthest) +
-                       " m, so far from the origin that round-off of its place is more than " +
+                       " m, so far from the origin that round-off of its position is more than " +
                        number_text(horizon_tolerance) + " of the horizon, " + number_text(horizon) +
                        " m; move the body to the origin");
 }
@@ -64,9 +64,9 @@ void refuse_coincident_points(const Points& points, const Bonds& bonds) {
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       if (std::isfinite(bonds.inverse_length(bond))) continue;
-      throw InputError(
-          "points.reference", "",
-          "two points stand at " + place_text(points.position(i), points.dimension) + " m");
+      throw InputError("points.reference", "",
+                       "two points have the same position, " +
+                           place_text(points.position(i), points.dimension) + " m");
     }
   }
 }
@@ -369,7 +369,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   const auto refuse = [](const std::string& key) {
     throw InputError(
         key, "",
-        "is not for more than one rank yet: there are bodies with pre-cracks, supports, "
+        "is not for more than one rank yet; supported on several ranks are pre-cracks, supports, "
         "rigid sets, rollers, linear constraints, planes of symmetry, periods, foundations, "
         "eigenstrains, tractions, pressures, body forces, total forces and gravity, and damage of "
         "bonds, points, states and triangles");
@@ -487,12 +487,12 @@ std::vector<std::string> describe_interactions(const Body& body) {
   }
   const auto* const points = dynamic_cast<const PointTerm*>(body.model.bond_term().get());
   if (points != nullptr && points->is_convolved()) {
-    lines.push_back(fmt::format("summed by convolutions over a box of {} places",
+    lines.push_back(fmt::format("summed by convolutions over a box of {} sites",
                                 points->lattice()->box.count()));
   }
   const InteractionStorage& storage = body.interaction_storage;
   if (storage.needed > 0.0) {
-    lines.push_back(fmt::format("{}: storing them takes {} of {} that are free for it",
+    lines.push_back(fmt::format("{}: storing them takes {}, and {} are free for it",
                                 storage.fits() ? "stored" : "found anew in every pass",
                                 bytes_text(storage.needed), bytes_text(storage.room)));
   }
@@ -500,11 +500,11 @@ std::vector<std::string> describe_interactions(const Body& body) {
       body.model.bonds(), body.setting,
       [&](Index i, Index j) { return norm_between(body.points, i, j, body.setting.shape); });
   if (on_horizon > least_shell) {
-    lines.push_back(fmt::format(
-        "{:.2g} % of the bonds are as long as the horizon, so that points moved by their "
-        "last digits have other neighbours; a ratio between the lattice's distances, "
-        "as 3.015, or a volume_correction is safe from it",
-        100.0 * on_horizon));
+    lines.push_back(
+        fmt::format("{:.2g} % of the bonds are exactly as long as the horizon, so that round-off "
+                    "decides which points are neighbours; a ratio between the distances of the "
+                    "lattice, such as 3.015, or a volume_correction avoids this",
+                    100.0 * on_horizon));
   }
   return lines;
 }
@@ -655,8 +655,8 @@ void refuse_unheld_bodies(const Body& body) {
   if (!loose.empty()) {
     throw InputError(body.specification.cracks.empty() ? "points" : "cracks", "",
                      loose +
-                         ". Take such points away, move what cuts them off, or give them more "
-                         "bonds (a larger horizon)");
+                         ". Remove such points, move what cuts them off, or give them more bonds "
+                         "(a larger horizon)");
   }
 }
 

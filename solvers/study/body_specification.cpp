@@ -47,7 +47,8 @@ void check_data(const DamageSpecification& damage, const std::string& table) {
   }
   if (damage.law == DamageLaw::energy_density) {
     require(damage.fracture_energy.has_value(), table + "fracture_energy", "", "is missing");
-    const std::string of_stretches = "is for laws of stretches; energy_density has fracture_energy";
+    const std::string of_stretches =
+        "is for laws of stretches; energy_density needs fracture_energy";
     require_absent(damage.strength.has_value(), table + "strength", of_stretches);
     require_absent(is_given(damage.critical), table + "critical", of_stretches);
     require_absent(is_given(damage.onset), table + "onset", of_stretches);
@@ -58,22 +59,23 @@ void check_data(const DamageSpecification& damage, const std::string& table) {
   const bool is_sized =
       damage.fracture_energy || (damage.law == DamageLaw::critical_stretch && damage.strength);
   require(is_given(damage.critical) != is_sized, table + "critical", "",
-          is_sized ? "stands beside fracture_energy or strength, from which it follows"
-                   : "is missing; give it, or a fracture_energy");
-  require_absent(
-      is_given(damage.peak) && (!is_blended || damage.strength), table + "peak",
-      is_blended ? "stands beside strength, from which it follows" : "is for the law blended");
+          is_sized
+              ? "can't be given together with fracture_energy or strength: it follows from them"
+              : "is missing; give it, or fracture_energy");
+  require_absent(is_given(damage.peak) && (!is_blended || damage.strength), table + "peak",
+                 is_blended ? "can't be given together with strength: it follows from it"
+                            : "is for the law blended");
   if (!damage.softens()) {
     require_absent(is_given(damage.onset), table + "onset", "is for the laws that soften");
     return;
   }
   require_absent(is_given(damage.onset) && damage.strength && !is_blended, table + "onset",
-                 "stands beside strength, from which it follows");
+                 "can't be given together with strength: it follows from it");
   require(is_given(damage.onset) || damage.is_by_data(), table + "onset", "",
-          "is missing; give it, or a strength");
+          "is missing; give it, or strength");
   require(!is_blended || is_given(damage.peak) || damage.strength ||
               (damage.fracture_energy && !is_given(damage.onset)),
-          table + "peak", "", "is missing; give it, or a strength");
+          table + "peak", "", "is missing; give it, or strength");
 }
 
 void check_damage(const DamageSpecification& damage, const std::string& table) {
@@ -104,7 +106,7 @@ void check_bond_material(const MaterialSpecification& material, const std::strin
   require(material.youngs_modulus.has_value() != material.micromodulus.has_value(), key, "",
           "needs a youngs_modulus or a micromodulus, and not both");
   require_absent(material.poisson_ratio.has_value(), key + ".poisson_ratio",
-                 for_cpd + "; bonds alone have 1/4, in plane stress 1/3");
+                 for_cpd + "; with bonds alone it is 1/4, in plane stress 1/3");
   require_absent(material.c1.has_value(), key + ".c1", for_cpd);
   require_absent(material.c2 != 0.0, key + ".c2", for_cpd);
   require_absent(material.c3 != 0.0, key + ".c3", for_cpd);
@@ -144,7 +146,7 @@ void check_solid_material(const MaterialSpecification& material, const std::stri
   require(1.0 + nu >= least_distance_of_poisson_ratio &&
               (is_plane_stress || 1.0 - 2.0 * nu >= least_distance_of_poisson_ratio),
           key + ".poisson_ratio", number_text(nu),
-          "leaves too few digits of double precision so near its limit: take at most "
+          "is so near its limit that too few digits of double precision are left: take at most "
           "0.49999995, and at least -0.9999999");
   const std::string has_own = "is not for the model " + name + ", whose constants are E and nu";
   require_absent(material.micromodulus.has_value(), key + ".micromodulus", has_own);
@@ -156,9 +158,9 @@ void check_solid_material(const MaterialSpecification& material, const std::stri
                  "is not for the model " + name + ", whose energy is quadratic in strains");
   require(!material.damage.softens(), key + ".damage.law", "",
           material.model == MaterialModel::lps
-              ? "of the model lps is \"critical_stretch\", or \"energy_density\" with operator "
-                "\"fft\""
-              : "of the model correspondence is \"energy_density\"");
+              ? "must be \"critical_stretch\" with the model lps, or \"energy_density\" with "
+                "operator \"fft\""
+              : "must be \"energy_density\" with the model correspondence");
   require_absent(material.damage.strength.has_value(), key + ".damage.strength",
                  "is not for the model " + name + "; give fracture_energy" +
                      (material.model == MaterialModel::lps ? " or critical" : ""));
@@ -182,7 +184,8 @@ void check_polynomial_material(const MaterialSpecification& material, const std:
           "is for the model bond");
   const DamageLaw law = material.damage.law;
   require(law == DamageLaw::none || law == DamageLaw::energy_density, key + ".damage.law", "",
-          "of this model is \"energy_density\": bonds that break one by one are no convolutions");
+          "must be \"energy_density\" with this model: bonds that break one by one are not "
+          "convolutions");
 }
 
 void check_kinematics(const MaterialSpecification& material, const std::string& key) {
@@ -193,7 +196,7 @@ void check_kinematics(const MaterialSpecification& material, const std::string& 
             key + ".damage.law", "energy_density", "is for kinematics \"linear\"");
     return;
   }
-  const std::string of_linear = "of kinematics \"linear\" is ";
+  const std::string of_linear = "with kinematics \"linear\" it must be ";
   require(material.model == MaterialModel::bond, key + ".kinematics", "linear",
           "is for the models bond and lps");
   require(material.potential == Harmonic::name, key + ".potential", material.potential,
@@ -211,8 +214,8 @@ void check_fibre(const MaterialSpecification& material, const std::string& key, 
   require_absent(!material.youngs_modulus, table,
                  "needs a youngs_modulus, the one along the fibres");
   require_absent(dimension == 2 && material.plane != PlaneState::stress, table,
-                 "is for plane stress: in plane strain E_1, E_2 and the shear modulus do not tell "
-                 "the constants");
+                 "is for plane stress: in plane strain E_1, E_2 and the shear modulus do not "
+                 "determine the constants");
   require(std::isfinite(fibre.angle), table + ".angle", number_text(fibre.angle), "must be finite");
   require_absent(dimension == 3 && fibre.angle != 0.0, table + ".angle",
                  "is for dimension 2; 3D has a direction");
@@ -245,7 +248,7 @@ void check_scatter(const MaterialSpecification& material, const std::string& key
     const auto& [of, distribution, field] = material.scatter[k];
     const std::string table = key + ".scatter[" + std::to_string(k) + "]";
     require_absent(std::exchange(is_known[int(of)], true), table + ".of",
-                   "another table of this material is of the same quantity");
+                   "another table of this material has the same quantity");
     require_absent(of == Quantity::strength && !material.damage.breaks_bonds(), table + ".of",
                    "strength needs a law of damage by stretches");
     require_within(field.modulus, 1.0, 1e3, table + ".weibull_modulus");
@@ -261,11 +264,11 @@ void check_influence(const MaterialSpecification& material, const std::string& k
   for (const std::string& name : names) listed += (listed.empty() ? "" : ", ") + name;
   require(std::ranges::find(names, material.influence) != names.end(), key + ".influence",
           '"' + material.influence + '"', "must be one of " + listed);
-  require_absent(material.model == MaterialModel::cpd &&
-                     material.calibration == Calibration::continuum &&
-                     material.influence != ConstantInfluence::name,
-                 key + ".calibration",
-                 "of cpd is known for the constant influence function alone; give \"lattice\"");
+  require_absent(
+      material.model == MaterialModel::cpd && material.calibration == Calibration::continuum &&
+          material.influence != ConstantInfluence::name,
+      key + ".calibration",
+      "\"continuum\" is known for cpd with the constant influence function only; give \"lattice\"");
 }
 
 }  // namespace
@@ -320,7 +323,7 @@ void check_interface(const InterfaceSpecification& interface, const std::string&
   for (const std::string& name : interface.between) {
     require(interface.is_of_all() || is_material_of(name, of), key + ".between", '"' + name + '"',
             std::string("must be the set of a region, or \"") + rest_name +
-                "\" for the points of none");
+                "\" for the points in no region");
   }
   require(interface.is_of_all() || a != b, key + ".between", '"' + a + '"',
           "must name two materials");
@@ -329,20 +332,21 @@ void check_interface(const InterfaceSpecification& interface, const std::string&
   require_of_body(material, key + ".material", of);
   check_material(material, key + ".material", dimension);
   require_absent(!material.scatter.empty(), key + ".material.scatter",
-                 "is of points, and so of their materials");
+                 "belongs to points, so give it in the materials of the regions");
   require_absent(material.density.has_value(), key + ".material.density",
-                 "is of points, and so of their materials");
+                 "belongs to points, so give it in the materials of the regions");
   require_absent(material.damage.law == DamageLaw::energy_density, key + ".material.damage",
-                 "is of points that fail, and so of their materials");
+                 "is a law of points that fail, so give it in the materials of the regions");
 }
 
 void check_regions(const BodySpecification& of, int dimension) {
-  require(of.regions.size() + of.interfaces.size() <= most_materials, "regions", "",
-          "there are at most " + std::to_string(most_materials) + " of regions and interfaces");
+  require(
+      of.regions.size() + of.interfaces.size() <= most_materials, "regions", "",
+      "there are at most " + std::to_string(most_materials) + " regions and interfaces together");
   for (std::size_t k = 0; k < of.regions.size(); ++k) {
     const std::string key = "regions[" + std::to_string(k) + "]";
     require(of.regions[k].set != rest_name, key + ".set", '"' + of.regions[k].set + '"',
-            "is the name of the material of the points in no region; give the set another one");
+            "is the name for the points in no region; give the set another name");
     require_of_body(of.regions[k].material, key + ".material", of);
     check_material(of.regions[k].material, key + ".material", dimension);
   }
@@ -351,7 +355,7 @@ void check_regions(const BodySpecification& of, int dimension) {
     check_interface(of.interfaces[k], key, of, dimension);
     for (std::size_t other = 0; other < k; ++other)
       require(!is_same_pair(of.interfaces[k], of.interfaces[other]), key + ".between", "",
-              "another interface is of the same pair");
+              "another interface has the same pair of materials");
   }
 }
 
@@ -360,7 +364,7 @@ void check_solid(const BodySpecification& of) {
   require_absent(of.weights != InteractionWeights::mean, "weights", "is for the model cpd");
   require_absent(of.eigenstrains.are_there(), "eigenstrains", "are not for the model lps");
   require_absent(of.surface_correction != SurfaceCorrection::none, "surface_correction",
-                 "is for the model bond; the states of lps are those of the neighbours there are");
+                 "is for the model bond; the states of lps sum over the neighbours that are there");
   const CollocationSpecification defaults;
   if (of.form != SolidForm::collocation) {
     require_absent(of.collocation.degree != defaults.degree, "collocation.degree",
@@ -370,7 +374,7 @@ void check_solid(const BodySpecification& of) {
     require_absent(of.collocation.normals != defaults.normals, "collocation.normals",
                    "is for the form collocation");
     require_absent(!of.interfaces.empty(), "interfaces",
-                   "are not for the form energy, whose dilatations have the constants of points");
+                   "are not for the form energy, whose dilatations have constants per point");
     return;
   }
   require_absent(of.volume_correction != VolumeCorrection::none, "volume_correction",
@@ -378,7 +382,7 @@ void check_solid(const BodySpecification& of) {
                  "own");
   require_absent(of.material.influence != ConstantInfluence::name &&
                      of.material.influence != InverseInfluence::name,
-                 "material.influence", "of the model lps by collocation is \"inverse\"");
+                 "material.influence", "must be \"inverse\" with the model lps by collocation");
 }
 
 /// Refuses weights and corrections that belong to another model.
@@ -392,7 +396,7 @@ void check_weights(const BodySpecification& of, const Points& points) {
   if (of.material.model != MaterialModel::cpd) {
     require(points.spacing.is_square() || of.volume_correction != VolumeCorrection::linear,
             "volume_correction", "linear",
-            "is for square or cubic cells; spacings that differ need \"none\" or \"exact\"");
+            "is for square or cubic cells; different spacings need \"none\" or \"exact\"");
     return;
   }
   require_whole_square_cells(points);
@@ -424,12 +428,12 @@ void check_horizon_shape(const BodySpecification& of, const Points& points) {
     return region.material.fibre.has_value();
   };
   if (of.material.fibre || std::any_of(of.regions.begin(), of.regions.end(), has_fibres)) {
-    refuse("must be \"ball\" with fibres: their moduli are harmonics of a bond's direction");
+    refuse("must be \"ball\" with fibres: their moduli are harmonics of the bond's direction");
   }
   if (of.volume_correction != VolumeCorrection::none) {
-    refuse("has no parts of cells: volume_correction must be \"none\"");
+    refuse("needs volume_correction \"none\": this shape takes no parts of cells");
   }
-  if (!points.neighbours.empty()) refuse("is for neighbours that are found");
+  if (!points.neighbours.empty()) refuse("is for neighbours found by the search");
 }
 
 /// Refuses settings that would come on top of given partial volumes, or have no effect on them.
@@ -438,11 +442,10 @@ void check_neighbours(const BodySpecification& of, const Points& points) {
   require(of.material.model == MaterialModel::bond, "material.model", "cpd",
           "finds its own neighbours; given ones are for model \"bond\"");
   require_absent(of.volume_correction != VolumeCorrection::none, "volume_correction",
-                 "is for neighbours that are found; given ones have their shares");
-  require_absent(
-      of.surface_correction == SurfaceCorrection::volume, "surface_correction",
-      "\"volume\" is for neighbours that are found: of given ones nobody knows what they "
-      "add up to inside a body; give \"energy\" or \"none\"");
+                 "is for neighbours found by the search; given neighbours have their own shares");
+  require_absent(of.surface_correction == SurfaceCorrection::volume, "surface_correction",
+                 "\"volume\" is for neighbours found by the search: for given neighbours the sum "
+                 "of volumes inside a body is not known; give \"energy\" or \"none\"");
 }
 
 /// Checks the cross-section, which follows from volumes and spacing.
@@ -470,7 +473,8 @@ void check_shares(const Points& points) {
     const bool are_shares = pair.of_i >= 0.0 && pair.of_j >= 0.0 && pair.of_i + pair.of_j > 0.0 &&
                             std::isfinite(pair.of_i + pair.of_j);
     require(ascends && are_points && are_shares, "points.neighbours", "",
-            "must ascend, be of two points each, and have shares of at least 0, not both 0");
+            "must ascend; each entry needs two points of the body, and shares of at least 0, not "
+            "both 0");
     before = &pair;
   }
 }
@@ -479,7 +483,7 @@ void check_set(const std::string& name, const std::vector<Index>& members, Index
   for (std::size_t k = 0; k < members.size(); ++k) {
     const bool ascends = k == 0 || members[k - 1] < members[k];
     require(ascends && members[k] >= 0 && members[k] < points, "points.sets", '"' + name + '"',
-            "has a number that is no point's, or numbers that do not ascend");
+            "has a number that is not the number of a point, or numbers that do not ascend");
   }
 }
 
@@ -488,9 +492,9 @@ void check_set(const std::string& name, const std::vector<Index>& members, Index
 void check_points(const Points& points) {
   require(points.dimension >= 1 && points.dimension <= 3, "points.dimension",
           std::to_string(points.dimension), "must be 1, 2 or 3");
-  require(points.count() > 0, "points", "", "there are none");
+  require(points.count() > 0, "points", "", "there are no points");
   require(points.reference.size() == points.volume.size() * std::size_t(points.dimension),
-          "points.reference", "", "must have dimension entries for every volume");
+          "points.reference", "", "must have as many entries as the dimension for every volume");
   require_positive(points.spacing, "points.spacing");
   for (const double at : points.reference)
     require(std::isfinite(at), "points.reference", number_text(at), "must be finite");
@@ -523,7 +527,7 @@ void check_mirrored_fibres(const BodySpecification& of, int dimension) {
     const bool is_along_axis = dimension == 3 ? std::count(along.begin(), along.end(), 0.0) == 2
                                               : std::remainder(material.fibre->angle, 90.0) == 0.0;
     require(is_along_axis, key + (dimension == 3 ? ".fibre.direction" : ".fibre.angle"), "",
-            "must be along an axis where there are planes of symmetry: these mirror the fibres");
+            "must be along an axis if there are planes of symmetry, which mirror the fibres");
   };
   check(of.material, "material");
   for (std::size_t k = 0; k < of.regions.size(); ++k) {
@@ -565,9 +569,9 @@ namespace {
 void check_convolved_body(const BodySpecification& of) {
   if (of.needs_convolutions()) {
     require(of.is_convolved(), "force_operator", "bonds",
-            of.has_states() ? "does not go with the form \"printed\" of lps; take \"fft\""
-                            : "does not go with this model, which is summed by convolutions alone; "
-                              "take \"fft\"");
+            of.has_states()
+                ? "does not go with the form \"printed\" of lps; take \"fft\""
+                : "does not go with this model, which needs convolutions; take \"fft\"");
   }
   if (!is_polynomial(of.material.model)) return;
   require_absent(of.eigenstrains.are_there(), "eigenstrains",
@@ -578,20 +582,19 @@ void check_linear_body(const BodySpecification& of) {
   for (std::size_t k = 0; of.is_convolved() && k < of.loads.size(); ++k) {
     require_absent(of.loads[k].kind == LoadSpecification::Kind::pressure,
                    "loads[" + std::to_string(k) + "].pressure",
-                   "turns with its faces, which couples points that operator \"fft\" has no place "
-                   "for; take \"bonds\", or a traction");
+                   "turns with its faces, which couples points in a way that operator \"fft\" does "
+                   "not support; take \"bonds\", or a traction");
   }
   if (is_polynomial(of.material.model)) return;
   if (!of.is_linear()) {
-    require(
-        !of.is_convolved() || of.has_states(), "force_operator", "fft",
-        "is for bonds with kinematics \"linear\", since the forces of bonds that turn are no "
-        "convolutions unless of model \"green_bond\", for model \"correspondence\", and for the "
-        "forms \"energy\" and \"printed\" of lps");
+    require(!of.is_convolved() || of.has_states(), "force_operator", "fft",
+            "is for bonds with kinematics \"linear\", for models \"green_bond\" and "
+            "\"correspondence\", and for the forms \"energy\" and \"printed\" of lps: forces of "
+            "other bonds that turn are not convolutions");
     const DamageLaw law = of.material.damage.law;
     require(!of.is_convolved() || law == DamageLaw::none || law == DamageLaw::energy_density,
             "material.damage.law", "",
-            "with operator \"fft\" is \"energy_density\": bonds that break one by one are no "
+            "must be \"energy_density\" with operator \"fft\": bonds that break one by one are not "
             "convolutions");
     require(of.is_convolved() || law != DamageLaw::energy_density, "material.damage.law",
             "energy_density", "is for kinematics \"linear\" and operator \"fft\"");
@@ -636,7 +639,7 @@ void require_summable(MaterialModel model, int dimension, const std::string& key
 void add_set(Points& points, const SetRule& rule) {
   if (points.sets.contains(rule.name)) {
     throw InputError("name", '"' + rule.name + '"',
-                     "there is a set of this name already (sets, layers and the sets of a point "
+                     "there is already a set of this name (sets, layers and the sets of a point "
                      "file share their names)");
   }
   std::vector<Index> members = select(points, rule);

@@ -41,7 +41,7 @@ Coordinates direction_of(const FibreSpecification& fibre, int dimension) {
           " and shear_modulus = " + number_text(moduli.shear) + " do not go together; " +
           (least > 0.0 ? "the first two allow a shear_modulus from about " +
                              fmt::format("{:.3g}", least) + " to " + fmt::format("{:.3g}", most)
-                       : "no shear_modulus does with the first two"));
+                       : "no shear_modulus goes with the first two"));
 }
 
 /// True if laws differ at most in their onset and critical stretch; blended ones must also have the
@@ -249,7 +249,7 @@ void refuse_idle_interfaces(const BodySpecification& from, const PointMaterials&
     if (is_met[k] > 0.0) continue;
     throw InputError("interfaces[" + std::to_string(k) + "]", "",
                      "no bond joins points of these materials: they are farther apart than the "
-                     "horizon, or another interface is of this pair");
+                     "horizon, or another interface has this pair");
   }
 }
 

@@ -27,9 +27,9 @@ void require_lattice(const Points& points) {
   const auto refuse = [](const std::string& key, const std::string& value,
                          const std::string& what) { throw InputError(key, value, what); };
   if (!points.lattice || !points.spacing.is_square()) {
-    refuse("material.model", "lps",
-           "needs a lattice of squares or cubes: balls that reach over the surface are filled up "
-           "with its places");
+    refuse(
+        "material.model", "lps",
+        "needs a lattice of squares or cubes: its sites fill up balls that reach over the surface");
   }
   if (points.own() < points.count()) {
     refuse("material.model", "lps", "does not go with planes of symmetry and periods");
@@ -91,7 +91,7 @@ std::vector<double> normals_of_faces(const BodySpecification& from, const Points
                                      const CutBonds& cut) {
   if (!from.boundary) {
     throw InputError("quadrature.normals", "exact",
-                     "needs a lattice in shapes, whose faces tell the normals");
+                     "needs a lattice in shapes, whose faces give the normals");
   }
   const auto d = std::size_t(points.dimension);
   std::vector<double> normals(points.reference.size(), 0.0);

@@ -117,8 +117,8 @@ class MixedConstant {
     throw InputError(materials_.key_between(a, b), "",
                      "\"" + kinds_[a].name + "\" has " + name + " = " + number_text(of_kind_[a]) +
                          " and \"" + kinds_[b].name + "\" " + number_text(of_kind_[b]) +
-                         ": numbers of opposite signs have no harmonic mean. Give [[interface]] "
-                         "rule = \"arithmetic\" or constants of its own");
+                         ": numbers of opposite signs have no harmonic mean. Give the "
+                         "[[interface]] rule = \"arithmetic\", or its own constants");
   }
 
   /// Value for points of two materials.
@@ -168,19 +168,19 @@ void refuse_damage_of_negative_constants(const MaterialSpecification& material,
   const std::string negative = negative_constant(constants);
   if (negative.empty()) return;
   const double value = negative == "c2" ? constants.c2 : constants.c3;
-  std::string advice = "give " + negative + " = 0 or more";
+  std::string advice = "give " + negative + " of at least 0";
   if (material.poisson_ratio) {
     const CpdStiffness stiffness = stiffness_of(material, setting, spacing);
     const double least = poisson_ratio_of(stiffness.moduli({1.0, 0.0, 0.0}), setting.dimension);
-    advice = "it is for a poisson_ratio below " + number_text(least) +
+    advice = "it is negative for a poisson_ratio below " + number_text(least) +
              (setting.dimension == 3 ? " (with c2 = 0; a positive c2 needs a larger one)" : "") +
              ". Give a larger poisson_ratio, or model = \"bond\"";
   }
   throw InputError(key + ".damage.law", "",
                    "damage needs constants of at least 0, but " + negative + " is " +
                        number_text(value) +
-                       ": interactions of negative energy that are lost with a "
-                       "broken bond would set energy free from nothing; " +
+                       ": interactions of negative energy that are lost with a broken bond would "
+                       "create energy; " +
                        advice);
 }
 

@@ -64,8 +64,8 @@ std::size_t material_about(const Body& body, const PointMaterials& materials,
   first = -of_body.largest_of_all(-first);
   if (of_body.largest_of_all(last) != first) {
     throw InputError(key + ".outer", "",
-                     "the ring holds two materials; the flux of energy through it is not the tip's "
-                     "alone");
+                     "the ring contains two materials, so the energy flux through it is not that "
+                     "of the tip alone");
   }
   return std::size_t(first);
 }
@@ -74,7 +74,7 @@ std::size_t material_about(const Body& body, const PointMaterials& materials,
 void refuse_without_ranks(const CrackTipSpecification& tip, const std::string& key) {
   if (tip.cut > 0.0) {
     throw InputError(key + ".cut", number_text(tip.cut),
-                     "is for one rank; on several take J, which has no cut");
+                     "is for one rank; on several ranks use J, which needs no cut");
   }
 }
 

@@ -52,12 +52,12 @@ std::string description(const CrackTrapping& trapping) {
   const std::string needed =
       trapping.needed ? "it runs at " + range(trapping.needed->first, trapping.needed->second)
                       : fmt::format(
-                            "not measured in {}D at this ratio and influence function, the "
-                            "constant one in 2D at 3 and 4 runs at 1.14 to 1.19",
+                            "not measured in {}D at this ratio and influence function; with the "
+                            "constant one in 2D, at ratios 3 and 4, it runs at 1.14 to 1.19",
                             trapping.dimension);
   return fmt::format(
-      "brittle bonds at horizon ratio {:.2g} hold a crack up: {} of K_Ic, and with law = "
-      "\"linear\" within 0.02 of it (docs/trustworthy-peaks.md)",
+      "brittle bonds at horizon ratio {:.2g} trap a crack: {} of K_Ic; with law = \"linear\" "
+      "within 0.02 of it (docs/trustworthy-peaks.md)",
       trapping.horizon_ratio, needed);
 }
 

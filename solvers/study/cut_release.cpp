@@ -35,13 +35,13 @@ void refuse_what_has_no_rate(const Body& body, const CrackTipSpecification& tip,
                              const std::string& key) {
   if (body.specification.is_convolved() && body.specification.has_states()) {
     throw InputError(key, number_text(tip.cut),
-                     "needs bonds to cut, which lps with operator \"fft\" has not; take "
+                     "needs bonds to cut, which lps with operator \"fft\" does not have; take "
                      "\"bonds\", or J without a cut");
   }
   const Conditions& conditions = *body.conditions;
   if (!(tip.cut >= body.setting.reach() * (1.0 - 1e-9))) {
     throw InputError(key, number_text(tip.cut),
-                     "must be a horizon at least, " + number_text(body.setting.reach()) +
+                     "must be at least a horizon, " + number_text(body.setting.reach()) +
                          " m: a shorter cut leaves bonds across it");
   }
   if (conditions.control()) throw InputError(key, "", "does not go with a [[control]]");
@@ -53,7 +53,7 @@ void refuse_what_has_no_rate(const Body& body, const CrackTipSpecification& tip,
   conditions.external_force(end, force);
   conditions.prescribe(end, moved);
   if (norm(force) > 0.0 && norm(moved) > 0.0) {
-    throw InputError(key, "", "needs a body that is loaded by loads alone, or by supports alone");
+    throw InputError(key, "", "needs a body with loads only, or with moving supports only");
   }
 }
 

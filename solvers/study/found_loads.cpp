@@ -42,10 +42,10 @@ void refuse_unanswered_loads(const Body& body, const FreeDofs& free, Assembler& 
       find_rate(problem, solver, tangent, {rest, assembler.initial_history()}, loads, 0.0, rate);
   if (outcome != LinearOutcome::solved) return;  // the search reports it
   if (norm(rate) == 0.0 && depend_on_load(conditions, loads)) {
-    throw InputError("supports", "",
-                     "supports and loads must begin in proportion to load where the load is found; "
-                     "these do not change with it at load = 0, as load^2 and abs(load) don't. Give "
-                     "a multiple of load");
+    throw InputError(
+        "supports", "",
+        "where the load is found, supports and loads must start in proportion to load; these do "
+        "not change with load at load = 0, like load^2 and abs(load). Give a multiple of load");
   }
   if (norm(rate) == 0.0) {
     throw InputError("supports", "",
@@ -53,8 +53,8 @@ void refuse_unanswered_loads(const Body& body, const FreeDofs& free, Assembler& 
   }
   if (control && !answer_of({control->weights(), 0.0, 0.0}, rate)) {
     throw InputError("controls", "",
-                     "the controlled displacement does not answer to load: nothing that load moves "
-                     "moves it");
+                     "the controlled displacement does not respond to load: nothing that depends "
+                     "on load moves it");
   }
 }
 

@@ -113,9 +113,10 @@ class Search {
     }
     const double wanted = peak_ / result_.critical;
     if (!(wanted < force(largest_ratio))) {
-      throw InputError(key_ + "strength", number_text(strength_),
-                       "must be less than what brittle bonds with this critical stretch bear, " +
-                           short_text(scale_.strength(brittle_law(result_.critical))) + " Pa");
+      throw InputError(
+          key_ + "strength", number_text(strength_),
+          "must be less than the strength of brittle bonds with this critical stretch, " +
+              short_text(scale_.strength(brittle_law(result_.critical))) + " Pa");
     }
     if (!(wanted > force(smallest_ratio))) refuse_round();
     result_.onset = ratio_at(force, wanted) * result_.critical;
@@ -143,7 +144,8 @@ class Search {
             result_.hardening > 0.0
                 ? "must be above the stress at which bonds begin to soften with this onset, " +
                       short_text(scale_.pull->onset(Loading::tension, result_.onset).mean) + " Pa"
-                : "needs a hardening above 0: without, the onset gives it; give peak");
+                : "needs a hardening above 0: without hardening it follows from the onset; give "
+                  "peak");
       }
       result_.peak = result_.onset + (peak_ - result_.onset) / result_.hardening;
     }
@@ -161,7 +163,7 @@ class Search {
   /// @param least work of the law that breaks as soon as it softens
   [[noreturn]] void refuse_unresolved(const std::string& datum, double least) const {
     throw InputError(key_ + datum, "",
-                     "bonds of this horizon break before they soften: up to there they take " +
+                     "bonds of this horizon break before they soften: up to softening they take " +
                          short_text(least * scale_.micromodulus * scale_.crossing) +
                          " J/m2, which leaves nothing of the fracture energy, " +
                          short_text(work_ * scale_.micromodulus * scale_.crossing) +
@@ -179,14 +181,13 @@ class Search {
   }
 
   [[noreturn]] void refuse_round() const {
-    throw InputError(
-        key_ + "strength", number_text(strength_),
-        law_rounds()
-            ? "is too small for a tanh law, whose force goes on rising beyond the onset: take law "
-              "\"linear\" or \"exponential\""
-            : "is too small: bonds would begin to soften at a stretch of " + short_text(peak_) +
-                  ", less than " + number_text(smallest_ratio) +
-                  " of the critical one. A strength is in Pa: 3 MPa are 3e6");
+    throw InputError(key_ + "strength", number_text(strength_),
+                     law_rounds()
+                         ? "is too small for a tanh law, whose force keeps rising beyond the "
+                           "onset: take law \"linear\" or \"exponential\""
+                         : "is too small: bonds would begin to soften at a stretch of " +
+                               short_text(peak_) + ", less than " + number_text(smallest_ratio) +
+                               " of the critical one. The strength is in Pa: 3 MPa are 3e6");
   }
 
   [[nodiscard]] bool law_rounds() const {
@@ -264,7 +265,7 @@ class TearSearch {
     const double ratio = scale_.energy(brittle) / total_work(brittle);
     static_cast<void>(Search(damage_, key_, with_ratio(std::log(ratio)), peak_).found());
     throw InputError(key_ + "fracture_energy", number_text(*damage_.fracture_energy),
-                     "gives no stretches with this onset or strength; give others");
+                     "gives no stretches with this onset or strength; give other values");
   }
 
   const DamageSpecification& damage_;
@@ -292,8 +293,8 @@ class StrengthSearch {
     const double of_unit = scale_.strength(brittle_law(1.0));
     if (of_unit == 0.0) {
       throw InputError(key_ + "strength", number_text(*damage_.strength),
-                       "is for a lattice that resists shear: at this horizon ratio bonds join "
-                       "neighbours along the axes alone; take a ratio from 1.5 on");
+                       "needs a lattice that resists shear: at this horizon ratio bonds join "
+                       "neighbours along the axes only; take a ratio of at least 1.5");
     }
     const double brittle = *damage_.strength / of_unit;
     if (!damage_.softens()) {
@@ -355,7 +356,7 @@ class StrengthSearch {
     constexpr double allowed = 0.01;
     if (std::abs(excess) <= allowed) return *law_;
     throw InputError(key_ + "strength", number_text(*damage_.strength),
-                     "is none that this law gives: the nearest is " +
+                     "can't be reached by this law: the nearest strength is " +
                          short_text(scale_.strength(*law_)) + " Pa");
   }
 
@@ -368,7 +369,7 @@ class StrengthSearch {
         "a brittle bond has one stretch for both: with this fracture_energy the strength is " +
             short_text(stretch * of_unit) + " Pa, with this strength the fracture energy is " +
             short_text(scale_.energy(brittle_law(critical))) +
-            " J/m2. Give one of them, or a law that softens, like \"linear\"");
+            " J/m2. Give one of them, or a law that softens, such as \"linear\"");
   }
 
   const DamageSpecification& damage_;
@@ -435,7 +436,7 @@ FractureScale FractureScale::of(const MaterialSpecification& material, const std
         number_text(by_energy ? *material.damage.fracture_energy : *material.damage.strength),
         "is for horizon ratios up to " + number_text(largest) + " with cpd in " +
             std::to_string(setting.dimension) +
-            "D: summing what longer interactions take or bear takes minutes; give stretches");
+            "D: computing it for longer interactions takes minutes; give stretches");
   }
   return scale;
 }

@@ -33,9 +33,9 @@ constexpr double lattice_tolerance = 1e-9;
 constexpr double least_ratio_of_convolutions = 2.5;
 
 [[noreturn]] void refuse_convolution(const BodySpecification& from, const std::string& why) {
-  throw InputError(
-      "force_operator", "fft",
-      from.needs_convolutions() ? why + "; no other sums this model" : why + "; take \"bonds\"");
+  throw InputError("force_operator", "fft",
+                   from.needs_convolutions() ? why + "; this model has no other operator"
+                                             : why + "; take \"bonds\"");
 }
 
 bool stand_in_place(const Points& points) {
@@ -53,14 +53,13 @@ bool stand_in_place(const Points& points) {
 /// Returns the lattice box of a body; refuses forces that are no convolution over a lattice.
 LatticeBox box_of(const BodySpecification& from, const Points& points) {
   if (!from.is_uniform()) {
-    refuse_convolution(
-        from,
-        "is for bodies of one material: with regions, fibres or random fields the stiffness of a "
-        "bond is not a function of its step alone");
+    refuse_convolution(from,
+                       "is for bodies of one material: with regions, fibres or random fields the "
+                       "stiffness of a bond does not depend on its lattice vector alone");
   }
   if (from.surface_correction != SurfaceCorrection::none) {
     refuse_convolution(from,
-                       "goes without a surface_correction, whose factors belong to single bonds");
+                       "does not go with a surface_correction, which has a factor for each bond");
   }
   if (points.own() < points.count()) {
     if (!from.cracks.empty()) {
@@ -68,7 +67,7 @@ LatticeBox box_of(const BodySpecification& from, const Points& points) {
     }
     if (from.form == SolidForm::printed) {
       refuse_convolution(from,
-                         "of the form printed does not go with planes of symmetry and periods, "
+                         "with the form printed does not go with planes of symmetry and periods, "
                          "across which forces without a potential have no image");
     }
   }
@@ -77,11 +76,11 @@ LatticeBox box_of(const BodySpecification& from, const Points& points) {
   std::optional<LatticeBox> box = lattice_box(points, why_not);
   if (!box) refuse_convolution(from, "needs points on a lattice: " + why_not);
   if (!stand_in_place(points)) {
-    refuse_convolution(from, "needs points that stand where the lattice has its places");
+    refuse_convolution(from, "needs points at the sites of the lattice");
   }
   const auto [least, most] = std::minmax_element(points.volume.begin(), points.volume.end());
   if (*most - *least > lattice_tolerance * *most) {
-    refuse_convolution(from, "needs points with the same volume, that of a cell");
+    refuse_convolution(from, "needs points of equal volume, that of a cell");
   }
   return std::move(*box);
 }
@@ -324,8 +323,8 @@ void require_gradients(const Correspondence& material) {
   if (without == 0) return;
   throw InputError(
       "points", std::to_string(without),
-      "of them have neighbours along a line or in a plane alone, which tell no "
-      "deformation gradient; resolve thin parts by more points, or take another model");
+      "of them have neighbours only along a line or in a plane, which determine no deformation "
+      "gradient; resolve thin parts with more points, or take another model");
 }
 
 /// Makes a correspondence material. Its springs have the material's Young's modulus; beta is

@@ -24,8 +24,8 @@ namespace {
 /// Requires LDL^T if loads are found: other solvers fail if the tangent has negative pivots.
 void require_ldlt(const StudyOptions& options) {
   const std::string why =
-      "a control and mode arc_length need the direct solver that bears negative pivots, which is "
-      "taken by itself";
+      "a control and mode arc_length need the direct solver that handles negative pivots; it is "
+      "chosen automatically";
   const LinearMethod method = options.linear.method;
   if (method != LinearMethod::automatic && method != LinearMethod::ldlt) {
     throw InputError("linear.method", "", why);
@@ -124,7 +124,7 @@ LinearSystems systems_of_motion(const Body& body) {
 /// Refuses solvers for one rank: no rank has the whole tangent, or the whole box of a lattice.
 void refuse_solvers_without_ranks(const StudyOptions& options, const Body& body) {
   const auto refuse = [](const std::string& key, const std::string& what) {
-    throw InputError(key, "", "is for one rank; on several take " + what);
+    throw InputError(key, "", "is for one rank; on several ranks take " + what);
   };
   const LinearMethod method = options.linear.method;
   if (method == LinearMethod::cholesky || method == LinearMethod::ldlt) {
@@ -149,7 +149,7 @@ void refuse_solvers_without_ranks(const StudyOptions& options, const Body& body)
            "\"rigid_pieces\", \"block_jacobi\" or \"jacobi\" with periods and rigid sets");
   }
   if (finds_loads(options, *body.conditions)) {
-    refuse("loading.mode", "loads that are given: those that are found need pivots");
+    refuse("loading.mode", "given loads: loads that are found need pivots");
   }
   if (!body.model.has_rows()) refuse("force_operator", "\"bonds\"");
 }
@@ -167,8 +167,8 @@ void refuse_products_with_constraints(const StudyOptions& options, const Body& b
 void refuse_to_solve_for(const Body& body, const LoadSteppingOptions& loading) {
   if (body.model.has_rows() || body.model.balances().potential) return;
   const std::string why =
-      "is for models with an energy; form \"printed\" takes mode dynamics with scheme \"verlet\", "
-      "and form \"energy\" everything";
+      "is for models with an energy; form \"printed\" takes only mode dynamics with scheme "
+      "\"verlet\", form \"energy\" takes all modes";
   if (loading.mode == Mode::dynamics) {
     if (loading.dynamics.scheme == MotionScheme::newmark)
       throw InputError("dynamics.scheme", "newmark", why);
@@ -239,7 +239,9 @@ std::shared_ptr<const LatticeBox> box_for_sines(const StudyOptions& options, con
         "periods, whose equations are not those of points on a lattice");
   }
   if (body.points.angle != 0.0) {
-    refuse("is for lattices along the axes: the sides of a box of this one are not the body's");
+    refuse(
+        "is for lattices along the axes: the sides of this lattice's box are not those of the "
+        "body");
   }
   std::string why_not;
   std::optional<LatticeBox> box = lattice_box(body.points, why_not);
@@ -260,7 +262,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
       linear.preconditioner != PreconditionerKind::automatic)
     linear.method = LinearMethod::conjugate_gradients;
   if (options.tangent == TangentStorage::matrix_free && !model.visits_rows() && model.has_rows())
-    throw InputError("tangent", "matrix_free", "is for bonds alone");
+    throw InputError("tangent", "matrix_free", "is for bonds only");
   LinearProblem problem;
   problem.is_symmetric = is_symmetric;
   problem.index_map = &index_map;

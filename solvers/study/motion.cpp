@@ -19,10 +19,9 @@ namespace {
 
 void refuse_constraints(const ConstraintSpecification& constraints, int dimension) {
   const auto refuse = [](const std::string& key, const std::string& what) {
-    throw InputError(key, "",
-                     what +
-                         " does not go with mode dynamics: its inertia is not that of single "
-                         "points");
+    throw InputError(
+        key, "",
+        what + " does not go with mode dynamics: its inertia is not that of individual points");
   };
   if (!constraints.rigid_sets.empty()) refuse("rigid_sets", "a set that moves as a rigid body");
   if (!constraints.rollers.empty()) refuse("rollers", "a roller");

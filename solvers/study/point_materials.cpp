@@ -51,12 +51,11 @@ PointMaterials::PointMaterials(const BodySpecification& from, const Points& poin
   const auto first = std::find(of_point_.begin(), of_point_.end(), of_none) - of_point_.begin();
   // A part of a body does not know how many there are in all.
   const std::string how_many = points.owned ? "some points" : std::to_string(left) + " points";
-  throw InputError(
-      "regions", "",
-      (left == 1 && !points.owned ? "1 point is of no material, at "
-                                  : how_many + " are of no material, one of them at ") +
-          place_of(points, Index(first)) +
-          "; put them in a region, or give what is in none a [material]");
+  throw InputError("regions", "",
+                   (left == 1 && !points.owned ? "1 point has no material, at "
+                                               : how_many + " have no material, one of them at ") +
+                       place_of(points, Index(first)) +
+                       "; put them in a region, or give a [material] for points in no region");
 }
 
 std::vector<std::int32_t> PointMaterials::regions() const {

@@ -31,7 +31,7 @@ void refuse_modes_without_potential(const Body& body, const StudyOptions& option
   if (body.specification.is_convolved()) return;  // choose_linear_systems refuses their modes
   if (is_explicit) {
     throw InputError("dynamics.scheme", "verlet",
-                     "is for models with an energy; \"lps\" moves by \"newmark\"");
+                     "is for models with an energy; \"lps\" by collocation takes \"newmark\"");
   }
   if (options.loading.mode != Mode::newton && options.loading.mode != Mode::dynamics) {
     throw InputError("loading.mode", std::string(options.loading.mode.name),
@@ -51,8 +51,8 @@ void refuse_events_of_states(const Body& body, const StudyOptions& options) {
   const bool has_bonds = !body.specification.has_states() || body.specification.is_convolved();
   if (has_bonds || options.loading.mode != Mode::path) return;
   throw InputError("loading.mode", std::string(options.loading.mode.name),
-                   "is for models \"bond\" and \"cpd\": with a bond of \"lps\" its points lose "
-                   "dilatation");
+                   "is for models \"bond\" and \"cpd\": when a bond of \"lps\" breaks, its points "
+                   "also lose dilatation");
 }
 
 /// Points that fail one by one have no strength that a step could be led to, and what follows one
@@ -61,14 +61,15 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
   const Mode mode = options.loading.mode;
   if (!body.specification.is_linear() && !body.specification.is_convolved()) return;
   if (options.loading.max_broken_bonds > 0 && body.model.fails_in_avalanches()) {
-    throw InputError("loading.max_broken_bonds", std::to_string(options.loading.max_broken_bonds),
-                     "counts bonds that break one by one; of points that fail all go at once");
+    throw InputError(
+        "loading.max_broken_bonds", std::to_string(options.loading.max_broken_bonds),
+        "counts bonds that break one by one; a point that fails loses all its bonds at once");
   }
   if (mode == Mode::relaxation && body.model.fails_in_avalanches() &&
       options.loading.relaxation.method == RelaxationMethod::flow) {
     throw InputError("loading.relaxation.method", "flow",
-                     "follows bonds that break one by one; of points that fail all go at once, "
-                     "which \"dynamic\" follows");
+                     "follows bonds that break one by one; a point that fails loses all its bonds "
+                     "at once: take \"dynamic\"");
   }
   const bool is_known = mode == Mode::newton || mode == Mode::dynamics || mode == Mode::relaxation;
   if (is_known || (mode != Mode::path && !body.model.has_history())) return;
@@ -115,7 +116,7 @@ void check_study(const Body& body, const StudyOptions& options) {
   if (moves != body.conditions->programme().is_of_time()) {
     throw InputError(
         "end_time", "",
-        moves ? "is missing; mode dynamics needs it" : "is of a motion in time, for mode dynamics");
+        moves ? "is missing; mode dynamics needs it" : "is for a motion in time, mode dynamics");
   }
   refuse_modes_without_potential(body, options);
   refuse_events_of_states(body, options);
@@ -124,7 +125,7 @@ void check_study(const Body& body, const StudyOptions& options) {
   if (is_implicit != body.specification.has_inertia) {
     throw InputError("has_inertia", "",
                      is_implicit ? "must be set: implicit steps need a body with inertia"
-                                 : "is for bodies that implicit steps follow");
+                                 : "is for implicit steps only");
   }
   const bool begins_in_equilibrium =
       moves && options.loading.dynamics.start == MotionStart::equilibrium;
@@ -198,9 +199,9 @@ const Stiffness& Study::find_initial_stiffness() {
                          " s; take a shorter one, or dynamics.step_share");
   }
   if (step == 0.0 && !std::isfinite(stable)) {
-    throw InputError("dynamics.step_share", number_text(options_.loading.dynamics.step_share),
-                     "is of a stable step that is not there: nothing that moves has a stiffness; "
-                     "give dynamics.time_step");
+    throw InputError(
+        "dynamics.step_share", number_text(options_.loading.dynamics.step_share),
+        "needs a stable step, but nothing that moves has a stiffness; give dynamics.time_step");
   }
   return *motion_->at_start;
 }

@@ -41,7 +41,7 @@ void check_options(const StudyOptions& options) {
   require_within(loading.relaxation.flow_tolerance, 1e-3, 0.5, "loading.relaxation.flow_tolerance");
   require_within(loading.peak_tolerance, 0.0, 1.0, "loading.peak_tolerance");
   if (loading.relaxation.method == RelaxationMethod::flow && !loading.relaxation.holds)
-    throw InputError("loading.relaxation.holds", "false", "is for the dynamic method");
+    throw InputError("loading.relaxation.holds", "false", "is for method \"dynamic\"");
   const DynamicsOptions& dynamics = loading.dynamics;
   require_within(dynamics.time_step, 0.0, 1e30, "dynamics.time_step");
   require_within(dynamics.step_share, 1e-6, 0.99, "dynamics.step_share");
@@ -49,8 +49,8 @@ void check_options(const StudyOptions& options) {
   require_within(dynamics.spectral_radius, 0.0, 1.0, "dynamics.spectral_radius");
   if (dynamics.scheme == MotionScheme::newmark && dynamics.time_step == 0.0) {
     throw InputError("dynamics.time_step", "",
-                     "is missing: implicit steps are stable at any length, so that there is no "
-                     "stable step to take a share of");
+                     "is missing: implicit steps are stable at any length, so there is no stable "
+                     "step to take a share of");
   }
   const LinearSolverOptions& linear = options.linear;
   if ((linear.method == LinearMethod::cholesky || linear.method == LinearMethod::lu) &&

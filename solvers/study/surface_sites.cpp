@@ -92,7 +92,7 @@ void refuse_points_on_faces(const Points& points, const std::vector<SurfaceSite>
                      "needs points inside the body, about half a spacing below its free faces: the "
                      "one at " +
                          place_text(place, points.dimension) +
-                         " m stands on a face; put the lattice's origin at \"cells\", or move the "
+                         " m lies on a face; give lattice origin = \"cell_centres\", or move the "
                          "shape by half a spacing");
   }
 }

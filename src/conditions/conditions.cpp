@@ -55,7 +55,8 @@ void refuse_depth_of_surface(const LoadSpecification& load, const std::string& t
   const std::string key = load.depth == Depth::surface ? ".depth"
                           : load.boundary.empty()      ? ".stress"
                                                        : ".boundary";
-  throw InputError(table + key, "", "is for tractions on the surface, of the model \"lps\" alone");
+  throw InputError(table + key, "",
+                   "is for tractions on the surface, which only model \"lps\" has");
 }
 
 }  // namespace
@@ -146,8 +147,8 @@ void Conditions::refuse_shared_names() const {
   const auto add = [&names](const std::string& name, const std::string& key) {
     if (names.insert(name).second) return;
     throw InputError(key, '"' + name + '"',
-                     "there is a support, constraint or foundation of this name already, whose "
-                     "reaction could not be told from this one's");
+                     "there is already a support, constraint or foundation of this name; their "
+                     "reactions need different names");
   };
   for (const Restraint& restraint : made_.restraints) add(restraint.name, restraint.key);
   for (const auto& of : foundations_.summaries()) add(of.name, of.key);
@@ -215,12 +216,11 @@ void Conditions::require_balance(std::span<const double> force, const std::strin
   sums = ranks_.sum(sums);
   for (std::size_t c = 0; c < d; ++c) {
     if (!floats_[c] || std::abs(sums[c]) <= round_off * sums[3 + c]) continue;
-    throw InputError(
-        key, "",
-        "the loads on a cell that nothing holds add up to " + number_text(sums[c]) + " N along " +
-            "xyz"[c] +
-            ", for which a body that repeats has no equilibrium. Balance them, or hold "
-            "the cell by a support");
+    throw InputError(key, "",
+                     "no support holds the cell, and the loads on it add up to " +
+                         number_text(sums[c]) + " N along " + "xyz"[c] +
+                         ", so a periodic body has no equilibrium. Balance the loads, or hold the "
+                         "cell by a support");
   }
 }
 
@@ -319,7 +319,7 @@ SharedEnvironment Conditions::environment(const LoadPoint& at) const {
         sum += stretch;
         if (!(sum > -1.0)) {
           throw InputError("", '"' + value.text() + '"',
-                           "leaves nothing of the length there was: an eigenstrain of " +
+                           "shrinks lengths to zero or below: the eigenstrain is " +
                                number_text(sum) + " at " +
                                place_text(points_.position(points[k]), points_.dimension) +
                                " m; it must be above -1");
@@ -384,8 +384,9 @@ void Conditions::refuse_contradiction(const Prescription& second, Index point, d
                        " contradict each other: at point " +
                        place_text(points_.position(point), points_.dimension) +
                        " m the displacement in " + "xyz"[second.component] + " is " +
-                       number_text(first_value) + " m by one and " + number_text(second_value) +
-                       " m by the other at load factor " + number_text(load_factor));
+                       number_text(first_value) + " m by the first and " +
+                       number_text(second_value) + " m by the second, at load factor " +
+                       number_text(load_factor));
 }
 
 void Conditions::prescribe(const LoadPoint& at, std::span<double> displacement) const {
@@ -449,7 +450,8 @@ void Conditions::add_loads_of_all(const std::function<void()>& add_loads) const 
   }
   const bool is_missing = ranks_.max(double(mine != nullptr)) > 0.0;
   if (mine) std::rethrow_exception(mine);
-  if (is_missing) throw InputError(loads_.front().key, "", "has no value elsewhere in the body");
+  if (is_missing)
+    throw InputError(loads_.front().key, "", "has no value at a point on another rank");
 }
 
 std::map<std::string, Coordinates> Conditions::reactions(

@@ -19,7 +19,7 @@ void check_weights(const ControlTerm& term, int dimension, const std::string& ke
     if (!std::isfinite(weight)) throw InputError(key, number_text(weight), "must be finite");
     largest = std::max(largest, std::abs(weight));
   }
-  if (largest == 0.0) throw InputError(key, "", "are all zero: this controls nothing");
+  if (largest == 0.0) throw InputError(key, "", "are all zero, so they control nothing");
 }
 
 }  // namespace
@@ -42,10 +42,9 @@ DisplacementControl::DisplacementControl(const Points& points,
   for (std::size_t dof = 0; dof < weights_.size(); ++dof) {
     if (weights_[dof] != 0.0 && !prescribed[dof]) return;
   }
-  throw InputError(
-      "controls", "",
-      "every displacement in the sum is prescribed by a support (or the terms cancel), "
-      "so it can't be controlled: no free degree of freedom answers to it");
+  throw InputError("controls", "",
+                   "every displacement in the sum is prescribed by a support, or the terms cancel: "
+                   "the sum contains no free degree of freedom that could be controlled");
 }
 
 double DisplacementControl::value(std::span<const double> displacement) const {

@@ -24,7 +24,7 @@ Coordinates checked(const Coordinates& stiffness, int dimension, const std::stri
     }
     holds |= stiffness[c] > 0.0;
   }
-  if (!holds) throw InputError(key, "", "is zero in every component, so this holds nothing");
+  if (!holds) throw InputError(key, "", "is zero in every component, so it holds nothing");
   return stiffness;
 }
 

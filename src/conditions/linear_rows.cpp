@@ -62,8 +62,8 @@ std::size_t LinearRows::pivot_of(const LinearRow& row, double size) const {
   if (pivot < first_handle_) return pivot;
   throw InputError(row.key, "",
                    row.who +
-                       " holds nothing that is free: supports prescribe all displacements in it, "
-                       "or other constraints say the same or contradict it");
+                       " contains no free displacement: supports prescribe all of its "
+                       "displacements, or other constraints repeat or contradict it");
 }
 
 void LinearRows::eliminate(Constraints& constraints) {
@@ -79,7 +79,7 @@ std::map<std::size_t, LinearRows::Solved> LinearRows::solve() {
       throw InputError(row.key, "",
                        row.who + " has " + std::to_string(row.coefficient.size()) +
                            " points: more than " + std::to_string(most_coefficients) +
-                           " coefficients would fill the tangent. Use a smaller set");
+                           " coefficients would fill up the tangent. Use a smaller set");
     }
     double size = 0.0;
     for (const auto& [dof, coefficient] : row.coefficient) {

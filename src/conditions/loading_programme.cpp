@@ -11,7 +11,7 @@ namespace peristat {
 namespace {
 
 void check(const std::vector<double>& table, std::size_t entries, const std::string& key) {
-  if (table.size() < 2) throw InputError(key, "", "needs two entries or more");
+  if (table.size() < 2) throw InputError(key, "", "needs at least two entries");
   if (table.size() != entries) {
     throw InputError(key, "",
                      "has " + std::to_string(table.size()) + " entries, but the first table has " +
@@ -19,7 +19,7 @@ void check(const std::vector<double>& table, std::size_t entries, const std::str
   }
   if (table.front() != 0.0) {
     throw InputError(key, number_text(table.front()),
-                     "must begin with 0: the body begins at rest, without loads");
+                     "must begin with 0: the body starts at rest, without loads");
   }
   for (const double value : table) {
     if (!std::isfinite(value)) throw InputError(key, number_text(value), "must be finite");

@@ -109,7 +109,7 @@ class Maker {
       throw InputError(key, "",
                        who + " and " + holder + " contradict each other: both hold the point at " +
                            place_text(points_.position(point), dimension()) +
-                           " m. Leave it to one of them");
+                           " m. Let only one of them hold it");
     }
     holder = who;
   }
@@ -134,7 +134,7 @@ class Maker {
       if (is_mirrored(c) && text != "0") {
         throw InputError(key, text ? '"' + *text + '"' : "\"free\"",
                          std::string("must be 0: a plane of symmetry across ") + "xyz"[c] +
-                             " leaves no jump along it");
+                             " allows no jump along it");
       }
       if (text) prescribe(key, *text, dof(handle, c), restraint.length);
     }
@@ -164,12 +164,13 @@ class Maker {
       }
       for (int c = 0; c < (dimension() == 3 ? 3 : 1); ++c) {
         if ((dimension() == 3 && c == plane.axis) || spec.rotation[std::size_t(c)]) continue;
-        throw InputError(table + ".rotation", "\"free\"",
-                         by +
-                             (dimension() == 3 ? std::string("about other axes than ") +
-                                                     "xyz"[plane.axis] + " it"
-                                               : "it") +
-                             " must be 0");
+        throw InputError(
+            table + ".rotation", "\"free\"",
+            by +
+                (dimension() == 3 ? std::string("the rotation about axes other than ") +
+                                        "xyz"[plane.axis] + " it"
+                                  : "it") +
+                " must be 0");
       }
     }
   }
@@ -223,7 +224,7 @@ class Maker {
     const auto is_own = [&](Index member) { return points_.owns(member); };
     if (count_of(set.members) < 2.0) {
       throw InputError(key, '"' + name + '"',
-                       "has one point, which can't turn: a rigid set needs two or more");
+                       "has one point, which can't turn: a rigid set needs at least two");
     }
     double size = 0.0;
     Coordinates longest{};
@@ -242,8 +243,8 @@ class Maker {
     constexpr double on_a_line = 1e-6;
     if (dimension() == 3 && across <= on_a_line * size) {
       throw InputError(key, '"' + name + '"',
-                       "has all its points on a line through its centre, about which it can turn "
-                       "without moving them");
+                       "has all its points on a line through its centre: a rotation about this "
+                       "line moves none of them");
     }
     return size;
   }
@@ -263,7 +264,7 @@ class Maker {
     const double size = length(spec.normal);
     if (!(size > 0.0) || !std::isfinite(size)) {
       throw InputError(table + ".normal", place_text(spec.normal, dimension()),
-                       "must be a direction");
+                       "must be a direction, not zero");
     }
     return scaled(1.0 / size, spec.normal);
   }

@@ -34,13 +34,13 @@ std::string Preload::description() const {
   const auto add = [&](double size, const std::string& part) {
     if (size > 0.0) text += (text.empty() ? "" : ", ") + part;
   };
-  add(force_size, "loads of " + short_text(force_size) + " N (in sum " + short_text(force[0]) +
+  add(force_size, "loads of " + short_text(force_size) + " N (resultant " + short_text(force[0]) +
                       ", " + short_text(force[1]) + ", " + short_text(force[2]) + " N)");
   add(displacement, "prescribed displacements up to " + short_text(displacement) + " m");
   add(eigenstretch, "eigenstrains up to " + short_text(eigenstretch));
   add(pressure, "pressures up to " + short_text(pressure) + " Pa");
   add(traction, "tractions up to " + short_text(traction) + " Pa");
-  add(ground, "a ground displaced by up to " + short_text(ground) + " m");
+  add(ground, "ground displacements up to " + short_text(ground) + " m");
   return text;
 }
 

@@ -170,10 +170,9 @@ void add_pressed_faces(const Points& points, const LoadSpecification& load, cons
   }
   const auto added = double(boundary.face.size() - before);
   if (ranks.sum(added) == 0.0) {
-    throw InputError(
-        key + ".set", '"' + load.set + '"',
-        "has no point with nothing of the body beside it, so there is no boundary that "
-        "a pressure could act on");
+    throw InputError(key + ".set", '"' + load.set + '"',
+                     "has no point on the boundary of the body, so there are no exposed faces for "
+                     "a pressure to act on");
   }
 }
 

@@ -68,8 +68,8 @@ void SurfaceTractions::add(const Points& points, const LoadSpecification& load,
                               : !load.boundary.empty() ? load.boundary
                                                        : load.set;
     throw InputError(key, value.empty() ? "" : '"' + value + '"',
-                     "there is no free boundary here that a traction could act on; name a side "
-                     "of the body without a layer, or a shape of lattice.shape by its name");
+                     "there is no free boundary here for a traction to act on; give a side of the "
+                     "body without a layer, or the name of a shape of lattice.shape");
   }
   const std::vector<std::string> texts = texts_of(load, points.dimension);
   if (load.kind == LoadSpecification::Kind::stress &&
@@ -108,8 +108,8 @@ void SurfaceTractions::refuse_one_sided(const Points& points, const Load& load,
       throw InputError(load.key, "",
                        "acts on one of two faces that are less than two horizons apart, at " +
                            place_text(points.position(site.point), points.dimension) +
-                           " m, where a part of it would be lost; a finer lattice helps, or, if "
-                           "the stress is known, a load stress");
+                           " m, where a part of the load would be lost; use a finer lattice or, if "
+                           "the stress is known, a load with the key stress");
     }
   }
 }

@@ -35,13 +35,13 @@ Face face_of(const Points& points, const BodyCells& cells, const LoadSpecificati
   const std::string set = '"' + load.set + '"';
   if (!sides.empty()) {
     throw InputError(key + ".set", set,
-                     "lies on more than one side of the body; give its side, too");
+                     "lies on more than one side of the body; give the side, too");
   }
   throw InputError(key + ".set", set,
                    "a traction acts on a flat part of the boundary, but the points of this set do "
-                   "not make one plane of points of the body, with nothing beyond it on " +
+                   "not form one plane of points that is the outermost one on " +
                        (load.side ? "side " + name(*load.side) : "one side") +
-                       "; take the outermost row alone, or a pressure for a curved boundary");
+                       "; select the outermost row only, or use a pressure for a curved boundary");
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ TractionAreas traction_areas(const Points& points, const LoadSpecification& load
       if (points.is_image(point)) {
         throw InputError(key + ".depth", "\"horizon\"",
                          "the horizon below this side reaches beyond a plane of symmetry or a "
-                         "period; take the row");
+                         "period; take \"row\"");
       }
       areas.points.push_back(point);
       areas.area.push_back(std::min(1.0, depth - above));

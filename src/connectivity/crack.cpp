@@ -230,12 +230,12 @@ struct Checker {
     finite("from", segment.from);
     finite("to", segment.to);
     require(segment.from != segment.to, "to", place_text(segment.to, dimension),
-            "must not be from: a crack needs a length");
+            "must not be the same place as from: a crack needs a length");
   }
 
   void operator()(const CrackOutline& outline) const {
     fits("outline", "outline", 2);
-    require(outline.vertices.size() >= 3, "outline", "", "needs three vertices or more");
+    require(outline.vertices.size() >= 3, "outline", "", "needs at least three vertices");
     for_each_side(outline, [&](const Coordinates& from, const Coordinates& to) {
       finite("outline", from);
       require(from != to, "outline", place_text(from, 2),
@@ -247,7 +247,7 @@ struct Checker {
 
   void operator()(const CrackPolygon& polygon) const {
     fits("vertices", "polygon", 3);
-    require(polygon.vertices.size() >= 3, "vertices", "", "a crack needs three vertices or more");
+    require(polygon.vertices.size() >= 3, "vertices", "", "a crack needs at least three vertices");
     for (const Coordinates& vertex : polygon.vertices) finite("vertices", vertex);
     const Box box = box_around(polygon);
     const double extent = length(minus(box.max, box.min));

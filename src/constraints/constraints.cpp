@@ -45,7 +45,7 @@ Index Constraints::add_handle(const Coordinates& place) {
 }
 
 void Constraints::give_role(Index point, Role role, const std::array<bool, 3>& follows) {
-  if (!stands_alone(point)) throw std::logic_error("a point can follow in one way only");
+  if (!stands_alone(point)) throw std::logic_error("a point can follow only one constraint");
   role_[std::size_t(point)] = role;
   for (int c = 0; c < dimension_; ++c) {
     dependent_[dof(point, c)] = static_cast<char>(follows[std::size_t(c)]);

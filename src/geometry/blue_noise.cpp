@@ -150,7 +150,7 @@ Points make_blue_noise_points(const Lattice& lattice) {
   if (cells < 1.0) {
     throw InputError(
         "shapes", "",
-        "the body has not half a cell's volume; spacing = " + number_text(lattice.spacing));
+        "the body is smaller than half a cell; spacing = " + number_text(lattice.spacing));
   }
   std::vector<Coordinates> places =
       poisson_disk_places(body, std::size_t(cells), lattice.spacing, lattice.seed);

@@ -24,7 +24,7 @@ bool has_cut_cell(const Points& points) {
 BodyCells::BodyCells(const Points& points, const Communicator& ranks) : of_(points), ranks_(ranks) {
   if (!points.lattice) {
     throw InputError("", "",
-                     "needs points on a lattice: those of a file and of blue noise have no sides");
+                     "needs points on a lattice: points of a file or of blue noise have no sides");
   }
   if (points.angle != 0.0 || !points.spacing.is_square() || has_cut_cell(points)) {
     throw InputError("", "",
@@ -72,7 +72,8 @@ std::vector<Index> BodyCells::outermost(const Side& side) const {
   double count = double(row.size());
   count = ranks_.sum(count);
   if (count == 0.0) {
-    throw InputError("", name(side), "on this side the body goes on beyond a plane or period");
+    throw InputError("", name(side),
+                     "on this side the body continues beyond a plane of symmetry or a period");
   }
   std::sort(row.begin(), row.end());
   return row;

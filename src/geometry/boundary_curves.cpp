@@ -277,8 +277,8 @@ void BoundaryCurves::check_covers() const {
         beside[axis] += cover.side.sign * 8.0 * nudge_;
         if (!body_.contains(beside)) continue;
         throw InputError("layers", name(cover.side),
-                         "the body's boundary meets this side other than at a right angle, so that "
-                         "it can't go on straight beside the layer");
+                         "the body's boundary does not meet this side at a right angle, so that it "
+                         "can't continue straight beside the layer");
       }
     }
   }

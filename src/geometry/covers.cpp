@@ -49,7 +49,7 @@ std::vector<Cover> covers_of(const Lattice& lattice, const std::vector<Coordinat
     const auto face = outermost_face(solid, layer.side, places, lattice.spacing, ranks);
     if (!face) {
       throw InputError(key_of(k, "side"), name(layer.side),
-                       "the body has no flat side out there that the layer could cover");
+                       "the body has no flat outermost side there for the layer to cover");
     }
     const double spacing =
         lattice.angle == 0.0 ? lattice.spacing.along(layer.side.axis) : double(lattice.spacing);

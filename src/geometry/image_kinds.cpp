@@ -51,16 +51,16 @@ int side_of(const Points& points, const BodyExtent& body, const SymmetryPlane& p
        {std::pair(extent.least, extent.first), std::pair(extent.most, extent.last)}) {
     if (std::abs(at - plane.at) > close) continue;
     throw InputError(table + ".at", number_text(plane.at),
-                     "the plane runs through points, one of them at " +
+                     "the plane passes through points, one of them at " +
                          place_text(place, points.dimension) +
-                         " m. It has to lie between points and their images, half a spacing "
-                         "before the first ones");
+                         " m. It must lie between the points and their images, half a spacing "
+                         "before the first points");
   }
   if (extent.least < plane.at && extent.most > plane.at) {
     throw InputError(table + ".at", number_text(plane.at),
                      "points lie on both sides of the plane: between " + number_text(extent.least) +
                          " and " + number_text(extent.most) + " m along " + axis_name(plane.axis) +
-                         ". Model the part on one side of it");
+                         ". Model only the part on one side");
   }
   return extent.least > plane.at ? 1 : -1;
 }
@@ -74,8 +74,9 @@ std::vector<AxisImage> mirrored(const Points& points, const BodyExtent& body, in
     const std::string table = "symmetries[" + std::to_string(k) + "]";
     std::optional<double>& bound = side_of(points, body, plane, table) > 0 ? lower : upper;
     if (bound) {
-      throw InputError(table + ".axis", '"' + axis_name(axis) + '"',
-                       "there is a plane across this axis on the same side of the body already");
+      throw InputError(
+          table + ".axis", '"' + axis_name(axis) + '"',
+          "there is already a plane of symmetry across this axis on the same side of the body");
     }
     bound = plane.at;
   }
@@ -101,10 +102,11 @@ std::vector<AxisImage> repeated(const Points& points, const BodyExtent& body, co
   const BodyExtent::Along& extent = body.along[std::size_t(period.axis)];
   if (extent.least < period.from || extent.most > period.to ||
       extent.most - extent.least > length - on_plane * points.spacing) {
-    throw InputError(table + ".to", number_text(period.to),
-                     "points lie between " + number_text(extent.least) + " and " +
-                         number_text(extent.most) + " m along " + axis_name(period.axis) +
-                         ": not all of them between from and to, or at both of these");
+    throw InputError(
+        table + ".to", number_text(period.to),
+        "points lie between " + number_text(extent.least) + " and " + number_text(extent.most) +
+            " m along " + axis_name(period.axis) +
+            ": some are not between from and to, or there are points both at from and at to");
   }
   std::vector<AxisImage> images{{}};
   const int most = repeats(horizon, length, table + ".to");
@@ -130,7 +132,7 @@ std::vector<AxisImage> images_along(const Points& points, const BodyExtent& body
     if (periods[k].axis != axis) continue;
     if (is_taken) {
       throw InputError(table + ".axis", '"' + axis_name(axis) + '"',
-                       "this axis has a plane of symmetry or a period already");
+                       "this axis already has a plane of symmetry or a period");
     }
     is_taken = true;
     images = repeated(points, body, periods[k], table, horizon);
@@ -174,10 +176,12 @@ std::vector<ImageKind> image_kinds(const Points& points, const BodyExtent& body,
   if (planes.empty() && periods.empty()) return {};
   const std::string first = planes.empty() ? "periods[0].axis" : "symmetries[0].axis";
   if (!points.neighbours.empty()) {
-    throw InputError(first, "", "given neighbours know nothing beyond a plane or period");
+    throw InputError(first, "",
+                     "given neighbours do not continue beyond a plane of symmetry or a period");
   }
   if (points.angle != 0.0) {
-    throw InputError(first, "", "a lattice that is turned does not go on beyond a plane or period");
+    throw InputError(first, "",
+                     "a turned lattice does not continue beyond a plane of symmetry or a period");
   }
   std::vector<ImageKind> kinds{{}};
   for (int axis = 0; axis < points.dimension; ++axis) {
@@ -209,7 +213,7 @@ void require_lattice_goes_on(const Points& lattice, const std::vector<SymmetryPl
     const double spacing = lattice.spacing.along(axis);
     if (std::abs(found - wanted * spacing) <= same * spacing) return;
     throw InputError(key, "",
-                     "the lattice does not go on beyond it: its outermost points are " +
+                     "the lattice does not continue beyond it: the outermost points are " +
                          number_text(found) + " m away along " + axis_name(axis) + " instead of " +
                          number_text(wanted * spacing));
   };

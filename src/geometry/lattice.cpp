@@ -47,7 +47,7 @@ void check_layer(const Lattice& lattice, std::size_t number) {
   if (layer.name.empty()) throw InputError(table + ".name", "\"\"", "a layer needs a name");
   const int axis = layer.side.axis, sign = layer.side.sign;
   if (axis < 0 || axis >= lattice.dimension || (sign != 1 && sign != -1)) {
-    std::string allowed = "allowed are x-, x+";
+    std::string allowed = "must be one of x-, x+";
     if (lattice.dimension > 1) allowed += ", y-, y+";
     if (lattice.dimension > 2) allowed += ", z-, z+";
     const bool exists = axis >= 0 && axis < 3;
@@ -76,16 +76,16 @@ void check_blue_noise(const Lattice& lattice) {
   };
   require(lattice.dimension > 1, "is for dimensions 2 and 3; in 1D there is cell_perturbation");
   require(lattice.spacing.is_square(), "needs one spacing");
-  require(lattice.angle == 0.0, "has no axes that an angle could turn");
+  require(lattice.angle == 0.0, "has no axes for an angle to turn");
   require(lattice.origin == LatticeOrigin::cell_centres,
           "has no points at corners; leave origin out");
   require(lattice.volumes == CellVolumes::whole,
           "cuts cells at the body's boundary in any case; leave volumes out");
   require(lattice.perturbation == 0.0 && lattice.cell_perturbation == 0.0,
-          "is random already; perturbation and cell_perturbation must be 0");
+          "is already random; perturbation and cell_perturbation must be 0");
   require(lattice.layers.empty(),
-          "has no planes of points that layers could go on with; make the body larger and hold a "
-          "set of its points");
+          "has no planes of points for layers to continue; make the body larger and hold a set of "
+          "its points");
   if (lattice.lloyd_steps < 0) {
     throw InputError("lloyd_steps", std::to_string(lattice.lloyd_steps), "must not be negative");
   }

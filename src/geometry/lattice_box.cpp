@@ -31,7 +31,7 @@ std::vector<Numbers> numbers_of(const Points& points) {
 
 std::optional<LatticeBox> lattice_box(const Points& points, std::string& why_not) {
   if (!points.lattice) {
-    why_not = "the points stand on no lattice";
+    why_not = "the points do not lie on a lattice";
     return std::nullopt;
   }
   const std::vector<Numbers> numbers = numbers_of(points);
@@ -47,7 +47,7 @@ std::optional<LatticeBox> lattice_box(const Points& points, std::string& why_not
     const double extent = double((*most)[c] - first[c]) + 1.0;
     places *= extent;
     if (places > std::numeric_limits<Index>::max()) {
-      why_not = "the box around the points has more than 2^31 places of the lattice";
+      why_not = "the box around the points has more than 2^31 lattice sites";
       return std::nullopt;
     }
     box.extent[c] = static_cast<Index>(extent);
@@ -59,7 +59,7 @@ std::optional<LatticeBox> lattice_box(const Points& points, std::string& why_not
         ((at[0] - first[0]) * box.extent[1] + (at[1] - first[1])) * box.extent[2] +
         (at[2] - first[2]);
     if (is_taken[std::size_t(place)]) {
-      why_not = "several points share a place of the lattice";
+      why_not = "several points share a lattice site";
       return std::nullopt;
     }
     is_taken[std::size_t(place)] = true;

@@ -349,7 +349,7 @@ OutermostOfBody outermost_of_body(const Lattice& lattice, const std::vector<Site
     const auto height = outermost_face(solid, side, places, frame.spacing(), ranks);
     if (!height) {
       throw InputError(key_of(k, "side"), "xyz"[side.axis] + std::string(side.sign > 0 ? "+" : "-"),
-                       "the body has no flat face out there; a layer on a turned lattice or "
+                       "the body has no flat outermost face there; a layer on a turned lattice or "
                        "with fractional volumes needs one");
     }
     outermost.faces.emplace_back(side, *height);
@@ -384,7 +384,7 @@ void refuse_empty_layers(const Lattice& lattice, const LayerSites& layers,
   for (std::size_t k = 0; k < lattice.layers.size(); ++k) {
     if (counts[k] == 0.0) {
       throw InputError(key_of(k, "thickness"), std::to_string(lattice.layers[k].thickness),
-                       "no lattice point stands in the layer");
+                       "no lattice point lies in the layer");
     }
     if (counts[lattice.layers.size() + k] == 0.0) {
       throw InputError(key_of(k, "where"), '"' + lattice.layers[k].where + '"',

@@ -76,7 +76,7 @@ class NeighbourReader {
     const double given = number(column, text);
     if (given != std::floor(given) || given < 1.0 || given > points_.count()) {
       refuse(line_, std::string(column) + " = " + std::string(text) +
-                        " is no point; points are counted from 1 to " +
+                        " is not a point; points are numbered from 1 to " +
                         std::to_string(points_.count()) + " in the order of their file");
     }
     return Index(given) - 1;
@@ -143,21 +143,19 @@ class NeighbourReader {
       const bool is_both = next == first + 2 && !has_back_ && rows_[first + 1].from == row.to;
       if (next > first + 1 && !is_both) {
         refuse(rows_[next - 1].line,
-               name_of(row) + " are neighbours in line " + std::to_string(row.line) + " already");
+               name_of(row) + " are already neighbours in line " + std::to_string(row.line));
       }
       (is_both ? both_ways : one_way) = &row;
       double share = row.share, back = is_both ? rows_[first + 1].share : row.back.value_or(share);
-      if (share == 0.0 && back == 0.0)
-        refuse(row.line, name_of(row) + " count nothing of each other");
+      if (share == 0.0 && back == 0.0) refuse(row.line, name_of(row) + " both have a share of 0");
       if (row.from > row.to) std::swap(share, back);
       result.push_back({std::min(row.from, row.to), std::max(row.from, row.to), share, back});
     }
     if (one_way != nullptr && both_ways != nullptr) {
       refuse(one_way->line, name_of(*one_way) +
-                                " are given in one direction, others, like those in "
-                                "line " +
+                                " are given in one direction, but others, such as those in line " +
                                 std::to_string(both_ways->line) +
-                                ", in both: give every pair one row, or every pair two");
+                                ", in both directions: give every pair one row, or every pair two");
     }
     return result;
   }

@@ -117,10 +117,10 @@ class PointReader {
     const std::vector<std::string> required = required_columns();
     std::string why_not;
     if (number_in(fields(text).front(), why_not)) {
-      refuse("the first line that is not empty and no remark has to name the columns, which are " +
-             allowed_columns() +
-             "; this one has numbers. A line of names that begins with # is a "
-             "remark: take the # away");
+      refuse(
+          "the first line that is neither empty nor a comment must name the columns, which are " +
+          allowed_columns() +
+          "; this one has numbers. A line of names that begins with # is a comment: remove the #");
     }
     for (const std::string_view field : fields(text)) {
       const std::string name(field);
@@ -173,7 +173,7 @@ class PointReader {
   /// Results have a dataset named after each set.
   void check_name(std::string_view name) const {
     constexpr std::size_t longest = 100;
-    if (name == ".") refuse("a set can't be called '.'; take letters, digits, _ and -");
+    if (name == ".") refuse("a set can't be called '.'; use letters, digits, _ and -");
     if (name.size() > longest) {
       refuse("the name of a set has " + std::to_string(name.size()) + " characters; at most " +
              std::to_string(longest) + " are allowed");
@@ -224,9 +224,10 @@ class Collection {
     const auto pair = points_at_one_place(points, same_place_tolerance * points.spacing);
     if (!pair) return;
     const auto [first, second] = *pair;
-    reader.refuse(lines_[second],
-                  "the point at " + place_text(points.position(second), points.dimension) +
-                      " stands at the place of the point in line " + std::to_string(lines_[first]));
+    reader.refuse(lines_[second], "the point at " +
+                                      place_text(points.position(second), points.dimension) +
+                                      " has the same position as the point in line " +
+                                      std::to_string(lines_[first]));
   }
 
   Points points;

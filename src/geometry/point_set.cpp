@@ -7,7 +7,7 @@ namespace peristat {
 
 std::vector<Index> select(const Points& points, const SetRule& rule) {
   if (rule.where.empty() && !rule.shape) {
-    throw InputError("where", "", "a set needs an expression (where), a shape or both");
+    throw InputError("where", "", "a set needs an expression (where), a shape, or both");
   }
   if (rule.shape) check_shape(*rule.shape, points.dimension, "shape", "shape");
 

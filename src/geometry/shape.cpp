@@ -208,7 +208,7 @@ struct Checker {
     // Vertices on one line leave a round-off area.
     if (polygon.vertices.size() < 3 || std::abs(twice_area) <= boundary_tolerance * size * size) {
       throw InputError(table + ".vertices", "",
-                       "a polygon needs three vertices or more that enclose an area");
+                       "a polygon needs at least three vertices, which enclose an area");
     }
   }
 };

@@ -27,7 +27,8 @@ void refuse_without_slabs(const Lattice& lattice) {
   };
   if (lattice.arrangement == Arrangement::blue_noise) {
     refuse("arrangement", "blue_noise",
-           "every point is placed by those before it; take arrangement = \"lattice\", or one rank");
+           "every point depends on those placed before it; take arrangement = \"lattice\", or one "
+           "rank");
   }
   if (estimate_points(lattice) < 0x1p53) return;
   refuse("spacing", number_text(lattice.spacing), "there must be fewer than 2^53 points");

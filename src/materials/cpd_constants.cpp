@@ -76,10 +76,10 @@ LameModuli lame_moduli(double youngs_modulus, double poisson_ratio, int dimensio
   }
   const double digits = least_distance_of_poisson_ratio;
   if (1.0 + poisson_ratio < digits || 1.0 - poisson_ratio / most < digits) {
-    throw InputError("poisson_ratio", number_text(poisson_ratio),
-                     "leaves too few digits of double precision so near its limit: take at most " +
-                         number_text(most * (1.0 - digits)) + ", and at least " +
-                         number_text(digits - 1.0));
+    throw InputError(
+        "poisson_ratio", number_text(poisson_ratio),
+        "is so near its limit that too few digits of double precision are left: take at most " +
+            number_text(most * (1.0 - digits)) + ", and at least " + number_text(digits - 1.0));
   }
   const double mu = 0.5 * youngs_modulus / (1.0 + poisson_ratio);
   const double lambda =
@@ -143,7 +143,7 @@ CpdConstants CpdStiffness::constants(const LameModuli& moduli, double c2) const 
   }
   if (!(result.c1 > 0.0)) {
     throw InputError("c2", number_text(c2),
-                     "leaves no positive c1 for the shear modulus " + number_text(moduli.mu) +
+                     "leaves no positive c1 for a shear modulus of " + number_text(moduli.mu) +
                          " Pa; must be below " + number_text(moduli.mu / two.mu));
   }
   return result;

@@ -54,13 +54,13 @@ void require_whole_cells(const Points& points) {
   constexpr double round_off = 1e-6;  // of a spacing, far beyond what places lose
   const auto refuse = [](const std::string& what) {
     throw InputError("volume_correction", "exact",
-                     "needs the whole cells of a regular lattice, or polygons, of which it takes "
-                     "the parts within the horizon: " +
+                     "needs the whole cells of a regular lattice, or polygons, whose parts within "
+                     "the horizon it computes: " +
                          what);
   };
   if (!points.lattice && points.cell_volume > 0.0) {
     refuse(points.dimension == 3 ? "Voronoi cells are polyhedra in 3D; give \"linear\" or \"none\""
-                                 : "the body's boundary cuts Voronoi cells to other shapes than "
+                                 : "the body's boundary cuts Voronoi cells to shapes that are not "
                                    "convex polygons; give \"linear\" or \"none\"");
   }
   if (!points.lattice) refuse("points of a file have no cells; give \"linear\" or \"none\"");
@@ -70,11 +70,11 @@ void require_whole_cells(const Points& points) {
     for (const double along : steps) {
       if (std::abs(along - std::round(along)) <= round_off) continue;
       refuse("the point at " + place_text(points.position(i), points.dimension) +
-             " m stands beside the lattice; give a perturbation of 0, or \"linear\"");
+             " m is not at a lattice site; give a perturbation of 0, or \"linear\"");
     }
     if (std::abs(points.volume[std::size_t(i)] / whole - 1.0) <= round_off) continue;
     refuse("the point at " + place_text(points.position(i), points.dimension) +
-           " m has a part of its cell only; give volumes = \"cells\", or \"linear\"");
+           " m has only a part of its cell; give volumes = \"cells\", or \"linear\"");
   }
 }
 

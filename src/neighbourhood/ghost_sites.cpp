@@ -226,7 +226,7 @@ GhostSites ghost_sites(const Lattice& lattice, const Points& points, double radi
     }
     if (off > 0.0 && !occupation.has_point_near(cell, place, radius, ball)) return;
     if (std::int64_t(ghosts.cell.size()) == most)
-      refuse(radius, "there are more points and places around them than can be numbered");
+      refuse(radius, "there are more points and surrounding lattice sites than can be numbered");
     ghosts.cell.push_back(cell);
     ghosts.reference.insert(ghosts.reference.end(), place.begin(),
                             place.begin() + lattice.dimension);

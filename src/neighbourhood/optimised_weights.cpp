@@ -268,10 +268,10 @@ void check(int dimension, double horizon, int degree) {
                          const std::string& which) {
   throw InputError("horizon", number_text(horizon),
                    which + std::to_string(neighbours) +
-                       " neighbours, of which no weights are exact to degree " +
+                       " neighbours, for which no weights are exact to degree " +
                        std::to_string(least_exact_degree) + " (" + std::to_string(conditions) +
-                       " conditions); what helps is a larger horizon in spacings, points all "
-                       "around, or a smaller perturbation");
+                       " conditions); take a larger horizon in spacings, points all around, or a "
+                       "smaller perturbation");
 }
 
 /// Arms with a known solution, in an order that depends on them alone.

@@ -69,7 +69,7 @@ class CommandLine(Folder):
             "unknown key": (changed("youngs_modulus", "yongs_modulus"), ["bad.toml:17:", "did you mean youngs_modulus"]),
             "wrong type": (changed("spacing = 1e-3", "spacing = 'fine'"), ["bad.toml:4:", "lattice.spacing"]),
             "negative spacing": (changed("spacing = 1e-3", "spacing = -1e-3"), ["bad.toml:4:", "lattice.spacing"]),
-            "small horizon": (changed("thickness", "horizon_ratio = 0.5\nthickness"), ["bad.toml:5:", "horizon smaller"]),
+            "small horizon": (changed("thickness", "horizon_ratio = 0.5\nthickness"), ["bad.toml:5:", "horizon is smaller"]),
             "horizon of a city": (changed("thickness", "horizon_ratio = 1001\nthickness"), ["bad.toml:5:", "at most 1000"]),
             "triplets without end": (changed("thickness", "horizon_ratio = 51\nthickness").replace(
                 "youngs_modulus = 200e9", 'model = "cpd"\nc1 = 1'), ["bad.toml:5:", "at most 50"]),
@@ -252,7 +252,7 @@ class CommandLine(Folder):
                     self.assertLess(told["tangent_error"], 1e-12)
                     self.assertGreater(told["asymmetry"], 1e-5)  # relative to the largest entry: of motions, inertia
                     self.assertIsNone(told["residual_error"])
-                    self.assertIn("the asymmetry is meant", run.errors)
+                    self.assertIn("the asymmetry is expected", run.errors)
                     continue
                 self.assertLess(abs(told["residual_error"]), 1e-7)
                 self.assertLess(abs(told["tangent_error"]), 1e-7)

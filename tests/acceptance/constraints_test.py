@@ -180,7 +180,7 @@ class Symmetry(Constrained):
             self.assert_code(self.command("check", text), code)
         side = '[[load]]\nside = "x-"\ntraction = ["1e6*load", 0]\n'
         pin = '[[set]]\nname = "pin"\nwhere = "x^2 + y^2 < 0.003^2"\n[[rigid]]\nset = "pin"\n'
-        for more, words in ((inner, "nothing beyond it"), (side, "goes on beyond"), (pin, "along x must be 0"),
+        for more, words in ((inner, "the outermost one on"), (side, "continues beyond"), (pin, "along x must be 0"),
                             (pin + 'displacement = [0, "free"]\n', "rotation")):  # fmt: skip
             with self.subTest(more):
                 self.assert_refused(self.command("check", plate("x") + more), words)
@@ -193,7 +193,7 @@ class Symmetry(Constrained):
 
     def test_planes_that_are_none_are_refused(self):
         for text, words in ((plate("x") + plane("x"), "already"),
-                            (plate("x").replace('axis = "x"', 'axis = "x"\nat = 5e-4'), "runs through points"),
+                            (plate("x").replace('axis = "x"', 'axis = "x"\nat = 5e-4'), "passes through points"),
                             (plate("x").replace('axis = "x"', 'axis = "x"\nat = 3e-3'), "both sides"),
                             (plate("x").replace('axis = "x"', 'axis = "z"'), "axis")):  # fmt: skip
             self.assert_refused(self.command("check", text), words)
@@ -323,8 +323,8 @@ class Periodic(Constrained):
         gravity = '[[load]]\ngravity = ["0", "-9.81*load"]\n'
         sheared = CELL[: CELL.index('[[period]]\naxis = "y"')] + '[[symmetry]]\naxis = "y"\n'
         for text, words in ((CELL.format(material=heavy, x=[0, 0], y=[0, 0]) + gravity, "along y"),
-                            (sheared.format(material=BONDS, x=["0", "1e-3*load"]), "leaves no jump"),
-                            (sheared.format(material=BONDS, x=["0", "free"]), "leaves no jump")):  # fmt: skip
+                            (sheared.format(material=BONDS, x=["0", "1e-3*load"]), "allows no jump"),
+                            (sheared.format(material=BONDS, x=["0", "free"]), "allows no jump")):  # fmt: skip
             with self.subTest(text):
                 self.assert_refused(self.command("check", text), words)
 
@@ -354,7 +354,7 @@ class Periodic(Constrained):
 
     def test_points_at_both_sides_are_refused(self):
         text = CELL.format(material=BONDS, x=[0, 0], y=[0, 0]).replace("to = 0.008", "to = 0.0075")
-        self.assert_refused(self.command("check", text), "does not go on")
+        self.assert_refused(self.command("check", text), "does not continue")
 
     def test_a_cell_that_may_turn_is_refused(self):
         text = CELL.format(material=BONDS, x=["1e-3*load", "free"], y=["free", 0])
@@ -424,9 +424,9 @@ class Rigid(Constrained):
                          f"supports    {ends} prescribed and {1200 - ends} free degrees of freedom")  # fmt: skip
         self.assertEqual(line(BODY + PIN + LIFTED + ROLLER),
                          f"supports    {ends // 2} prescribed, {pin + 1} that follow constraints, and "
-                         f"{1200 - ends // 2 - pin - 1} free degrees of freedom; 1 free ones of constraints")  # fmt: skip
+                         f"{1200 - ends // 2 - pin - 1} free degrees of freedom; free ones added by constraints: 1")  # fmt: skip
         self.assertEqual(line(CELL.format(material=BONDS, x=["1e-3*load", 0], y=[0, "free"])),
-                         "supports    2 prescribed and 94 free degrees of freedom; 1 free ones of constraints")  # fmt: skip
+                         "supports    2 prescribed and 94 free degrees of freedom; free ones added by constraints: 1")  # fmt: skip
         self.assertEqual(line(plate("xy")), "supports    48 prescribed and 288 free degrees of freedom")
 
     def test_a_rotation_is_a_rigid_motion(self):
@@ -520,9 +520,9 @@ weights = [1, 0]
                             (BODY + PIN + PIN + LIFTED, "contradict each other"),
                             (BODY + PIN + LIFTED + '[[roller]]\nset = "right"\nnormal = [0, 1]\n', "contradict each other"),
                             (BODY + PIN + LIFTED + '[[roller]]\nset = "left"\nnormal = [0, 0]\n', "direction"),
-                            (one, "two or more"),
-                            (BODY + PIN + LIFTED + tie.format("0, 1"), "holds nothing that is free"),
-                            (BODY + PIN + tie.format("1, 0") + tie.format("2, 0").replace('"tie"', '"again"'), "say the same"),
+                            (one, "at least two"),
+                            (BODY + PIN + LIFTED + tie.format("0, 1"), "contains no free displacement"),
+                            (BODY + PIN + tie.format("1, 0") + tie.format("2, 0").replace('"tie"', '"again"'), "repeat or contradict"),
                             (BODY + PIN + tie.format("1, 0") + tie.format("0, 1"), "of this name"),
                             (BODY + PIN + LIFTED + ROLLER.replace("-0.01", "-0.03"), "no points"),
                             (BODY + PIN, "rotate about z")):  # fmt: skip

@@ -393,9 +393,9 @@ class Refusals(CommandLine):
         green, correspondence = GREEN, CORRESPONDENCE
         printed = ["material.model=lps", "material.poisson_ratio=0.2", "quadrature.form=printed"]
         for given, words in (
-            (green[:1], ("solver.operator", "convolutions alone", "fft")),
-            (correspondence[:1], ("solver.operator", "convolutions alone", "fft")),
-            ([*green, "lattice.perturbation=0.1"], ("solver.operator", "lattice has its places", "no other sums")),
+            (green[:1], ("solver.operator", "needs convolutions", "fft")),
+            (correspondence[:1], ("solver.operator", "needs convolutions", "fft")),
+            ([*green, "lattice.perturbation=0.1"], ("solver.operator", "sites of the lattice", "no other operator")),
             ([*green, "solver.linear=cholesky"], ("solver.linear", "pcg")),
             ([*green, "solver.mode=arc_length"], ("pivots",)),
             ([*green, "quadrature.surface_correction=volume"], ("surface_correction", "bond")),

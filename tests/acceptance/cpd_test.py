@@ -253,7 +253,7 @@ class Cpd(Folder):
             (*self.PLANE, "--c1", "1", "--strengths"): ["--strengths", "needs a law of damage"],
             (*self.PLANE, *moduli, "0.999999999"): ["--poisson-ratio", "digits"],
             (*self.LATTICE, *moduli, "0.499999999"): ["--poisson-ratio", "digits"],
-            ("--model", "bond", *self.PLANE, "--youngs-modulus", "1e308"): ["no finite"],
+            ("--model", "bond", *self.PLANE, "--youngs-modulus", "1e308"): ["not finite"],
             ("--dimension", "3", "--spacing", "1", "--horizon-ratio", "100", "--c1", "1"): ["--horizon-ratio"],
             ("--dimension", "3", "--spacing", "1", "--horizon-ratio", "1", "--c1", "1"): ["--horizon-ratio"],
         }.items():

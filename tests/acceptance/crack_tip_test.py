@@ -215,12 +215,12 @@ class CrackTips(Programmes):
             ("crack_tip[0].outer=0.018", "holds a point within the ring"),
             ("crack_tip[0].at=[0.012, 0]", "meets the body's edge"),
             ("crack_tip[0].inner=1e-3", "2 horizons"),
-            ("crack_tip[0].outer=7e-3", "a horizon more"),
+            ("crack_tip[0].outer=7e-3", "a horizon larger"),
             ("crack_tip[0].direction=[0, 0]", "zero"),
             ("crack_tip[0].front=[0, 0]", "dimension 3"),
             ("crack_tip[1]={name=\"tip\", at=[0,0], direction=[1,0]}", "has this name"),
             ("temperature={change=1}", "eigenstrains"),
-            ("crack_tip[0].cut=1e-3", "a horizon at least"),
+            ("crack_tip[0].cut=1e-3", "at least a horizon"),
         ):
             with self.subTest(words):
                 text = square(field, material=f"youngs_modulus = {E}\nthermal_expansion = 1e-5")

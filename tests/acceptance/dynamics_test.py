@@ -493,7 +493,7 @@ class Check(Folder):
                 lattice = f"spacing = 0.1\nhorizon_ratio = {ratio}\nperturbation = {perturbation}"
                 text = SQUARE.replace("spacing = 0.1", lattice) + f'[quadrature]\nvolume_correction = "{correction}"\n'
                 ended = self.assert_completed(self.command("check", text))
-                self.assertEqual("of the bonds are as long as the horizon" in ended.output, is_told, ended.output)
+                self.assertEqual("of the bonds are exactly as long as the horizon" in ended.output, is_told, ended.output)
 
     def test_tells_the_steps(self):
         ended = self.assert_completed(self.command("check", SQUARE))

@@ -281,7 +281,7 @@ class Faults(Folder):
         self.write("out/decisions.csv", STRIP)
         run = self.run_strip("--overwrite", case=self.out / "decisions.csv")
         self.assert_code(run, 2)
-        self.assertIn("would take its place", run.errors)
+        self.assertIn("would replace it", run.errors)
         self.assertEqual({name: text for name, text in self.contents(self.folder).items() if "decisions" not in str(name)},
                          {name: text for name, text in before.items() if "decisions" not in str(name)})
 
@@ -403,7 +403,7 @@ class Faults(Folder):
         self.out.rename(self.folder / "moved")
         complaints = run.communicate(timeout=60)[1]
         self.assertEqual(run.returncode, 5, complaints)
-        self.assertIn("is gone", complaints)
+        self.assertIn("has been removed", complaints)
         self.assert_readable(self.folder / "moved", 5)
 
     def test_a_folder_that_is_read_only_from_the_start(self):

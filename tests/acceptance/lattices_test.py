@@ -349,7 +349,7 @@ class Refusals(Cases):
         for exact in ("exact", "exact_centroids"):
             correction = f"quadrature.volume_correction={exact}"
             self.refuses(CUT, ["lattice.volumes=fractional", correction], "quadrature.volume_correction", "part of its cell")
-            self.refuses(CUT, ["lattice.perturbation=0.1", correction], "quadrature.volume_correction", "beside the lattice")
+            self.refuses(CUT, ["lattice.perturbation=0.1", correction], "quadrature.volume_correction", "not at a lattice site")
             self.refuses(HOLED, [correction], "quadrature.volume_correction", "cuts Voronoi cells")
             self.refuses(PULLED, [cpd, correction], "quadrature.volume_correction", "is for model \"bond\"")
         box = "quadrature.horizon_shape=box"

@@ -395,15 +395,15 @@ class Refusals(CommandLine):
         fft = "solver.operator=fft"
         for settings, words in (
             ([fft, "material.kinematics=finite"], ("solver.operator", "linear")),
-            ([fft, "lattice.perturbation=0.1"], ("solver.operator", "lattice has its places")),
+            ([fft, "lattice.perturbation=0.1"], ("solver.operator", "sites of the lattice")),
             ([fft, "quadrature.surface_correction=volume"], ("solver.operator", "surface_correction")),
-            ([fft, "lattice.volumes=fractional"], ("solver.operator", "same volume")),
+            ([fft, "lattice.volumes=fractional"], ("solver.operator", "equal volume")),
             ([fft, "solver.linear=cholesky"], ("solver.linear", "pcg")),
             ([fft, "solver.preconditioner=rigid_pieces"], ("solver.preconditioner", "sines")),
             ([fft, "solver.tangent=stored"], ("solver.tangent", "products")),
             ([fft, "solver.mode=arc_length"], ("solver.operator", "bonds")),
             ([fft, 'load=[{side="y+", pressure=1e6}]'], ("load[0].pressure", "traction")),
-            ([FAILING, "loading.max_broken_bonds=10"], ("max_broken_bonds", "points")),
+            ([FAILING, "loading.max_broken_bonds=10"], ("max_broken_bonds", "a point that fails")),
             (['material.damage={law="critical_stretch", critical=0.01}'], ("material.damage.law", "energy_density")),
             (['material.damage={law="energy_density"}'], ("fracture_energy", "missing")),
             (["material.kinematics=finite", 'material.damage={law="energy_density", fracture_energy=1.0}'], ("damage.law", "linear")),

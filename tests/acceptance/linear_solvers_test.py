@@ -121,7 +121,7 @@ class LinearSolvers(Folder):
         for case, settings, fragment in (
             (PLATE, ("lattice.angle=30",), "is for lattices along the axes"),
             (pinned, (), "is for bodies without rigid sets"),
-            (CASES / "buckling" / "arch.toml", ("solver.mode='newton'",), "the points stand on no lattice"),
+            (CASES / "buckling" / "arch.toml", ("solver.mode='newton'",), "the points do not lie on a lattice"),
         ):
             for command in ("check", "run"):
                 with self.subTest(case=case.name, command=command):

@@ -126,7 +126,7 @@ class Messages(Folder):
         text = PLATE.replace("[[lattice.layer]]", hole + "[[lattice.layer]]", 1)
         self.assert_refused(self.command("check", text), "lattice.shape[1].subtract", "takes nothing away")
         run = self.command("check", PLATE, "loading.table2=[0, 1]")
-        self.assert_refused(run, "loading.table2", "load2, which no displacement and no load names")
+        self.assert_refused(run, "loading.table2", "load2, which no displacement and no load uses")
 
     def test_a_modulus_in_gigapascals(self):
         text = PLATE.replace("200e9", "30").replace("critical = 0.01", "fracture_energy = 100\nstrength = 3e6").replace("critical_stretch", "linear")
@@ -168,11 +168,11 @@ class Messages(Folder):
         """They used to be ignored silently. An explicit law "none" switches them off."""
         lawless = PLATE.replace('law = "critical_stretch", ', "").replace('law = "critical_stretch"\n', "")
         self.assertNotEqual(lawless, PLATE)
-        self.assert_refused(self.command("check", lawless), "material.damage", "needs a law beside it")
+        self.assert_refused(self.command("check", lawless), "material.damage", "needs a law in the same table")
         for table in ("region", "interface"):
             case = PLATE + f'[[{table}]]\nmaterial = {{ youngs_modulus = 1e9, damage = {{ fracture_energy = 10 }} }}\n'
             run = self.command("check", case.replace("[[region]]", '[[region]]\nset = "top"'))
-            self.assert_refused(run, f"{table}[0].material.damage", "needs a law beside it")
+            self.assert_refused(run, f"{table}[0].material.damage", "needs a law in the same table")
         run = self.assert_completed(self.command("check", lawless, 'material.damage.law="none"'))
         self.assertNotIn("fracture ", run.output)
 

@@ -276,8 +276,8 @@ class WrongInput(Paths):
             "loading.teeth=1001": "must be a whole number from 1 to 1000",
             "solver.elastic_horizon_ratio=4": "is for mode adaptive",
             "loading.stop_below=1.1": "must be a number from 0 to 1",
-            "loading.largest_step=1": "is not heeded in mode path",
-            "loading.max_broken_bonds=3": "is not heeded in mode path",
+            "loading.largest_step=1": "has no effect in mode path",
+            "loading.max_broken_bonds=3": "has no effect in mode path",
         }.items():
             with self.subTest(setting):
                 said = self.refusal(strip(), setting)

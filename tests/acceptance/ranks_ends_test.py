@@ -183,7 +183,7 @@ class Refusals(OnRanks):
         self.assertIn('take "bonds" or "auto"', said)
         for operator in ("fft", "auto"):
             said = self.refusal(PLATE, f'solver.operator="{operator}"', 'material.model="green_bond"')
-            self.assertIn("models that have bonds", said)
+            self.assertIn("models with bonds", said)
 
     def test_what_one_rank_refuses_too(self):
         for ranks in (1, 2):
@@ -208,7 +208,7 @@ class Refusals(OnRanks):
     def test_the_printed_form(self):
         """Only convolutions support it."""
         said = self.refusal(STATES, 'quadrature.form="printed"', 'quadrature.volume_correction="none"')
-        self.assertIn("models that have bonds", said)
+        self.assertIn("models with bonds", said)
 
     def test_pieces_that_nothing_holds(self):
         apart = PLATE.replace('{ subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }',
@@ -229,11 +229,11 @@ class Refusals(OnRanks):
 
     def test_another_number_of_ranks_than_was_started(self):
         run = self.execute(["mpirun", "--oversubscribe", "-np", 2, PROGRAM, "run", "--ranks", 3, self.case(PLATE)])
-        self.assert_refused(run, "does not agree with the 2")
+        self.assert_refused(run, "does not match the number of ranks started, 2")
 
     def test_other_commands(self):
         run = self.execute(["mpirun", "--oversubscribe", "-np", 2, PROGRAM, "check", self.case(PLATE)])
-        self.assert_refused(run, "no command but run and resume")
+        self.assert_refused(run, "only the commands run and resume")
 
 
 if __name__ == "__main__":

@@ -359,7 +359,7 @@ class FromEquilibrium(Comparison):
     def test_starts_that_are_none(self):
         free = self.STEADY.replace('displacement = [0, 0]', 'displacement = ["free", 0]').replace('[0, "1e-3*sin(2000*t)"]', '["free", 0]')
         brittle = self.STEADY.replace("density", 'damage = { law = "critical_stretch", critical = 1e-4 }\ndensity')
-        for text, code, words in ((free, 2, "do not hold the body"), (brittle, 3, "no equilibrium to begin with")):
+        for text, code, words in ((free, 2, "do not hold the body"), (brittle, 3, "no equilibrium found at the start")):
             for ranks in (1, 2):
                 self.run_on(ranks, text + self.STEPS, code=code)
                 self.assertIn(words, self.ended.said)

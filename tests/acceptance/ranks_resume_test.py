@@ -72,8 +72,8 @@ class GoesOn(Comparison):
     def test_further_than_before(self):
         output = self.run_on(2, self.TEXT)
         again = self.resume_on(3, output)
-        self.assertIn("has come to its end", again.output)
-        self.assertEqual(again.output.count("has come to its end"), 1)
+        self.assertIn("has reached its end", again.output)
+        self.assertEqual(again.output.count("has reached its end"), 1)
         self.resume_on(3, output, "loading.table=[0, 1, 0.5]")
         self.assertEqual(float(rows(output, "history.csv")[-1]["load_factor"]), 0.5)
 

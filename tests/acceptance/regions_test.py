@@ -502,7 +502,7 @@ class Regions(Folder):
         refused = {
             ("region[1].set=interface", "region[0].set=interface"): ["region[1].set", "overlaps", "(0.499) m"],
             ("region[0].set=pulled",): ["overlaps", "stiff", "pulled"],
-            ("region[0].set=interface", "region[1].set=pulled"): ["498 points are of no material", "(-0.005) m"],
+            ("region[0].set=interface", "region[1].set=pulled"): ["498 points have no material", "(-0.005) m"],
             ("region[0].set=sofft",): ["region[0].set", "did you mean soft?"],
             ("interface[0].rule=mean",): ["interface[0].rule", "harmonic, arithmetic, weaker"],
             ('interface[0].between=["soft","stif"]',): ["interface[0].between", "did you mean stiff?"],
@@ -510,7 +510,7 @@ class Regions(Folder):
             ('interface[0].between=["soft","material"]',): ["interface[0].between", "material"],
             (pair, 'interface[1].between=["stiff","soft"]'): ["interface[1]", "same pair"],
             (pair, "interface[1].rule=weaker"): ["interface[1]", "no bond joins"],
-            (pair, "interface[0].material.youngs_modulus=1e9", "interface[0].rule=weaker"): ["interface[0].rule", "beside material"],
+            (pair, "interface[0].material.youngs_modulus=1e9", "interface[0].rule=weaker"): ["interface[0].rule", "together with material"],
             (pair, "interface[0].material.youngs_modulus=1e9", "interface[0].material.density=1"): ["interface[0].material.density"],
             ("region[0].material.model=cpd",): ["region[0].material.model", "cpd"],
             ("region[0].material.youngs_modulus=-1",): ["region[0].material.youngs_modulus = -1"],
@@ -527,7 +527,7 @@ class Regions(Folder):
     def test_wrong_fibres_are_refused(self):
         refused = {
             ("material.youngs_modulus=140e9",): ["material.fibre", "negative constant", "shear_modulus from about 2.15e+10"],
-            ("material.fibre.transverse_modulus=1e7", ): ["material.fibre", "no shear_modulus does"],
+            ("material.fibre.transverse_modulus=1e7", ): ["material.fibre", "no shear_modulus goes"],
             ("material.plane=strain",): ["material.fibre", "plane stress"],
             ("material.fibre.transverse_critical=0.1",): ["transverse_critical", "needs a law"],
             ("material.fibre.direction=[1,0]",): ["material.fibre.direction", "is for dimension 3"],

@@ -254,7 +254,7 @@ class Extended(Resumed):
         self.stop(1, TORN, "solver.elastic_horizon_ratio=2.015")
         for mode in ("newton", "relaxation"):
             ended = self.go_on(f"solver.mode={mode}", code=2)
-            self.assertIn("the run is still carried by its elastic stand-in", ended.errors)
+            self.assertIn("the run still uses its elastic stand-in", ended.errors)
         self.go_on()
 
     def test_settings_of_all_sessions_hold(self):
@@ -269,7 +269,7 @@ class Extended(Resumed):
     def test_a_finished_run_says_so(self):
         self.run_case(PULLED, "loading.steps=2", name="split")
         before = {path.name: path.read_bytes() for path in self.out.iterdir() if path.is_file()}
-        self.assertIn("has come to its end: 2 steps, load factor 1", self.go_on().output)
+        self.assertIn("has reached its end: 2 steps, load factor 1", self.go_on().output)
         self.assertEqual(before, {path.name: path.read_bytes() for path in self.out.iterdir() if path.is_file()})
 
 
@@ -307,9 +307,9 @@ class Refused(Resumed):
         self.is_as(whole)
 
     def test_settings_that_make_another_case(self):
-        self.refuses(["--set = material.youngs_modulus=1e9: would make it another case", "loading.steps"],
+        self.refuses(["--set = material.youngs_modulus=1e9: would change the case", "loading.steps"],
                      "material.youngs_modulus=1e9")  # fmt: skip
-        self.refuses("output.directory=x: would make it another case", "output.directory=x")
+        self.refuses("output.directory=x: would change the case", "output.directory=x")
 
     def test_settings_that_are_wrong(self):
         self.refuses("loading.steps = 0", "loading.steps=0")
@@ -317,8 +317,8 @@ class Refused(Resumed):
     def test_what_is_no_results_folder(self):
         (self.folder / "empty").mkdir()
         self.refuses("holds no run", out=self.folder / "empty")
-        self.refuses("is no results folder", out=self.folder / "none")
-        self.refuses("is no results folder", out=self.folder / "case.toml")
+        self.refuses("is not the results folder", out=self.folder / "none")
+        self.refuses("is not the results folder", out=self.folder / "case.toml")
 
     def test_a_folder_that_another_run_writes(self):
         other = self.folder / "other"
@@ -326,7 +326,7 @@ class Refused(Resumed):
                               "--set", "loading.steps=20000"])  # fmt: skip
         while not (other / "parts/checkpoint.0").exists():
             time.sleep(0.01)
-        self.assertIn(f"another run is writing it (process {process.pid})", self.resume(other, code=2).errors)
+        self.assertIn(f"another run is writing to it (process {process.pid})", self.resume(other, code=2).errors)
 
     def test_a_run_without_an_accepted_step(self):
         other = self.run_case(PULLED.replace("*load", ""), "solver.max_iterations=1", "loading.adaptive=false",
@@ -343,22 +343,22 @@ class Refused(Resumed):
     def test_an_older_layout(self):
         version = self.peristat("--version").output.split()[1]
         self.change_checkpoint(lambda data: data.replace(f"checkpoint 8 {version}".encode(), b"checkpoint 0 0.0.7"))
-        self.refuses(["layout 0 of peristat 0.0.7", f"this is peristat {version}, which goes on from layout 8"])
+        self.refuses(["layout 0 of peristat 0.0.7", f"this is peristat {version}, which resumes from layout 8"])
 
     def test_points_that_are_others(self):
         with h5py.File(self.out / "results.h5", "r+") as file:
             file["points/reference"][3, 1] += 1e-12
-        self.refuses("its points are not those of the run")
+        self.refuses("its points are not those that the case now makes")
 
     def test_sets_that_are_others(self):
         with h5py.File(self.out / "results.h5", "r+") as file:
             flags = file["points/sets/right"]
             flags[0] = 1 - flags[0]
-        self.refuses("its points are not those of the run")
+        self.refuses("its points are not those that the case now makes")
 
     def test_a_checkpoint_that_is_damaged(self):
         self.change_checkpoint(lambda data: data[:-1])
-        self.refuses("its checkpoint is damaged: it is not whole")
+        self.refuses("its checkpoint is damaged: it is incomplete")
         self.change_checkpoint(lambda data: data + bytes([data[-1]]))
         self.change_checkpoint(lambda data: data[:-100] + bytes([data[-100] ^ 1]) + data[-99:])
         self.refuses("its checkpoint is damaged: its checksum is wrong")
@@ -370,7 +370,7 @@ class Refused(Resumed):
         with h5py.File(self.out / "results.h5", "r+") as file, h5py.File(other / "results.h5") as source:
             del file["checkpoint"]
             source.copy("checkpoint", file)
-        self.refuses("its checkpoint is of another body")
+        self.refuses("its checkpoint belongs to another body")
 
     def test_files_that_are_cut_or_changed_anywhere(self):
         """For any damage to results.h5, the run continues correctly, or reports that it can't."""
@@ -449,7 +449,7 @@ class LossOfPower(Resumed):
         for name in ("results.h5", "parts/checkpoint.0", "parts/checkpoint.1", "history.csv"):
             (self.out / name).unlink()  # a file of the last moments, not the one that was synced
             (self.out / name).touch()
-        self.assertIn("an older state, which had reached the disk, is taken instead", self.go_on().errors)
+        self.assertIn("an older state, which is safe on the disk, is used instead", self.go_on().errors)
         self.is_as(whole)
 
 

@@ -134,8 +134,8 @@ std::vector<double> linear_weights(const Points& points, const std::vector<Index
   for (int pivot = 0; pivot < size; ++pivot) {  // symmetric and positive definite: no exchanges
     if (!(rows[pivot][pivot] > singular)) {
       throw InputError("loads", "",
-                       "a pressure needs a body of two points or more across, but at " +
-                           place_text(corner, points.dimension) + " m it has one");
+                       "a pressure needs a body at least two points thick, but at " +
+                           place_text(corner, points.dimension) + " m there is only one");
     }
     for (int r = 0; r < size; ++r) {
       if (r == pivot) continue;

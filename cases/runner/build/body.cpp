@@ -165,27 +165,27 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     const auto all = all_materials(from, materials);
     if (from.material.model != MaterialModel::bond || !std::ranges::all_of(all, has_modulus))
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
-                       "needs the bond model with a youngs_modulus: a micromodulus belongs to one "
-                       "horizon");
+                       "needs the bond model with a youngs_modulus: a micromodulus is valid for "
+                       "one horizon only");
     require_summable(from.material.model, from.dimension, key,
                      number_text(from.solver.elastic_horizon_ratio),
                      from.solver.elastic_horizon_ratio);
     if (!body.points.neighbours.empty())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
-                       "is for neighbours that are found; points.neighbours gives them");
+                       "is for neighbours found by the search, but points.neighbours gives them");
     if (from.solver.elastic_horizon_ratio * body.points.spacing < body.points.spacing.largest())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "gives a horizon smaller than the largest spacing");
     if (body.points.own() < body.points.count() &&
         from.solver.elastic_horizon_ratio > from.horizon_ratio) {
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
-                       "must not exceed horizon_ratio where there are planes of symmetry or "
-                       "periods: the body's images reach no farther");
+                       "must not exceed horizon_ratio with planes of symmetry or periods: the body "
+                       "has images only up to that distance");
     }
     if (!body.index_map->is_whole() && from.solver.elastic_horizon_ratio > from.horizon_ratio) {
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
-                       "must not exceed horizon_ratio on more than one rank: ghosts reach no "
-                       "farther");
+                       "must not exceed horizon_ratio on more than one rank: there are ghosts only "
+                       "up to that distance");
     }
     BondSetting setting = body.setting;
     setting.horizon = from.solver.elastic_horizon_ratio * body.points.spacing;

@@ -88,13 +88,14 @@ bool has_ranks(const std::string& key) {
 
 /// Refuses convolutions: their transforms need the whole body, which no rank has.
 void refuse_convolutions(const Case& from) {
-  const std::string why = "is for one rank, since convolutions go over the whole body; ";
+  const std::string why = "is for one rank, since convolutions need the whole body; ";
   if (from.needs_convolutions()) {
-    throw InputError(from.has_states() ? "material.form" : "material.model", "",
-                     why + "models that have bonds go on several");
+    throw InputError(from.has_states() ? "quadrature.form" : "material.model", "",
+                     why + "models with bonds run on several");
   }
   if (from.solver.force_operator != ForceOperator::fft) return;
-  throw InputError("solver.operator", "\"fft\"", why + "on several take \"bonds\" or \"auto\"");
+  throw InputError("solver.operator", "\"fft\"",
+                   why + "on several ranks take \"bonds\" or \"auto\"");
 }
 
 /// Refuses values that run on one rank only, for keys with other values that run on several.
@@ -104,8 +105,9 @@ void refuse_values_without_ranks(const Case& from) {
   const bool has_shares = from.volume_correction != VolumeCorrection::none &&
                           from.volume_correction != VolumeCorrection::linear;
   if (from.material.model != MaterialModel::bond && (!is_lattice || has_shares)) {
-    refuse("material.model", "",
-           "models but \"bond\" are for a lattice, and volume_correction \"none\" or \"linear\"");
+    refuse(
+        "material.model", "",
+        "models other than \"bond\" need a lattice, and volume_correction \"none\" or \"linear\"");
   }
   const Mode mode = from.solver.mode;
   if (mode == Mode::path || mode == Mode::arc_length) {
@@ -146,7 +148,7 @@ void add_sets(const Case& from, const Communicator& ranks, Part& part) {
     const std::string table = "set[" + std::to_string(k) + "]";
     if (part.points.sets.contains(rule.name)) {
       throw InputError(table + ".name", '"' + rule.name + '"',
-                       "there is a set of this name already (sets and layers share their names)");
+                       "there is already a set of this name (sets and layers share their names)");
     }
     std::vector<Index> members;
     try {
@@ -184,7 +186,7 @@ void refuse_keys_without_ranks(const Case& from) {
   located_errors(from, [&] {
     for (const auto& [key, location] : from.locations) {
       if (has_ranks(without_numbers(key))) continue;
-      refuse(key, "", "docs/cluster.md lists the keys that are");
+      refuse(key, "", "docs/cluster.md lists the keys that are supported");
     }
     refuse_values_without_ranks(from);
   });

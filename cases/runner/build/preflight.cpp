@@ -266,7 +266,7 @@ std::vector<Preflight::Idle> idle_keys(const Case& from) {
   add(from.solver.elastic_horizon_ratio > 0.0 && mode != Mode::adaptive,
       "solver.elastic_horizon_ratio", "solver.mode = \"adaptive\"");
   add(from.loading.max_broken_bonds > 0 && mode == Mode::relaxation, "loading.max_broken_bonds",
-      "implicit steps, as solver.mode = \"newton\" has them");
+      "implicit steps, as in solver.mode = \"newton\"");
   add(from.output.count_cracks && from.cracks.empty() && cracks_of_shapes(from).empty(),
       "output.count_cracks", "a [[crack]]");
   return idle;
@@ -354,8 +354,8 @@ void refuse_idle_cracks(const Case& from, const std::vector<Preflight::CutByCrac
         });
     if (cracks[k].bonds > 0 || is_in_air) continue;
     throw InputError("cracks[" + std::to_string(k) + "]", "",
-                     "cuts no bond: it lies outside of the body, or where no points see one "
-                     "another; coordinates are in metres");
+                     "cuts no bond: it lies outside of the body, or where no points interact; "
+                     "coordinates are in metres");
   }
 }
 
@@ -430,9 +430,9 @@ std::string length_text(const Preflight& of, const FeatureLength& length) {
 }
 
 std::string applied_text(const Preflight& of, const Preflight::Applied& value) {
-  const char* const begin = of.is_quasi_static ? "at load 0" : "at the time 0";
+  const char* const begin = of.is_quasi_static ? "at load 0" : "at time 0";
   const std::string end =
-      of.is_controlled && value.changes ? "for a load of 1, which is found" : "at the end";
+      of.is_controlled && value.changes ? "at load 1 (the load is found)" : "at the end";
   return fmt::format("{}{}: {} {} {}, {} {} {}", value.key,
                      value.where.empty() ? "" : " (" + value.where + ")", range_text(value.begin),
                      value.unit, begin, range_text(value.end), value.unit, end);

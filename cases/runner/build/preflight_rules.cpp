@@ -28,20 +28,20 @@ void add_cross_section(const Preflight& of, Warnings& warnings) {
   if (!of.cross_section_counts) return;
   const char* const what = of.dimension == 1 ? "area" : "thickness";
   if (!of.cross_section_is_given) {
-    warnings.push_back(fmt::format(
-        "{} is not given and taken as 1 {}: all forces and energies are of a body that {}; give "
-        "the {}, or 1 if that is meant",
-        of.cross_section_key, of.dimension == 1 ? "m2" : "m",
-        of.dimension == 1 ? "has this area" : "is a metre thick", what));
+    warnings.push_back(
+        fmt::format("{} is not given and taken as 1 {}: all forces and energies are those of a "
+                    "body that {}; give the {}, or 1 if that is intended",
+                    of.cross_section_key, of.dimension == 1 ? "m2" : "m",
+                    of.dimension == 1 ? "has this area" : "is a metre thick", what));
     return;
   }
   // A thickness of exactly 1 m is intended, for forces per metre.
   const double largest = *std::max_element(of.extents.begin(), of.extents.end());
   if (of.dimension == 2 && of.cross_section != 1.0 && of.cross_section > largest) {
-    warnings.push_back(fmt::format(
-        "{} = {:g} m is more than the body is long ({:g} m), which is no plate in plane stress; "
-        "lengths are in metres",
-        of.cross_section_key, of.cross_section, largest));
+    warnings.push_back(
+        fmt::format("{} = {:g} m is more than the length of the body ({:g} m), which is not a "
+                    "plate in plane stress; lengths are in metres",
+                    of.cross_section_key, of.cross_section, largest));
   }
 }
 
@@ -78,7 +78,7 @@ void add_constant_values(const Preflight& of, Warnings& warnings) {
     if (grows && !is_displacement) continue;  // a dead load under one that grows
     warnings.push_back(
         fmt::format("{} = {} does not depend on load: it is applied in full at load 0, and no step "
-                    "makes it grow; write \"{}*load\" if it is to grow with the load",
+                    "increases it; write \"{}*load\" if it should grow with the load",
                     value.key, value.text, value.text));
   }
 }
@@ -90,7 +90,7 @@ void add_nothing_applied(const Preflight& of, Warnings& warnings) {
   if (is_any) return;
   warnings.emplace_back(
       "nothing is applied: every prescribed displacement and load is 0 throughout, so that nothing "
-      "moves; give a [[support]] a displacement or the case a [[load]]");
+      "moves; give a [[support]] a displacement, or add a [[load]]");
 }
 
 void add_stiffnesses(const Preflight& of, Warnings& warnings) {
@@ -124,20 +124,19 @@ void add_fracture(const Preflight& of, const Preflight::Fracture& fracture, Warn
   const double zone = fracture.characteristic_length();
   // Stretches that a case gives are a modelling choice: their strength is no datum to be met.
   if (fracture.is_data && zone < shortest_zone * of.horizon) {
-    warnings.push_back(fmt::format(
-        "the spacing is coarse for the process zone{}: E G/ft^2 = {:.3g} m is {:.2g} horizons, and "
-        "below {:g} the lattice holds a crack up as it does with brittle bonds; a spacing of "
-        "{:.2g} "
-        "m or less resolves it",
-        name, zone, zone / of.horizon, shortest_zone,
-        of.spacing * zone / (shortest_zone * of.horizon)));
+    warnings.push_back(
+        fmt::format("the spacing is coarse for the process zone{}: E G/ft^2 = {:.3g} m is {:.2g} "
+                    "horizons, and below {:g} the lattice traps a crack as it does with brittle "
+                    "bonds; a spacing of {:.2g} m or less resolves it",
+                    name, zone, zone / of.horizon, shortest_zone,
+                    of.spacing * zone / (shortest_zone * of.horizon)));
   }
   if (!fracture.has_strength && !of.has_notch) {
-    warnings.push_back(fmt::format(
-        "{}.damage.strength is missing, and no crack, notch or hole is there to begin at: the "
-        "horizon sets a strength of {:.4g} MPa, and the peak grows with each refinement; give the "
-        "strength of the material",
-        fracture.key, fracture.strength * 1e-6));
+    warnings.push_back(
+        fmt::format("{}.damage.strength is missing, and there is no crack, notch or hole to start "
+                    "from: the horizon sets a strength of {:.4g} MPa, and the peak grows with each "
+                    "refinement; give the strength of the material",
+                    fracture.key, fracture.strength * 1e-6));
   }
 }
 

@@ -45,7 +45,8 @@ void check(const CalibrationQuestion& question) {
   const double largest = largest_ratio_with_pairs(question.dimension);
   if (question.horizon_ratio < 1.5 || question.horizon_ratio > largest) {
     throw InputError("--horizon-ratio", number_text(question.horizon_ratio),
-                     "must be between 1.5 (below, no neighbours of a point are neighbours) and " +
+                     "must be between 1.5 (below it no neighbours of a point are neighbours of "
+                     "each other) and " +
                          number_text(largest));
   }
   if (question.dimension == 3 && question.thickness != 1.0) {
@@ -111,9 +112,9 @@ CpdConstants constants_of(const CalibrationQuestion& question, const CpdStiffnes
 std::string pair(const char* key, double value) {
   if (std::isfinite(value)) return fmt::format("\"{}\": {:.12g}", key, value);
   throw InputError("", "",
-                   std::string("what is asked for has no finite ") + key +
-                       ": give a lattice and a material whose constants and moduli can be told in "
-                       "double precision");
+                   std::string("the result has no finite ") + key +
+                       ": give a lattice and a material whose constants and moduli are in the "
+                       "range of double precision");
 }
 
 std::string section(const CpdConstants& constants, const CpdStiffness& stiffness) {
@@ -144,7 +145,7 @@ void require_representable(const CalibrationQuestion& question, const CpdStiffne
         "--spacing", number_text(question.spacing),
         "with horizon_ratio = " + number_text(question.horizon_ratio) +
             " and thickness = " + number_text(question.thickness) +
-            " the stiffness of a point can't be told in double precision; give lengths in m");
+            " the stiffness of a point is out of the range of double precision; give lengths in m");
   }
 }
 
@@ -313,7 +314,7 @@ Exit calibrate(const Case& from, bool with_strengths) {
   if (has_bonds(from.material.model)) return calibrate_bonds(from, with_strengths);
   if (from.material.model == MaterialModel::correspondence) {
     throw InputError("material.model", "correspondence",
-                     "has its constants as they are given; calibrate is for the other models");
+                     "uses the constants as they are given; calibrate is for the other models");
   }
   const Points points = make_points_of(from);
   located_errors(from, [&] { require_whole_square_cells(points); });

@@ -17,8 +17,8 @@ namespace {
 std::string number(double value) {
   if (std::isfinite(value)) return fmt::format("{:.17g}", value);
   throw InputError("", "",
-                   "what is asked for has no finite answer: give a lattice and a material whose "
-                   "constants and moduli can be told in double precision");
+                   "the result is not finite: give a lattice and a material whose constants and "
+                   "moduli are in the range of double precision");
 }
 
 std::string exact_pair(const char* key, double value) {
@@ -143,7 +143,7 @@ std::string bond_calibration(const MaterialSpecification& material, const std::s
                              const BondSetting& setting, double spacing, bool with_strengths) {
   if (material.fibre) {
     throw InputError(key + ".fibre", "",
-                     "calibrate is for materials without fibres; check tells their constants");
+                     "calibrate is for materials without fibres; check prints their constants");
   }
   const FractureScale scale = FractureScale::of(material, key, setting, spacing);
   std::optional<BulkBonds> bonds;

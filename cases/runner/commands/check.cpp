@@ -143,7 +143,7 @@ void print_fracture(const PointMaterials::Material& of, const std::string& name,
   const DamageSpecification& damage = of.of->damage;
   if (damage.law == DamageLaw::none || of.of->fibre) return;
   if (damage.law == DamageLaw::energy_density) {
-    fmt::print("{} points fail at {:.6g} J/m3\n", heading("fracture", name),
+    fmt::print("{} points fail at an energy density of {:.6g} J/m3\n", heading("fracture", name),
                bearable_energy_density(damage, setting.horizon));
     return;
   }
@@ -195,7 +195,7 @@ void print_quadrature(const Case& from, const Body& body, int threads) {
     static_cast<void>(cut_bonds(bonds, body.points, body.specification.cracks));
   }
   fmt::print(
-      "quadrature  energy of a confined strain deviates by at most {:.3g} from the classical\n",
+      "quadrature  energy of a confined strain deviates from the classical one by at most {:.3g}\n",
       confined_energy_error(body.points, bonds, body.setting));
 }
 
@@ -211,10 +211,11 @@ void print_lame_constants(const PointMaterials::Material& of, const std::string&
 void print_collocation(const Case& from, const Body& body) {
   const CollocationSummary& of = body.collocation;
   fmt::print(
-      "quadrature  exact to degree {}; {} of {} neighbourhoods solved for, {} weights below 0",
+      "quadrature  exact to degree {}; weights solved for in {} of {} neighbourhoods, {} weights "
+      "below 0",
       from.collocation.degree, of.solves, body.points.count(), of.negative);
   fmt::print(", the lowest is {:.4g} of a cell", of.lowest);
-  if (of.lowered > 0) fmt::print("; at {} points only to a lower degree", of.lowered);
+  if (of.lowered > 0) fmt::print("; exact only to a lower degree at {} points", of.lowered);
   fmt::print("\n");
 }
 
@@ -277,7 +278,8 @@ void print_supports(const Body& body) {
   std::string text = fmt::format("{} prescribed", own - following - free);
   text += following > 0 ? fmt::format(", {} that follow constraints,", following) : "";
   text += fmt::format(" and {} free degrees of freedom", free);
-  if (of_constraints > 0) text += fmt::format("; {} free ones of constraints", of_constraints);
+  if (of_constraints > 0)
+    text += fmt::format("; free ones added by constraints: {}", of_constraints);
   fmt::print("supports    {}\n", text);
 }
 
@@ -295,14 +297,14 @@ void print_pressures(const Body& body) {
          conditions.environment(conditions.control() ? LoadPoint(end, 1.0) : LoadPoint(end))},
         conditions.constraints(), conditions.prescribed());
     const bool is_symmetric = left_out <= 1e-12 * symmetric;
-    fmt::print("pressure    {} faces, {:.6g} m2; {}\n", pressures->boundary().face.size(),
-               pressures->area(),
-               is_symmetric
-                   ? "closed or held: its stiffness is symmetric"
-                   : fmt::format("open or uneven: of its stiffness at the end of the load, {:.3g} "
-                                 "N/m, the tangent leaves out an unsymmetric part of {:.3g} N/m "
-                                 "(forces are exact)",
-                                 std::hypot(symmetric, left_out), left_out));
+    fmt::print(
+        "pressure    {} faces, {:.6g} m2; {}\n", pressures->boundary().face.size(),
+        pressures->area(),
+        is_symmetric
+            ? "closed or held: its stiffness is symmetric"
+            : fmt::format("open or uneven: its stiffness at the end of the load is {:.3g} N/m; the "
+                          "tangent leaves out its unsymmetric part, {:.3g} N/m (forces are exact)",
+                          std::hypot(symmetric, left_out), left_out));
   }
 }
 
@@ -404,14 +406,14 @@ Exit check(const Case& from, int threads) {
   if (from.solver.mode == Mode::dynamics) {
     located_errors(from, [&] { print_motion(from, body, options, chosen.seconds / threads); });
   } else if (from.solver.mode == Mode::path) {
-    fmt::print("time        {} for an event; how many there are, the path shows\n",
+    fmt::print("time        {} for an event; the number of events is not known before the run\n",
                seconds_text(chosen.seconds / threads));
   } else {
     const int steps = from.loading.steps_to_entry() * int(body.conditions->programme().end());
     fmt::print("time        {} for {} load steps, if none has to be cut{}\n",
                seconds_text(chosen.seconds * steps / threads), steps,
                preflight.may_fail ? "; steps in which damage grows take many times as long, and "
-                                    "how many there are, the run shows"
+                                    "their number is not known before the run"
                                   : "");
   }
   located_errors(from, [&] {

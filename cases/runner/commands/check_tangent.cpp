@@ -527,8 +527,8 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
       of_tangent.error, has_potential ? of_residual.order_text() : "null", of_tangent.order_text());
   if (!has_potential) {
     fmt::print(stderr,
-               "forces by collocation have no potential: the asymmetry is meant, and the energy is "
-               "no measure of the residual\n");
+               "forces by collocation have no potential: the asymmetry is expected, and the energy "
+               "does not check the residual\n");
   }
   return Exit::done;
 }

@@ -71,8 +71,8 @@ Exit print_keys(const std::string& asked) {
   }
   if (page.empty())
     throw InputError("", asked,
-                     "no table of a case file" + did_you_mean(asked, names) +
-                         "  (there are: " + listed(names) + ")");
+                     "is not a table of a case file" + did_you_mean(asked, names) +
+                         "  (tables: " + listed(names) + ")");
   fmt::print("{}", page);
   return Exit::done;
 }

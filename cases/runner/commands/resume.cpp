@@ -27,10 +27,10 @@ void require_extending(const Settings& settings) {
   const std::vector<std::string>& allowed = extending_keys();
   for (const auto& [key, value] : settings) {
     if (std::find(allowed.begin(), allowed.end(), key) != allowed.end()) continue;
-    throw InputError("--set", key + "=" + value,
-                     fmt::format("would make it another case; when a run goes on, --set may change "
-                                 "{}",
-                                 fmt::join(allowed, ", ")));
+    throw InputError(
+        "--set", key + "=" + value,
+        fmt::format("would change the case; when a run is resumed, --set may change only {}",
+                    fmt::join(allowed, ", ")));
   }
 }
 
@@ -52,8 +52,8 @@ std::string case_text(const EarlierRun& earlier, const Settings& settings) {
   if (changes.empty()) return now.as_read;
   throw InputError(
       "", "",
-      fmt::format("has changed since the run began: {}. Undo that to go on, or begin anew with "
-                  "`run`; what only extends a run is given with --set",
+      fmt::format("has changed since the run began: {}. Undo these changes to resume, or start "
+                  "again with `run`; give keys that only extend a run with --set",
                   fmt::join(changes, "; ")),
       earlier.case_file().string());
 }
@@ -70,23 +70,22 @@ void require_same_beginning(const LoadingProgramme& then, const LoadingProgramme
   if (then.is_of_time()) {
     if (now.is_of_time() && stage <= now.end()) return;
     throw InputError("--set", "dynamics.end_time",
-                     fmt::format("the run has come to {:.6g} s, beyond that", stage));
+                     fmt::format("the run has already reached {:.6g} s, beyond this time", stage));
   }
   const bool is_long_enough = reached <= now.end() && then.parameters() == now.parameters();
   for (double entry = 0.0; is_long_enough && entry <= reached; ++entry) {
     if (then.at(entry) == now.at(entry)) continue;
     throw InputError("--set", "loading.table",
-                     fmt::format("entry {} is another one than it was, and the run has gone to "
-                                 "stage {:.6g} by it; a run goes on with tables that begin as they "
-                                 "did",
+                     fmt::format("entry {} has changed, but the run has used it to reach stage "
+                                 "{:.6g}; a run is resumed with tables that begin as before",
                                  entry, stage));
   }
   if (is_long_enough) return;
   throw InputError(
       "--set", "loading.table",
-      fmt::format("the run has come to stage {:.6g} of {} load parameters, which these "
-                  "tables don't reach",
-                  stage, then.parameters()));
+      fmt::format(
+          "the run has reached stage {:.6g} of {} load parameters, but these tables don't reach it",
+          stage, then.parameters()));
 }
 
 /// Refuses other modes than adaptive, which alone replaces the stand-in by the body.
@@ -94,9 +93,8 @@ void require_stand_in(const PathState& path, const Case& from) {
   if (!path.stands_in || from.solver.mode == Mode::adaptive) return;
   throw InputError(
       "--set", "solver.mode=" + std::string(from.solver.mode.name),
-      "the run is still carried by its elastic stand-in (solver.elastic_horizon_ratio), "
-      "which mode adaptive alone replaces by the body; go on in that mode until damage "
-      "has begun");
+      "the run still uses its elastic stand-in (solver.elastic_horizon_ratio), which only mode "
+      "adaptive replaces by the body; resume in that mode until damage has begun");
 }
 
 bool is_finished(const EarlierRun& earlier, const LoadingProgramme& way) {
@@ -124,7 +122,7 @@ Exit resume(const std::filesystem::path& directory, const Settings& settings,
   if (is_finished(earlier, programme_of(from))) {
     keep_inputs_and_log_apart(from, options.log_file);
     Progress(options.quiet, options.log_file, ranks.rank() == 0)
-        .say(fmt::format("the run in {} has come to its end: {} steps, load factor {:.6g}",
+        .say(fmt::format("the run in {} has reached its end: {} steps, load factor {:.6g}",
                          directory.string(), earlier.checkpoint().path.steps,
                          programme_of(from).at(earlier.checkpoint().path.accepted.stage)[0]));
     return Exit::done;

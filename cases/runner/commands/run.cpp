@@ -211,11 +211,11 @@ class CaseRun {
     const auto all_say = [&](bool holds) { return ranks_.min(double(holds)) > 0.0; };
     if (!all_say(
             earlier.has_points(only_recorded({body_->points, *body_->index_map}), gathering()))) {
-      refuse("its points are not those of the run that the case makes now");
+      refuse("its points are not those that the case now makes");
     }
     if (!all_say(is_of_body(earlier.checkpoint().path, study_->equations().assembler(),
                             body_->conditions->prescribed()))) {
-      refuse("its checkpoint is of another body");
+      refuse("its checkpoint belongs to another body");
     }
   }
 
@@ -367,7 +367,7 @@ class CaseRun {
       if (recorder_->last()) progress_.problem("to go on: peristat resume " + folder);
       return Exit::interrupted;
     }
-    progress_.problem("dossier.txt there tells where it failed and what to do");
+    progress_.problem("dossier.txt there says where it failed and what to do");
     return result.outcome == Outcome::out_of_memory ? Exit::out_of_memory : Exit::not_converged;
   }
 

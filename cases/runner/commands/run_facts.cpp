@@ -49,21 +49,20 @@ void keep_inputs_and_log_apart(const Case& from, const std::string& log_file) {
   const std::filesystem::path results = resolved(from.output.directory);
   for (const std::filesystem::path& file : inputs(from)) {
     if (is_name_of_results(resolved(file), results)) {
-      throw InputError(
-          "directory", from.output.directory.string(),
-          file.string() +
-              " is read by the run and has the name of one of its results, which would "
-              "take its place; name another folder");
+      throw InputError("directory", from.output.directory.string(),
+                       file.string() +
+                           " is read by the run, but a result of the run has the same name and "
+                           "would replace it; name another folder");
     }
     if (!log_file.empty() && resolved(file) == resolved(log_file)) {
-      throw InputError("--log", log_file, "is read by the run; name a new file");
+      throw InputError("--log", log_file, "is an input of the run; name a new file");
     }
   }
   if (!log_file.empty() && is_below(resolved(log_file), results)) {
-    throw InputError("--log", log_file,
-                     "stands in the results folder, whose files come and go with the runs; name a "
-                     "file outside of " +
-                         from.output.directory.string());
+    throw InputError(
+        "--log", log_file,
+        "is in the results folder, whose files are replaced by each run; name a file outside of " +
+            from.output.directory.string());
   }
 }
 
@@ -112,7 +111,7 @@ std::vector<PointCounts> constant_fields_of(const Case& from, const Body& body) 
   std::vector<PointCounts> counts;
   if (const auto* const source = std::get_if<PointSource>(&from.body)) {
     const Index own = body.points.owned.value_or(body.points.own());
-    counts.push_back({"source_row", "which point of the file each is, from 0 in the file's order",
+    counts.push_back({"source_row", "number of each point in the file's order, from 0",
                       source_rows(source->file, body.points, own)});
   }
   const auto own = [&](auto values) {
@@ -127,7 +126,7 @@ std::vector<PointCounts> constant_fields_of(const Case& from, const Body& body) 
   }
   if (!body.region.empty()) {
     counts.push_back(
-        {"region", "number of the point's [[region]], from 0; -1: in none", own(body.region)});
+        {"region", "number of the point's [[region]], from 0; -1: in no region", own(body.region)});
   }
   const auto add_factors = [&](const std::string& of, const std::vector<double>& factors) {
     if (factors.empty()) return;

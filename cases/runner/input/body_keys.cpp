@@ -21,7 +21,8 @@ constexpr auto points = [](auto& from) -> auto& { return std::get<PointSource>(f
 
 template <class Member>
 Key<Case> thickness(Member cross_section) {
-  return Key<Case>("thickness", cross_section, positive("m"), "of the plate, dimension 2 only")
+  return Key<Case>("thickness", cross_section, positive("m"),
+                   "thickness of the plate, dimension 2 only")
       .unless(in_dimension<1>, "is for dimension 2; dimension 1 has an area")
       .unless(in_dimension<3>, "is for dimension 2 only")
       .default_words("1");
@@ -29,7 +30,8 @@ Key<Case> thickness(Member cross_section) {
 
 template <class Member>
 Key<Case> area(Member cross_section) {
-  return Key<Case>("area", cross_section, positive("m2"), "of the bar, dimension 1 only")
+  return Key<Case>("area", cross_section, positive("m2"),
+                   "cross-section of the bar, dimension 1 only")
       .unless(in_dimension<2>, "is for dimension 1; dimension 2 has a thickness")
       .unless(in_dimension<3>, "is for dimension 1 only")
       .default_words("1");
@@ -53,11 +55,12 @@ Table<ShapeStep> shape_step_keys() {
                .then([](auto&, auto& step) { step.action = Action::subtract; })
                .written_if([](auto& step, auto&) { return step.action == Action::subtract; })
                .one_of(),
-           K("name", &ShapeStep::name, text(), "of the shape, by which loads find its boundary")
+           K("name", &ShapeStep::name, text(),
+             "name of the shape, by which loads refer to its boundary")
                .written_if([](auto& step, auto&) { return !step.name.empty(); }),
            K("cuts_bonds", &ShapeStep::cuts_bonds, boolean(),
-             "`subtract`: whether bonds that cross the shape are cut; otherwise those that are "
-             "longer than it is wide bridge it")
+             "`subtract`: whether bonds that cross the shape are cut; otherwise bonds longer than "
+             "its width bridge it")
                .written_if([](auto& step, auto&) { return step.cuts_bonds; })
                .then([](auto& at, auto& step) {
                  if (step.cuts_bonds && step.action == Action::add)
@@ -68,10 +71,10 @@ Table<ShapeStep> shape_step_keys() {
 Table<Layer> layer_keys() {
   using K = Key<Layer>;
   return {"lattice.layer",
-          {K("name", &Layer::name, set_name(), "of the layer and of its set").required(),
-           K("side", &Layer::side, side(), "of the body").required(),
+          {K("name", &Layer::name, set_name(), "name of the layer and of its set").required(),
+           K("side", &Layer::side, side(), "side of the body").required(),
            K("thickness", &Layer::thickness, integer(1, 1000, "spacings"), "number of planes"),
-           where<Layer>("keeps a part of the layer", "all of it")}};
+           where<Layer>("keeps only the points where it is not zero", "all of it")}};
 }
 
 }  // namespace
@@ -81,30 +84,31 @@ Table<Case> lattice_keys() {
   return {
       "lattice",
       {K("spacing", in(lattice, &Lattice::spacing), spacing(),
-         "distance of neighbouring points, or one along each of the lattice's axes")
+         "distance between neighbouring points, or one distance along each of the lattice's axes")
            .required(),
        K("points", in(lattice, &Lattice::arrangement),
          choice<Arrangement>(
              {{"lattice", Arrangement::lattice}, {"blue_noise", Arrangement::blue_noise}}),
-         "where they stand: on the lattice, or at random with about the spacing as the distance "
-         "from their neighbours, with the volumes of their Voronoi cells")
+         "`\"lattice\"`: points on the lattice; `\"blue_noise\"`: points at random, at about the "
+         "spacing from their neighbours, with the volumes of their Voronoi cells")
            .unless(in_dimension<1>, "is for dimensions 2 and 3")
            .moreover("`blue_noise` with model `bond`")
            .early(),
        K("lloyd_steps", in(lattice, &Lattice::lloyd_steps), integer(0, 100, ""),
-         "how often points of blue noise move to the centroids of their Voronoi cells")
+         "number of times that points of blue noise move to the centroids of their Voronoi cells")
            .unless([](auto& from,
                       auto&) { return lattice(from).arrangement != Arrangement::blue_noise; },
                    "is for points = \"blue_noise\""),
        K("angle", in(lattice, &Lattice::angle), between(-360.0, 360.0, "degrees"),
-         "that the lattice is turned by under the body, anticlockwise about the origin, in 3D "
-         "about the z axis; shapes, layers and sets stay")
+         "angle by which the lattice is turned under the body, anticlockwise about the origin, in "
+         "3D about the z axis; shapes, layers and sets stay where they are")
            .unless(in_dimension<1>, "is for dimensions 2 and 3"),
        K("horizon_ratio", &Case::horizon_ratio, number(Range::positive("-"), "1 to 1000"),
-         "horizon / spacing; of spacings that differ, their geometric mean")
+         "horizon / spacing; if spacings differ, over their geometric mean")
            .then([](auto& at, auto& result) {
              if (result.horizon_ratio < 1.0)
-               at.refuse("horizon smaller than the spacing; must be at least 1, usually 3.015");
+               at.refuse(
+                   "the horizon is smaller than the spacing; must be at least 1, usually 3.015");
              const Spacing& spacing = lattice(result).spacing;
              const double horizon = result.horizon_ratio * spacing;
              if (!spacing.is_square() && horizon < spacing.largest())
@@ -118,17 +122,17 @@ Table<Case> lattice_keys() {
        K("origin", in(lattice, &Lattice::origin),
          choice<LatticeOrigin>(
              {{"cell_centres", LatticeOrigin::cell_centres}, {"nodes", LatticeOrigin::nodes}}),
-         "where points stand relative to the lower corner of the first shape: cells' centres, half "
-         "a spacing inside, or the corner itself"),
+         "where points stand relative to the lower corner of the first shape. `\"cell_centres\"`: "
+         "half a spacing inside; `\"nodes\"`: on the corner itself"),
        K("volumes", in(lattice, &Lattice::volumes),
          choice<CellVolumes>(
              {{"cells", CellVolumes::whole}, {"fractional", CellVolumes::fractional}}),
-         "of points: that of a cell if its place lies in the body, or of the part of each cell "
-         "that "
-         "does")
+         "volumes of points. `\"cells\"`: the whole cell, if its lattice point lies in the body; "
+         "`\"fractional\"`: the part of each cell that lies in the body")
            .moreover("`fractional` with model `bond`"),
        K("perturbation", in(lattice, &Lattice::perturbation), between(0.0, 0.49, "spacings"),
-         "largest random shift of a point along each of the lattice's axes; points of layers stay"),
+         "largest random shift of a point along each of the lattice's axes; points of layers are "
+         "not shifted"),
        K("cell_perturbation", in(lattice, &Lattice::cell_perturbation),
          between(0.0, 0.249, "spacings"),
          "largest random shift of the corners of cells inside the body along each of the lattice's "
@@ -137,8 +141,9 @@ Table<Case> lattice_keys() {
            .moreover("model `bond`"),
        K("seed", in(lattice, &Lattice::seed),
          count_from(0, "", std::numeric_limits<std::int64_t>::max()),
-         "of the random shifts and places; the same seed gives the same points"),
-       K("shape", in(lattice, &Lattice::shapes), shape_step_keys(), "tables: the body")
+         "seed of the random shifts and positions; the same seed gives the same points"),
+       K("shape", in(lattice, &Lattice::shapes), shape_step_keys(),
+         "tables: shapes that make up the body")
            .then([](auto& at, auto& result) {
              if (lattice(result).shapes.empty())
                at.refuse("this array of tables is missing; a lattice needs at least one shape");
@@ -161,7 +166,7 @@ Kind<std::filesystem::path> file_beside_the_case() {
     const auto file = std::filesystem::absolute(folder / given).lexically_normal();
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error))
-      at.refuse("no such file; looked for " + file.string());
+      at.refuse("no such file; searched for " + file.string());
     return file;
   };
   return {read, [](auto& file, auto&) { return toml_string(file.string()); }, "an existing file"};
@@ -174,15 +179,16 @@ Table<Case> points_keys() {
   return {
       "points",
       {K("file", in(points, &PointSource::file), file_beside_the_case(),
-         "comma- or blank-separated text, relative to the case file's folder")
+         "file with comma- or blank-separated text; its path is relative to the case file's folder")
            .required(),
-       K("horizon", in(points, &PointSource::horizon), positive("m"), "the same for every point")
+       K("horizon", in(points, &PointSource::horizon), positive("m"),
+         "horizon, the same for every point")
            .moreover("at least the mean spacing; at most as many mean spacings as "
                      "`lattice.horizon_ratio` allows")
            .required(),
        K("neighbours", in(points, &PointSource::neighbours), file_beside_the_case(),
-         "neighbours of the points and the shares of their volumes that count, beside the case "
-         "file like `file`; model `bond`")
+         "file with the neighbours of the points and the shares of their volumes that count, "
+         "relative to the case file's folder like `file`; model `bond`")
            .written_if([](auto& from, auto&) { return !points(from).neighbours.empty(); })
            .default_words("all points within the horizon"),
        thickness(in(points, &PointSource::cross_section)),
@@ -193,8 +199,8 @@ Table<Case> points_keys() {
 Table<SetRule> set_keys() {
   using K = Key<SetRule>;
   return {"set",
-          {K("name", &SetRule::name, set_name(), "of the set").required(),
-           where<SetRule>("selects points where it is not zero", "this or `shape` is required"),
+          {K("name", &SetRule::name, set_name(), "name of the set").required(),
+           where<SetRule>("selects the points where it is not zero", "this or `shape` is required"),
            K("shape", &SetRule::shape, shape_inside(),
              "selects the points in it; its keys are those of `[[lattice.shape]]`: `{ box = { min "
              "= [0, 0], max = [1, 1] } }`")
@@ -202,7 +208,7 @@ Table<SetRule> set_keys() {
                .default_words("this or `where` is required")},
           {},
           [](auto& at, auto& set) {
-            if (set.where.empty() && !set.shape) at.refuse("needs a where or a shape");
+            if (set.where.empty() && !set.shape) at.refuse("needs where or shape");
           }};
 }
 
@@ -223,10 +229,12 @@ Table<Crack> crack_keys() {
     return std::holds_alternative<CrackOutline>(crack);
   };
   const std::string in_space = "is for dimension 2; 3D has vertices",
-                    beside_outline = "stands beside outline; a crack is one or the other";
+                    beside_outline =
+                        "can't be given together with outline: a crack is one or the other";
   return {"crack",
           {K("outline", in(outline, &CrackOutline::vertices), pairs(),
-             "2D: corners of a closed polygon whose sides cut, the last is joined to the first")
+             "2D: corners of a closed polygon whose sides cut bonds; the last corner is joined to "
+             "the first")
                .unless(in_dimension<3>, in_space)
                .written_if(is_outline)
                .default_words("this, or `from` and `to`, in 2D")
@@ -241,7 +249,7 @@ Table<Crack> crack_keys() {
                .moreover("not `from`")
                .required("required in 2D without `outline`"),
            K("vertices", in(polygon, &CrackPolygon::vertices), triples(),
-             "3D: corners in order, the last is joined to the first")
+             "3D: corners in order; the last is joined to the first")
                .unless(in_dimension<2>, "is for dimension 3; 2D has from and to, or an outline")
                .moreover("in one plane (to 10⁻⁹ of the extent) and around an area; edges must not "
                          "cross or touch")
@@ -280,11 +288,11 @@ Table<Case> quadrature_keys() {
          choice<SolidForm>({{"collocation", SolidForm::collocation},
                             {"energy", SolidForm::energy},
                             {"printed", SolidForm::printed}}),
-         "model `lps`: forces at points by a quadrature that is exact for linear displacements "
-         "up to the surface, which have no potential; or those of an "
-         "[energy](theory.md#the-solid-as-an-energy), symmetric, as the other models' are, with "
-         "all modes and loads that these have but mode `path`; or those of [FCBM] (A-8), for "
-         "comparisons alone: without a potential where neighbourhoods differ, by "
+         "model `lps`. `\"collocation\"`: forces at points by a quadrature that is exact for "
+         "linear displacements up to the surface; they have no potential. `\"energy\"`: forces of "
+         "an [energy](theory.md#the-solid-as-an-energy), with a symmetric tangent and all modes "
+         "and loads of the other models except mode `path`. `\"printed\"`: forces of [FCBM] (A-8), "
+         "for comparisons only; they have no potential where neighbourhoods differ, and need "
          "`solver.operator = \"fft\"` in mode `dynamics` with `scheme = \"verlet\"`")
            .written_if(of_lps),
        K("volume_correction", &Case::volume_correction,
@@ -292,49 +300,51 @@ Table<Case> quadrature_keys() {
                                    {"linear", VolumeCorrection::linear},
                                    {"exact", VolumeCorrection::exact},
                                    {"exact_centroids", VolumeCorrection::exact_centroids}}),
-         "share of a neighbour's volume that counts near the edge of the horizon: all; linear "
-         "over half a spacing to either side; what its cell has within the horizon; the same, "
-         "with length and influence of the bond those of that part's centroid. The last two "
-         "are for whole cells of a lattice, of which `cell_perturbation` may shift the corners")
+         "share of a neighbour's volume that counts near the edge of the horizon. `\"none\"`: all "
+         "of it; `\"linear\"`: linear over half a spacing to either side; `\"exact\"`: the part of "
+         "its cell within the horizon; `\"exact_centroids\"`: the same, with the bond's length and "
+         "influence taken at that part's centroid. The last two are for whole cells of a lattice, "
+         "whose corners `cell_perturbation` may shift")
            .written_if(of_kernel),
        K("horizon_shape", &Case::horizon_shape,
          choice<HorizonShape>({{"ball", HorizonShape::ball},
                                {"box", HorizonShape::box},
                                {"diamond", HorizonShape::diamond}}),
-         "which neighbours a point sees: those whose distance, whose largest component or whose "
-         "sum of components along the lattice's axes is at most the horizon. Boxes and diamonds "
-         "are stiffer along some directions than along others: "
-         "[moduli](theory.md#horizon-shapes) are means over all of them")
+         "which neighbours a point sees: those within the horizon by their distance (`\"ball\"`), "
+         "by its largest component along the lattice's axes (`\"box\"`), or by the sum of these "
+         "components (`\"diamond\"`). Boxes and diamonds are stiffer along some directions than "
+         "along others: [moduli](theory.md#horizon-shapes) are means over all directions")
            .written_if(of_bond),
        K("surface_correction", &Case::surface_correction,
          choice<SurfaceCorrection>({{"none", SurfaceCorrection::none},
                                     {"volume", SurfaceCorrection::volume},
                                     {"energy", SurfaceCorrection::energy}}),
-         "factor that restores the stiffness of points whose neighbourhood is cut by a "
-         "surface: none, by the volume of the neighbourhood, or by the energy of simple "
-         "deformations")
+         "factor that restores the stiffness of points whose neighbourhood is cut by a surface. "
+         "`\"none\"`: no factor; `\"volume\"`: from the volume of the neighbourhood; `\"energy\"`: "
+         "from the energy of simple deformations")
            .written_if(of_bond),
        K("weights", &Case::weights,
          choice<InteractionWeights>(
              {{"mean", InteractionWeights::mean}, {"bulk", InteractionWeights::bulk}}),
-         "model `cpd`: weights of interactions near surfaces, by the mean of their points' "
-         "effective volumes, or as in the bulk everywhere")
+         "model `cpd`: weights of interactions near surfaces. `\"mean\"`: from the mean of their "
+         "points' effective volumes; `\"bulk\"`: as in the bulk everywhere")
            .written_if([](auto&, const Case& from) { return is_cpd(from); }),
        K("degree", in(collocation, &CollocationSpecification::degree),
          count_from(least_exact_degree, "", most_exact_degree),
-         "model `lps` by collocation: of the polynomials that the quadrature is exact for")
+         "model `lps` by collocation: degree of the polynomials that the quadrature is exact for")
            .written_if(of_collocation),
        K("traction_form", in(collocation, &CollocationSpecification::traction_form),
          choice<TractionForm>({{"full", TractionForm::full}, {"paper", TractionForm::paper}}),
-         "model `lps` by collocation: what of the displacements' continuation over the boundary "
-         "counts: all of it, which is exact for linear fields on every grid, or what [LPS] eq. "
-         "4.6 keeps")
+         "model `lps` by collocation: part of the displacements' continuation over the boundary "
+         "that counts. `\"full\"`: all of it, which is exact for linear fields on every grid; "
+         "`\"paper\"`: the part that [LPS] eq. 4.6 keeps")
            .written_if(of_collocation),
        K("normals", in(collocation, &CollocationSpecification::normals),
          choice<NormalSource>(
              {{"numerical", NormalSource::numerical}, {"exact", NormalSource::exact}}),
-         "model `lps` by collocation: normals of surfaces from the neighbourhoods, or from the "
-         "shapes' faces, at points that have one face and all of their bonds")
+         "model `lps` by collocation: normals of surfaces. `\"numerical\"`: from the "
+         "neighbourhoods; `\"exact\"`: from the shapes' faces, at points that have one face and "
+         "all of their bonds")
            .written_if(of_collocation)}};
 }
 

@@ -38,16 +38,16 @@ std::vector<std::string> case_differences(const std::string& then, const std::st
   for (const auto& [key, value] : before) {
     const auto found = after.find(key);
     if (found == after.end()) {
-      differences.push_back(key + " is gone, was " + value);
+      differences.push_back(key + " has been removed, was " + value);
     } else if (found->second != value) {
       differences.push_back(key + " is " + found->second + ", was " + value);
     }
   }
   for (const auto& [key, value] : after) {
-    if (!before.contains(key)) differences.push_back(key + " is " + value + ", was not there");
+    if (!before.contains(key)) differences.push_back(key + " is " + value + ", was not given");
   }
   if (differences.empty() && then != now)
-    differences.push_back("a value of several lines is another");
+    differences.push_back("a value that spans several lines has changed");
   if (differences.size() > most_differences) {
     const std::size_t more = differences.size() - most_differences;
     differences.resize(most_differences);

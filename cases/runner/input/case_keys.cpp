@@ -27,7 +27,7 @@ Table<Case> all_keys() {
   const auto searches = [](auto& result, auto&) { return !result.dynamics.is_asked_for; };
   return {
       "",
-      {K("title", &Case::title, text(), "one line for people")
+      {K("title", &Case::title, text(), "one line that describes the case")
            .moreover("any text")
            .otherwise(
                [](auto& result, auto&) {
@@ -35,9 +35,7 @@ Table<Case> all_keys() {
                },
                "name of the file without its ending")
            .early(),
-       K("dimension", &Case::dimension, integer(1, 3), "of the space the body lives in")
-           .required()
-           .early(),
+       K("dimension", &Case::dimension, integer(1, 3), "dimension of the body").required().early(),
        K("lattice", itself, lattice_keys(), "table: points on a lattice")
            .written_if(body_is<Lattice>)
            .one_of(),
@@ -48,14 +46,14 @@ Table<Case> all_keys() {
        K("crack", &Case::cracks, crack_keys(), "tables: cracks that are there from the start"),
        K("quadrature", itself, quadrature_keys(), "table: corrections of the weights"),
        K("material", &Case::material, material_keys("material"),
-         "table: model, constants, damage; of the points in no region")
+         "table: model, constants and damage of the points in no region")
            .otherwise([](auto&, auto&) {}, "required without `[[region]]`")
            .written_if([](auto& result, auto&) { return result.material.has_constants(); }),
        K("region", &Case::regions, region_keys(),
          "tables: sets of points with materials of their own")
            .then(check_regions),
        K("interface", &Case::interfaces, interface_keys(),
-         "tables: what holds between points of two materials")
+         "tables: interactions between points of two materials")
            .then([](auto& at, auto& result) {
              if (!result.interfaces.empty() && result.regions.empty()) at.refuse("needs regions");
            }),
@@ -63,7 +61,7 @@ Table<Case> all_keys() {
        K("rigid", in(&Case::constraints, &ConstraintSpecification::rigid_sets), rigid_set_keys(),
          "tables: sets that move as rigid bodies"),
        K("roller", in(&Case::constraints, &ConstraintSpecification::rollers), roller_keys(),
-         "tables: points that slide, at any angle"),
+         "tables: points that slide along a plane at any angle"),
        K("constraint", in(&Case::constraints, &ConstraintSpecification::linear),
          linear_constraint_keys(), "tables: linear constraints between sets"),
        K("symmetry", in(&Case::constraints, &ConstraintSpecification::symmetries), symmetry_keys(),
@@ -81,11 +79,11 @@ Table<Case> all_keys() {
              return result.eigenstrains.temperature_change.has_value();
            }),
        K("control", &Case::controls, control_keys(),
-         "tables: the displacement that is controlled in the place of `load`"),
+         "tables: the displacement that is controlled instead of `load`"),
        K("initial", &Case::initial, initial_keys(),
-         "tables: displacements and velocities at the time 0"),
+         "tables: displacements and velocities at time 0"),
        K("absorbing", &Case::absorbing, absorbing_keys(), "tables: layers that absorb waves"),
-       K("loading", &Case::loading, loading_keys(), "table: the way of the loads, and its steps")
+       K("loading", &Case::loading, loading_keys(), "table: the path of the loads, and its steps")
            .written_if(searches)
            .early(),
        K("solver", &Case::solver, solver_keys(), "table: search for equilibrium"),
@@ -99,7 +97,7 @@ Table<Case> all_keys() {
            .unless([](auto& result, auto&) { return !result.dynamics.is_asked_for; }, "")
            .default_words("required in mode `dynamics`"),
        K("output", &Case::output, output_keys(), "table: results folder"),
-       K("probe", &Case::probes, probe_keys(), "tables: values that enter the history"),
+       K("probe", &Case::probes, probe_keys(), "tables: values that are recorded in the history"),
        K("crack_tip", &Case::crack_tips, crack_tip_keys(),
          "tables: J, stress intensity factors and T-stress in the history")},
       [](auto& at, auto& result) {

@@ -13,12 +13,12 @@ Table<RigidSetSpecification> rigid_set_keys() {
   using Spec = RigidSetSpecification;
   using K = Key<Spec>;
   return {"rigid",
-          {K("set", &Spec::set, known_set(), "whose points move as one rigid body").required(),
+          {K("set", &Spec::set, known_set(), "set whose points move as one rigid body").required(),
            K("centre", &Spec::centre, coordinates(),
-             "about which it turns and moments are told, in the reference")
+             "reference position of the centre of rotation, about which moments are reported, too")
                .default_words("centre of the set's volume"),
            K("displacement", &Spec::displacement, free_components(Components::axes, "m"),
-             "of the centre, per component"),
+             "displacement of the centre, per component"),
            K("rotation", &Spec::rotation, free_components(Components::rotations, "rad"),
              "rotation vector: in 2D one component, about z")},
           [](auto& at, auto&) {
@@ -32,27 +32,27 @@ Table<RollerSpecification> roller_keys() {
   using K = Key<Spec>;
   return {
       "roller",
-      {K("set", &Spec::set, known_set(), "each of whose points slides across the normal")
+      {K("set", &Spec::set, known_set(), "set of points, each of which slides across the normal")
            .written_if([](auto& roller, auto&) { return !roller.at; })
            .one_of(),
        K("at", &Spec::at, coordinates(),
-         "where a roller touches the body: the points next to it are held in the mean, weighted so "
-         "that it is the displacement there")
+         "where a roller touches the body: it holds the mean displacement of the points around, "
+         "weighted so that it is the displacement at this place")
            .early()
            .one_of(),
        K("to", &Spec::to, coordinates(), "3D: other end of the line along which it touches")
            .unless(in_dimension<2>, "is for dimension 3: in 2D a roller touches at a point")
-           .unless([](auto& roller, auto&) { return !roller.at; }, "goes with at")
+           .unless([](auto& roller, auto&) { return !roller.at; }, "needs the key at")
            .default_words("a point"),
-       K("name", &Spec::label, name(), "with `at`: that its reaction is told by")
-           .unless([](auto& roller, auto&) { return !roller.at; }, "goes with at")
+       K("name", &Spec::label, name(), "with `at`: name under which its reaction is reported")
+           .unless([](auto& roller, auto&) { return !roller.at; }, "needs the key at")
            .required("required with `at`"),
-       K("normal", &Spec::normal, coordinates(""), "direction that is held, of any length")
+       K("normal", &Spec::normal, coordinates(""), "direction that is held, a vector of any length")
            .moreover("not all zero")
            .required(),
        K("displacement", &Spec::displacement, expression_or_free(),
-         "along the normal; `\"free\"`: unknown, but the same for all points of the set (a platen "
-         "without friction that does not turn)")},
+         "displacement along the normal; `\"free\"`: unknown, but the same for all points of the "
+         "set (a platen without friction that does not turn)")},
       [](auto& at, auto&) {
         if (at.so_far.dimension == 1)
           at.refuse("is for dimension 2 and 3; in 1D prescribe a displacement");
@@ -62,20 +62,21 @@ Table<RollerSpecification> roller_keys() {
 Table<LinearConstraintSpecification> linear_constraint_keys() {
   using Spec = LinearConstraintSpecification;
   using K = Key<Spec>;
-  const Table<ControlTerm> term{
-      "constraint.term",
-      {Key<ControlTerm>("set", &ControlTerm::set, known_set(), "whose mean displacement is taken")
-           .required(),
-       Key<ControlTerm>("weights", &ControlTerm::weights, coordinates(""), "of its components")
-           .required()}};
+  const Table<ControlTerm> term{"constraint.term",
+                                {Key<ControlTerm>("set", &ControlTerm::set, known_set(),
+                                                  "set whose mean displacement is taken")
+                                     .required(),
+                                 Key<ControlTerm>("weights", &ControlTerm::weights, coordinates(""),
+                                                  "weights of the mean displacement's components")
+                                     .required()}};
   return {"constraint",
-          {K("name", &Spec::name, name(), "that its force is told by").required(),
+          {K("name", &Spec::name, name(), "name under which its force is reported").required(),
            K("displacement", &Spec::displacement, expression_of_load(),
-             "that the weighted mean displacements of all terms add up to"),
+             "sum of the weighted mean displacements of all terms"),
            K("term", &Spec::terms, term, "tables: the terms").default_words("required")},
           {},
           [](auto& at, auto& spec) {
-            if (spec.terms.empty()) at.refuse("needs a [[constraint.term]] or more");
+            if (spec.terms.empty()) at.refuse("needs at least one [[constraint.term]]");
           }};
 }
 
@@ -84,50 +85,52 @@ Table<FoundationSpecification> foundation_keys() {
   using K = Key<Spec>;
   const auto has_modulus = [](auto& of, auto&) { return of.modulus != Coordinates{}; };
   const auto has_stiffness = [](auto& of, auto&) { return of.stiffness != Coordinates{}; };
-  return {"foundation",
-          {K("name", &Spec::name, name(), "that its force is told by").required(),
-           K("set", &Spec::set, known_set(),
-             "that stands on it; with `modulus` one plane of points on the boundary")
-               .written_if([](auto& of, auto&) { return !of.set.empty(); })
-               .default_words("required, but for `modulus` with a `side`"),
-           K("side", &Spec::side, optional_side(),
-             "`modulus`: the body's outermost plane of points on a side, or of several the one")
-               .written_if([](auto& of, auto&) { return of.side.has_value(); })
-               .default_words("none"),
-           K("modulus", &Spec::modulus, stiffnesses("N/m3"),
-             "traction per displacement along each axis, on a flat part of the boundary; on a "
-             "lattice only")
-               .written_if(has_modulus)
-               .one_of(),
-           K("stiffness", &Spec::stiffness, stiffnesses("N/m"),
-             "of all springs of the set together along each axis, spread in proportion to the "
-             "volume")
-               .written_if(has_stiffness)
-               .one_of(),
-           K("displacement", &Spec::displacement, displacement_components(),
-             "of the ground, per component")},
-          {},
-          [](auto& at, auto& of) {
-            const bool is_on_boundary = of.modulus != Coordinates{};
-            if (!is_on_boundary) static_cast<void>(at.from.string("set"));
-            if (!is_on_boundary && of.side) at.from.refuse("side", "is for a modulus");
-            if (of.set.empty() && !of.side) at.refuse("a modulus needs a side or a set");
-          }};
+  return {
+      "foundation",
+      {K("name", &Spec::name, name(), "name under which its force is reported").required(),
+       K("set", &Spec::set, known_set(),
+         "set that stands on the foundation; with `modulus` one plane of points on the boundary")
+           .written_if([](auto& of, auto&) { return !of.set.empty(); })
+           .default_words("required, except for `modulus` with a `side`"),
+       K("side", &Spec::side, optional_side(),
+         "`modulus`: the body's outermost plane of points on a side, or the side that is meant if "
+         "the set lies on several")
+           .written_if([](auto& of, auto&) { return of.side.has_value(); })
+           .default_words("none"),
+       K("modulus", &Spec::modulus, stiffnesses("N/m3"),
+         "traction per displacement along each axis, on a flat part of the boundary; on a "
+         "lattice only")
+           .written_if(has_modulus)
+           .one_of(),
+       K("stiffness", &Spec::stiffness, stiffnesses("N/m"),
+         "stiffness of all springs of the set together along each axis, distributed in proportion "
+         "to the volume")
+           .written_if(has_stiffness)
+           .one_of(),
+       K("displacement", &Spec::displacement, displacement_components(),
+         "displacement of the ground, per component")},
+      {},
+      [](auto& at, auto& of) {
+        const bool is_on_boundary = of.modulus != Coordinates{};
+        if (!is_on_boundary) static_cast<void>(at.from.string("set"));
+        if (!is_on_boundary && of.side) at.from.refuse("side", "is for a modulus");
+        if (of.set.empty() && !of.side) at.refuse("a modulus needs a side or a set");
+      }};
 }
 
 Table<SymmetryPlane> symmetry_keys() {
   using K = Key<SymmetryPlane>;
   return {"symmetry",
-          {K("axis", &SymmetryPlane::axis, axis(), "that the plane lies across").required(),
+          {K("axis", &SymmetryPlane::axis, axis(), "axis that the plane is normal to").required(),
            K("at", &SymmetryPlane::at, number(any_number, "a number", "m"),
-             "where it crosses the axis, half a spacing before the first points")}};
+             "where the plane crosses the axis, half a spacing before the first points")}};
 }
 
 Table<PeriodSpecification> period_keys() {
   using Spec = PeriodSpecification;
   using K = Key<Spec>;
   return {"period",
-          {K("axis", &Spec::axis, axis(), "across which the body repeats").required(),
+          {K("axis", &Spec::axis, axis(), "axis along which the body repeats").required(),
            K("from", &Spec::from, number(any_number, "a number", "m"), "one side of the cell")
                .required(),
            K("to", &Spec::to, number(any_number, "a number", "m"), "the other side")

@@ -83,7 +83,7 @@ Kind<Spacing> spacing() {
     return spacing.is_square() ? toml_number(spacing)
                                : array_text(components_of(along, from), toml_number);
   };
-  return {read, text, "positive, or a list of as many as the dimension", "m"};
+  return {read, text, "positive, or a list with one number per dimension", "m"};
 }
 
 Kind<double> between(double low, double high, std::string unit) {
@@ -183,8 +183,9 @@ Kind<std::string> known_set() {
     if (known.count(asked) > 0 || has_sets_from_file(at.so_far)) return asked;
     std::vector<std::string> names;
     for (const auto& [set, path] : known) names.push_back(set);
-    at.refuse("no set or layer of this name" + did_you_mean(asked, names) +
-              (names.empty() ? "; the case has none" : "  (there: " + listed(names) + ")"));
+    at.refuse(
+        "no set or layer of this name" + did_you_mean(asked, names) +
+        (names.empty() ? "; the case has no sets or layers" : "  (there: " + listed(names) + ")"));
   };
   return {read, string_text, "name of a set or layer"};
 }
@@ -226,7 +227,7 @@ Kind<Coordinates> stiffnesses(const std::string& unit) {
     for (std::size_t c = 0; c < stiffness.size(); ++c) {
       if (stiffness[c] < 0.0) at.from.refuse(at.key, c, "must be 0 or positive");
     }
-    if (stiffness == Coordinates{}) at.refuse("is zero in every component: this holds nothing");
+    if (stiffness == Coordinates{}) at.refuse("is zero in every component, so it holds nothing");
     return stiffness;
   };
   const auto text = [any](const Coordinates& stiffness, const Case& from) {
@@ -272,7 +273,7 @@ Kind<int> axis() {
     return at.from.one_of(at.key, {axes.begin(), axes.begin() + at.so_far.dimension})[0] - 'x';
   };
   return {read, [](int axis, const Case&) { return toml_string(std::string(1, "xyz"[axis])); },
-          "`\"x\"`, `\"y\"`, `\"z\"` of the dimension"};
+          "`\"x\"`, `\"y\"`, `\"z\"`, as the dimension has them"};
 }
 
 Kind<std::string> condition() {
@@ -297,7 +298,7 @@ Kind<LoadTable> load_table() {
     return table.expression.empty() ? array_text(table.entries, toml_number)
                                     : toml_string(table.expression);
   };
-  return {read, text, "two numbers or more, or an expression of `step`; 0 at first"};
+  return {read, text, "at least two numbers, the first 0, or an expression of `step`, 0 at step 0"};
 }
 
 Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
@@ -311,7 +312,7 @@ Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
       check_component(at, c, components[c], at.so_far.dimension);
       prescribed[c] = components[c];
     }
-    if (all_free) at.refuse("every component is free, so this supports nothing");
+    if (all_free) at.refuse("every component is \"free\", so this supports nothing");
     return prescribed;
   };
   return {read,
@@ -477,7 +478,9 @@ Kind<std::array<std::string, 3>> located_components(bool has_place, const std::s
 
 Kind<std::array<std::string, 3>> displacement_components() {
   return located_components(
-      true, "a foundation's ground has a place in every component; give no stiffness instead", "m");
+      true,
+      "the ground of a foundation can't be free; give a zero stiffness in this component instead",
+      "m");
 }
 
 Kind<std::vector<std::string>> stress_components() {
@@ -510,8 +513,8 @@ Kind<std::vector<std::string>> expected_components() {
 }
 
 Kind<std::array<std::string, 3>> force_components(bool is_total, const std::string& unit) {
-  return located_components(
-      !is_total, "only displacements of supports can be free; write 0 for no force", unit);
+  return located_components(!is_total, "only displacements can be \"free\"; write 0 for no force",
+                            unit);
 }
 
 }  // namespace peristat

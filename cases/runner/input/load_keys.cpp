@@ -11,8 +11,9 @@ Table<SupportSpecification> support_keys() {
   using Spec = SupportSpecification;
   using K = Key<Spec>;
   return {"support",
-          {K("set", &Spec::set, known_set(), "that is held or moved").required(),
-           K("displacement", &Spec::displacement, prescribed_components(), "per component")
+          {K("set", &Spec::set, known_set(), "set that is held or moved").required(),
+           K("displacement", &Spec::displacement, prescribed_components(),
+             "prescribed displacement per component")
                .required()}};
 }
 
@@ -42,9 +43,10 @@ void check_place_of_load(const Entry& at, const LoadSpecification& load) {
   if (needs_set) static_cast<void>(at.from.string("set"));
   const bool is_on_surface = at.so_far.is_collocated();
   if (is_on_surface && at.from.has("depth") && load.depth != Depth::surface)
-    at.from.refuse("depth", "of model lps is \"surface\", on which its tractions act");
+    at.from.refuse("depth",
+                   "must be \"surface\" with model lps, whose tractions act on the surface itself");
   if (is_on_boundary && load.set.empty() && !load.side && !is_on_surface)
-    at.refuse(std::string("a ") + load_key(load.kind) + " needs a side or a set that it acts on");
+    at.refuse(std::string("a ") + load_key(load.kind) + " needs a side or a set to act on");
 }
 
 }  // namespace
@@ -55,65 +57,66 @@ Table<LoadSpecification> load_keys() {
   using Kind = Spec::Kind;
   const auto is_traction = [](auto& load, auto&) { return load.kind == Kind::traction; };
   constexpr auto pressure = [](auto& load) -> auto& { return load.value[0]; };
-  return {"load",
-          {K("set", &Spec::set, known_set(), "that is loaded")
-               .early()
-               .written_if([](auto& load, auto&) { return !load.set.empty(); })
-               .default_words("required, but for `gravity`, which then acts on the whole body, and "
-                              "`traction` and `pressure` with a `side`"),
-           load_value(Kind::body_force, "N/m3", "force density per component"),
-           load_value(Kind::total_force, "N",
-                      "force on the whole set per component, spread in proportion to the volume"),
-           load_value(
-               Kind::gravity, "m/s2",
-               "acceleration per component, times `material.density`; layers weigh nothing unless "
-               "`set` names them"),
-           load_value(Kind::traction, "Pa",
-                      "force per area per component on a flat part of the boundary, which keeps "
-                      "its direction; on a lattice only"),
-           K("pressure", pressure, scalar_field("Pa"),
-             "on the exposed faces of the cells of the set's points, or of a side: it follows them "
-             "as they deform, and pushes where it is positive; on a lattice only")
-               .then([](auto&, auto& load) { load.kind = Kind::pressure; })
-               .written_if([](auto& load, auto&) { return load.kind == Kind::pressure; })
-               .one_of(),
-           K("stress", &Spec::stress, stress_components(),
-             "model `lps`: of the surroundings, [xx, yy, xy] or [xx, yy, zz, xy, yz, xz]; it loads "
-             "the surface by its traction, the stress times the outward normal")
-               .then([](auto&, auto& load) { load.kind = Kind::stress; })
-               .written_if([](auto& load, auto&) { return load.kind == Kind::stress; })
-               .one_of(),
-           K("boundary", &Spec::boundary, text(),
-             "model `lps`: the boundary of a shape of `[[lattice.shape]]`, by its `name`")
-               .written_if([](auto& load, auto&) { return !load.boundary.empty(); }),
-           K("side", &Spec::side, optional_side(),
-             "`traction`, `pressure`: the body's outermost plane of points on a side, as of "
-             "`[[lattice.layer]]`")
-               .written_if([](auto& load, auto&) { return load.side.has_value(); })
-               .default_words("`traction`, `pressure`: this or a `set` is required, for a traction "
-                              "one in one plane of points"),
-           K("depth", &Spec::depth,
-             choice<Depth>(
-                 {{"row", Depth::row}, {"horizon", Depth::horizon}, {"surface", Depth::surface}}),
-             "`traction`: borne by the outermost row of points, spread evenly over a horizon "
-             "below the boundary, or on the surface itself, as model `lps` alone has it, always")
-               .written_if([=](auto& load, const Case& from) {
-                 return is_traction(load, from) && !from.is_collocated();
-               })},
-          {},
-          check_place_of_load};
+  return {
+      "load",
+      {K("set", &Spec::set, known_set(), "set that is loaded")
+           .early()
+           .written_if([](auto& load, auto&) { return !load.set.empty(); })
+           .default_words("required, except for `gravity`, which then acts on the whole body, and "
+                          "for `traction` and `pressure` with a `side`"),
+       load_value(Kind::body_force, "N/m3", "force density per component"),
+       load_value(Kind::total_force, "N",
+                  "force on the whole set per component, distributed in proportion to the volume"),
+       load_value(Kind::gravity, "m/s2",
+                  "acceleration per component, multiplied by `material.density`; layers have no "
+                  "weight unless `set` names them"),
+       load_value(Kind::traction, "Pa",
+                  "force per area per component on a flat part of the boundary; its direction "
+                  "stays fixed; on a lattice only"),
+       K("pressure", pressure, scalar_field("Pa"),
+         "pressure on the exposed faces of the cells of the set's points, or of a side; it follows "
+         "the faces as they deform, and pushes if it is positive; on a lattice only")
+           .then([](auto&, auto& load) { load.kind = Kind::pressure; })
+           .written_if([](auto& load, auto&) { return load.kind == Kind::pressure; })
+           .one_of(),
+       K("stress", &Spec::stress, stress_components(),
+         "model `lps`: stress of the surroundings, [xx, yy, xy] or [xx, yy, zz, xy, yz, xz]; it "
+         "loads the surface by its traction, the stress times the outward normal")
+           .then([](auto&, auto& load) { load.kind = Kind::stress; })
+           .written_if([](auto& load, auto&) { return load.kind == Kind::stress; })
+           .one_of(),
+       K("boundary", &Spec::boundary, text(),
+         "model `lps`: `name` of the `[[lattice.shape]]` whose boundary is loaded")
+           .written_if([](auto& load, auto&) { return !load.boundary.empty(); }),
+       K("side", &Spec::side, optional_side(),
+         "`traction`, `pressure`: the body's outermost plane of points on a side, named as in "
+         "`[[lattice.layer]]`")
+           .written_if([](auto& load, auto&) { return load.side.has_value(); })
+           .default_words("`traction`, `pressure`: this or a `set` is required; the set of a "
+                          "traction lies in one plane of points"),
+       K("depth", &Spec::depth,
+         choice<Depth>(
+             {{"row", Depth::row}, {"horizon", Depth::horizon}, {"surface", Depth::surface}}),
+         "`traction`: where it acts. `\"row\"`: on the outermost row of points; `\"horizon\"`: "
+         "spread evenly over a horizon below the boundary; `\"surface\"`: on the surface itself, "
+         "only and always with model `lps`")
+           .written_if([=](auto& load, const Case& from) {
+             return is_traction(load, from) && !from.is_collocated();
+           })},
+      {},
+      check_place_of_load};
 }
 
 Table<EigenstrainSpecification> eigenstrain_keys() {
   using Spec = EigenstrainSpecification;
   using K = Key<Spec>;
   return {"eigenstrain",
-          {K("set", &Spec::set, known_set(), "that is strained")
+          {K("set", &Spec::set, known_set(), "set that is strained")
                .written_if([](auto& strained, auto&) { return !strained.set.empty(); })
                .default_words("all points"),
            K("strain", &Spec::strain, scalar_field("1"),
-             "that a part which nothing held would have, the same in all directions: its length "
-             "over the one in the reference, less 1")
+             "strain that a part would have if nothing held it, the same in all directions: its "
+             "length relative to that in the reference, minus 1")
                .moreover("above −1")
                .required()}};
 }
@@ -131,8 +134,8 @@ Table<Eigenstrains> temperature_keys() {
   };
   return {"temperature",
           {K("change", change, scalar_field("K"),
-             "of the temperature from that of the reference: with `material.thermal_expansion` an "
-             "eigenstrain α ΔT of all points")
+             "change of the temperature from that of the reference; with "
+             "`material.thermal_expansion` it gives all points an eigenstrain α ΔT")
                .written_if([](auto& of, auto&) { return of.temperature_change.has_value(); })
                .default_words("no change; required in the table")}};
 }
@@ -144,13 +147,14 @@ void check_temperature(const Entry& at, const Case& result) {
 
 Table<ControlTerm> control_keys() {
   using K = Key<ControlTerm>;
-  return {"control",
-          {K("set", &ControlTerm::set, known_set(), "whose mean displacement is taken").required(),
-           K("weights", &ControlTerm::weights, coordinates(""),
-             "of its components: the weighted displacements of all these tables add up to the "
-             "controlled one")
-               .moreover("not all zero")
-               .required()}};
+  return {
+      "control",
+      {K("set", &ControlTerm::set, known_set(), "set whose mean displacement is taken").required(),
+       K("weights", &ControlTerm::weights, coordinates(""),
+         "weights of the mean displacement's components; the weighted displacements of all these "
+         "tables add up to the controlled one")
+           .moreover("not all zero")
+           .required()}};
 }
 
 }  // namespace peristat

@@ -48,7 +48,8 @@ void resolve_tables(const Entry& at, LoadingSpecification& loading) {
     if (!tables[k].expression.empty()) {
       tables[k].entries = entries_of(table, tables[k].expression, loading.steps);
     }
-    if (tables[k].entries.empty()) table.refuse("is needed for the tables that follow it");
+    if (tables[k].entries.empty())
+      table.refuse("is missing, but a table with a higher number is given");
     entries.push_back(tables[k].entries);
     try {
       static_cast<void>(LoadingProgramme(entries));
@@ -63,12 +64,11 @@ void resolve_tables(const Entry& at, LoadingSpecification& loading) {
 Table<LoadingSpecification> loading_keys() {
   using Spec = LoadingSpecification;
   using K = Key<Spec>;
-  Table<Spec> keys{
-      "loading",
-      {K("steps", &Spec::steps, integer(1, 1'000'000),
-         "number of equal steps from one entry of the tables to the next, or of an expression; "
-         "without a table from 0 to 1")
-           .extends()}};
+  Table<Spec> keys{"loading",
+                   {K("steps", &Spec::steps, integer(1, 1'000'000),
+                      "number of equal steps from one entry of the tables to the next, or of a "
+                      "table that is an expression; without a table from 0 to 1")
+                        .extends()}};
   for (std::size_t k = 0; k < LoadingProgramme::most_parameters; ++k) {
     const std::string parameter = LoadingProgramme::names(k + 1).back();
     const auto member = [k](auto& loading) -> auto& {
@@ -80,10 +80,12 @@ Table<LoadingSpecification> loading_keys() {
         return loading.tables.size() > k ? loading.tables[k] : none;
       }
     };
-    K key(load_table_key(k), member, load_table(),
-          k == 0 ? "values of `load` that the path goes through, linearly from one to the next: "
-                   "up, down, and rests; with `[[control]]` of the controlled displacement in m"
-                 : "likewise of a further load parameter, `" + parameter + "`");
+    K key(
+        load_table_key(k), member, load_table(),
+        k == 0
+            ? "values of `load` that the path goes through, linearly from one to the next: it may "
+              "rise, fall and rest; with `[[control]]` values of the controlled displacement in m"
+            : "likewise for a further load parameter, `" + parameter + "`");
     key.written_if([k](auto& loading, auto&) { return loading.tables.size() > k; })
         .default_words(k == 0 ? "`[0, 1]`; required with `[[control]]`" : "no `" + parameter + "`")
         .extends();
@@ -92,52 +94,52 @@ Table<LoadingSpecification> loading_keys() {
   }
   const auto follows_events = [](auto&, auto& from) { return from.solver.mode == Mode::path; };
   const auto takes_steps = [](auto&, auto& from) { return from.solver.mode != Mode::path; };
-  for (
-      const K& key :
-      {K("adaptive", &Spec::adaptive, boolean(),
-         "cut a step that does not converge, and grow again; otherwise such a step ends the "
-         "run")
-           .extends(),
-       K("smallest_step", &Spec::smallest_step, between(1e-12, 1.0),
-         "of the stage (the load factor, without a table); needing a smaller one ends the run")
-           .extends()
-           .moreover("at most the first step"),
-       K("largest_step", &Spec::largest_step, between(1e-12, 1.0),
-         "of the stage, to which steps may grow")
-           .extends()
-           .otherwise(
-               [](auto&loading, auto&) { loading.largest_step = 1.0 / loading.steps_to_entry(); },
-               "the first step")
-           .written_if([](auto&, auto&from) {
-             return from.solver.mode != Mode::arc_length && from.solver.mode != Mode::path;
-           })
-           .then([](auto&at, auto&loading) {
-             const double step = 1.0 / loading.steps_to_entry();
-             if (loading.smallest_step > step)
-               at.from.refuse("smallest_step", "must not be larger than the first step, 1 / steps");
-             if (loading.largest_step < step)
-               at.refuse("must not be smaller than the first step, 1 / steps");
-           })
-           .moreover("at least the first step"),
-       K("max_broken_bonds", &Spec::max_broken_bonds, count_from(0, "bonds"),
-         "mode `newton`: bonds that may break in one step; a step with more is cut. 0 is no "
-         "limit")
-           .written_if(takes_steps)
-           .extends(),
-       K("stop_below", &Spec::stop_below, between(0.0, 1.0),
-         "of the largest reaction of a support so far: the run has come to its end when the "
-         "largest "
-         "one falls below this share of it, as that of a specimen that tears. 0: the load alone "
-         "ends it")
-           .extends(),
-       K("event_tolerance", in(&Spec::events, &EventOptions::tolerance), between(0.0, 0.5),
-         "mode `path`: bonds within this share of the most utilised one break with it; 0: those "
-         "that tie with it alone")
-           .written_if(follows_events),
-       K("teeth", &Spec::teeth, integer(1, 1000),
-         "mode `path`: most teeth of the saw-tooth that a law of damage is followed by whose force "
-         "falls smoothly")
-           .written_if(follows_events)})
+  for (const K& key :
+       {K("adaptive", &Spec::adaptive, boolean(),
+          "whether a step that does not converge is cut, after which steps grow again; otherwise "
+          "it ends the run")
+            .extends(),
+        K("smallest_step", &Spec::smallest_step, between(1e-12, 1.0),
+          "smallest step of the stage (the load factor, without a table); the run ends when it "
+          "needs a smaller one")
+            .extends()
+            .moreover("at most the first step"),
+        K("largest_step", &Spec::largest_step, between(1e-12, 1.0),
+          "largest step of the stage, to which steps may grow")
+            .extends()
+            .otherwise(
+                [](auto&loading, auto&) { loading.largest_step = 1.0 / loading.steps_to_entry(); },
+                "the first step")
+            .written_if([](auto&, auto&from) {
+              return from.solver.mode != Mode::arc_length && from.solver.mode != Mode::path;
+            })
+            .then([](auto&at, auto&loading) {
+              const double step = 1.0 / loading.steps_to_entry();
+              if (loading.smallest_step > step)
+                at.from.refuse("smallest_step",
+                               "must not be larger than the first step, 1 / steps");
+              if (loading.largest_step < step)
+                at.refuse("must not be smaller than the first step, 1 / steps");
+            })
+            .moreover("at least the first step"),
+        K("max_broken_bonds", &Spec::max_broken_bonds, count_from(0, "bonds"),
+          "mode `newton`: most bonds that may break in one step; a step with more is cut. 0: no "
+          "limit")
+            .written_if(takes_steps)
+            .extends(),
+        K("stop_below", &Spec::stop_below, between(0.0, 1.0),
+          "share of the largest support reaction so far: the run is complete when the largest "
+          "reaction falls below this share of it, as that of a specimen that tears. 0: only the "
+          "load ends the run")
+            .extends(),
+        K("event_tolerance", in(&Spec::events, &EventOptions::tolerance), between(0.0, 0.5),
+          "mode `path`: bonds whose utilisation is within this share of the largest one break with "
+          "it; 0: only bonds that tie with it")
+            .written_if(follows_events),
+        K("teeth", &Spec::teeth, integer(1, 1000),
+          "mode `path`: most teeth of the saw-tooth that stands for a law of damage whose force "
+          "falls smoothly")
+            .written_if(follows_events)})
     keys.add(key);
   return keys;
 }
@@ -154,24 +156,25 @@ Table<InitialSpecification> initial_keys() {
   using Spec = InitialSpecification;
   using K = Key<Spec>;
   return {"initial",
-          {K("set", &Spec::set, known_set(), "that begins with it")
+          {K("set", &Spec::set, known_set(), "set of points that begin with these values")
                .written_if([](auto& initial, auto&) { return !initial.set.empty(); })
                .default_words("all points"),
            K("displacement", &Spec::displacement, components_of_place("m"),
-             "at the time 0, per component; where a support prescribes another one, that holds"),
+             "displacement at time 0, per component; where a support prescribes another value, the "
+             "support wins"),
            K("velocity", &Spec::velocity, components_of_place("m/s"),
-             "at the time 0, per component, of what no support prescribes")}};
+             "velocity at time 0, per component, where no support prescribes the displacement")}};
 }
 
 Table<AbsorbingSpecification> absorbing_keys() {
   using Spec = AbsorbingSpecification;
   using K = Key<Spec>;
   return {"absorbing",
-          {K("set", &Spec::set, known_set(), "that absorbs")
+          {K("set", &Spec::set, known_set(), "set of points that absorb")
                .written_if([](auto& absorbing, auto&) { return !absorbing.set.empty(); })
                .default_words("all points"),
            K("rate", &Spec::rate, field_of_place("1/s"),
-             "at which velocities decay, beside what forces do")
+             "rate at which velocities decay, in addition to the effect of forces")
                .required()}};
 }
 
@@ -200,43 +203,46 @@ Table<DynamicsSpecification> dynamics_keys() {
   const auto has_no_share = [](auto& dynamics, auto&) {
     return dynamics.time_step > 0.0 || dynamics.is_implicit();
   };
-  return {"dynamics",
-          {K("end_time", &Spec::end_time, positive("s"), "from 0 to which the motion is followed")
-               .required()
-               .extends(),
-           K("scheme", &Spec::scheme,
-             choice<MotionScheme>(
-                 {{"verlet", MotionScheme::verlet}, {newmark_name, MotionScheme::newmark}}),
-             "explicit steps, or implicit ones, each of which searches an equilibrium with "
-             "inertia by Newton's method: for motions that are slow beside the stable step")
-               .early(),
-           K("start", &Spec::start,
-             choice<MotionStart>(
-                 {{"rest", MotionStart::rest}, {equilibrium_name, MotionStart::equilibrium}}),
-             "undeformed, but for initial displacements; or in the equilibrium of supports and "
-             "loads at t = 0, which is searched by Newton's method and may damage nothing")
-               .early(),
-           K("spectral_radius", &Spec::spectral_radius, between(0.0, 1.0),
-             "of implicit steps: what a step leaves of the highest frequencies. 1: average "
-             "acceleration, which keeps the energy; below 1: the generalised alpha method, which "
-             "damps what steps do not resolve")
-               .written_if(is_implicit),
-           K("time_step", &Spec::time_step, positive("s"),
-             "that is kept. Explicit: the run ends where it is longer than the stable one. "
-             "Implicit: one that finds nothing is halved, down to a thousandth. The last step is "
-             "shorter where it has to be")
-               .written_if(is_given)
-               .early()
-               .moreover("explicit: at most the stable step")
-               .default_words("a share of the stable step"),
-           K("step_share", &Spec::step_share, between(1e-6, 0.99),
-             "time step over the stable one, which is found anew as the stiffness changes")
-               .unless(has_no_share,
-                       "stands beside time_step, or is of explicit steps; give time_step alone"),
-           K("history_every", &Spec::history_every, count_from(1, "time steps"),
-             "from one row of the history to the next")
-               .written_if([](auto& dynamics, auto&) { return dynamics.history_every > 0; })
-               .default_words("`output.every`")}};
+  return {
+      "dynamics",
+      {K("end_time", &Spec::end_time, positive("s"),
+         "time up to which the motion is followed, from 0")
+           .required()
+           .extends(),
+       K("scheme", &Spec::scheme,
+         choice<MotionScheme>(
+             {{"verlet", MotionScheme::verlet}, {newmark_name, MotionScheme::newmark}}),
+         "`\"verlet\"`: explicit steps; `\"newmark\"`: implicit steps, each of which searches an "
+         "equilibrium with inertia by Newton's method, for motions that are slow compared with the "
+         "stable step")
+           .early(),
+       K("start", &Spec::start,
+         choice<MotionStart>(
+             {{"rest", MotionStart::rest}, {equilibrium_name, MotionStart::equilibrium}}),
+         "`\"rest\"`: undeformed, except for initial displacements; `\"equilibrium\"`: in "
+         "equilibrium with supports and loads at t = 0, which is searched by Newton's method and "
+         "may damage nothing")
+           .early(),
+       K("spectral_radius", &Spec::spectral_radius, between(0.0, 1.0),
+         "implicit steps: factor that a step leaves of the highest frequencies. 1: average "
+         "acceleration, which conserves the energy; below 1: the generalised alpha method, which "
+         "damps frequencies that the steps do not resolve")
+           .written_if(is_implicit),
+       K("time_step", &Spec::time_step, positive("s"),
+         "constant time step. Explicit: the run ends where it is longer than the stable step. "
+         "Implicit: a step that does not converge is halved, down to a thousandth. The last step "
+         "is shorter where it has to be")
+           .written_if(is_given)
+           .early()
+           .moreover("explicit: at most the stable step")
+           .default_words("a share of the stable step"),
+       K("step_share", &Spec::step_share, between(1e-6, 0.99),
+         "time step as a share of the stable one, which is found anew as the stiffness changes")
+           .unless(has_no_share, "is for explicit steps without a time_step; give time_step alone"),
+       K("history_every", &Spec::history_every, count_from(1, "time steps"),
+         "number of steps from one row of the history to the next")
+           .written_if([](auto& dynamics, auto&) { return dynamics.history_every > 0; })
+           .default_words("`output.every`")}};
 }
 
 void check_dynamics(const Entry& at, const Case& result) {
@@ -253,18 +259,18 @@ void check_dynamics(const Entry& at, const Case& result) {
          "does not go with solver.mode = \"dynamics\": its integrals leave out the inertia");
   for (const char* key : {"loading", "control", "relaxation", "arc_length"}) {
     refuse(key,
-           "does not go with solver.mode = \"dynamics\", whose supports and loads go with the "
-           "time t; give their values as expressions of it");
+           "does not go with solver.mode = \"dynamics\", whose supports and loads depend on the "
+           "time t; give their values as expressions of t");
   }
   const TomlTable solver = at.from.table("solver");
   for (const char* key : {"fragments", "elastic_horizon_ratio"}) {
-    if (solver.has(key)) solver.refuse(key, "is not heeded in mode dynamics");
+    if (solver.has(key)) solver.refuse(key, "has no effect in mode dynamics");
   }
   if (result.dynamics.is_implicit()) {
     const TomlTable dynamics = at.from.table("dynamics");
     if (!dynamics.has("time_step")) {
       dynamics.refuse("scheme",
-                      "needs a time_step: implicit steps have no stable one to take a share of");
+                      "needs a time_step: implicit steps have no stable step to take a share of");
     }
     return;
   }
@@ -275,8 +281,8 @@ void check_dynamics(const Entry& at, const Case& result) {
                           "relative_tolerance", "linear_tolerance", "max_iterations"}) {
     if (solver.has(key)) {
       solver.refuse(key,
-                    "is not heeded by explicit time steps, which search no equilibrium; "
-                    "dynamics.scheme = \"newmark\" and dynamics.start = \"equilibrium\" do");
+                    "has no effect on explicit time steps, which search no equilibrium; it is for "
+                    "dynamics.scheme = \"newmark\" or dynamics.start = \"equilibrium\"");
     }
   }
 }

@@ -36,8 +36,8 @@ void require_law(const Entry& at, DamageSpecification&) {
        {"fracture_energy", "strength", "critical", "onset", "peak", "hardening", "rate"}) {
     if (!at.from.has(key)) continue;
     at.from.refuse(key,
-                   "needs a law beside it, like law = \"linear\"; without one there is no "
-                   "damage (law = \"none\" says so)");
+                   "needs a law in the same table, such as law = \"linear\"; without a law there "
+                   "is no damage, which law = \"none\" states");
   }
 }
 
@@ -77,31 +77,32 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
                             {"exponential", DamageLaw::exponential},
                             {"blended", DamageLaw::blended},
                             {"energy_density", DamageLaw::energy_density}}),
-         "no damage, whatever else stands in the table; whole up to `critical` and then broken; "
-         "softening from `onset` to "
-         "`critical` as published in [ADAPT], which jumps by (1 − tanh `rate`)/2 at both ends; "
-         "the same law rescaled so that it does not jump; force falling linearly from `onset` "
-         "to zero at `critical`; exponentially, without a jump at `critical`; rising on a "
-         "lower slope from `onset` to `peak`, and then falling linearly; of points, with "
-         "`kinematics = \"linear\"`, and of all models by `solver.operator = \"fft\"`: all at once "
-         "and "
-         "for good where the energy density exceeds "
-         "`fracture_energy` / (2 δ)")
+         "`\"none\"`: no damage, and the other keys of the table have no effect; "
+         "`\"critical_stretch\"`: a bond is undamaged up to `critical` and then broken; "
+         "`\"tanh\"`: softening from `onset` to `critical` as published in [ADAPT], with jumps of "
+         "(1 − tanh `rate`)/2 at both ends; `\"tanh_continuous\"`: the same law, rescaled so that "
+         "it does not jump; `\"linear\"`: the force falls linearly from `onset` to zero at "
+         "`critical`; `\"exponential\"`: it falls exponentially, without a jump at `critical`; "
+         "`\"blended\"`: it rises on a lower slope from `onset` to `peak`, and then falls "
+         "linearly; `\"energy_density\"`: a point fails at once and for good where its energy "
+         "density exceeds `fracture_energy` / (2 δ); this law is for `kinematics = \"linear\"`, "
+         "and with `solver.operator = \"fft\"` for all models")
            .early(),
        K("fracture_energy", &Spec::fracture_energy, positive("J/m2"),
-         "$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` "
-         "follows. Of `cpd` at horizon ratios up to 12 in 2D, 3.2 in 3D")
+         "$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` follows "
+         "from it. `cpd` takes it at horizon ratios up to 12 in 2D, 3.2 in 3D")
            .unless(is_whole, "")
            .early(),
        K("strength", &Spec::strength, positive("Pa"),
-         "$f_t$ of the body: the largest stress that the lattice bears under a pull in one "
-         "direction, the mean over directions ([theory](theory.md#strength)); `onset` follows, "
-         "`peak` of `blended`, `critical` of `critical_stretch`. Of `cpd` at the horizon ratios of "
-         "`fracture_energy`, in 3D at shorter ones, where it does not take minutes")
+         "$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the "
+         "mean over directions ([theory](theory.md#strength)); `onset` follows from it, for "
+         "`blended` the `peak`, for `critical_stretch` the value of `critical`. `cpd` takes it at "
+         "the horizon ratios of `fracture_energy`, in 3D at smaller ones, where it does not take "
+         "minutes")
            .unless(is_whole, "")
            .unless(is_of_points, for_stretches)
            .early(),
-       K("critical", &Spec::critical, stretch(), "stretch $s_c$ from which on a bond is broken")
+       K("critical", &Spec::critical, stretch(), "stretch $s_c$ at which a bond breaks")
            .unless(is_whole, "")
            .unless(is_of_points, for_stretches)
            .unless(is_sized, "follows from fracture_energy or strength; give one of them")
@@ -116,8 +117,8 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
                [](auto& damage) { return damage.onset == 0.0 && !damage.is_by_data(); }))
            .written_if([](auto& damage, auto&) { return damage.onset != 0.0; })
            .moreover("below `critical`")
-           .default_words("required without `strength`; with `fracture_energy` half the "
-                          "stretch of a brittle bond of that energy, a quarter of `blended`"),
+           .default_words("required without `strength`; with `fracture_energy` half the stretch of "
+                          "a brittle bond of that energy, for `blended` a quarter"),
        K("peak", &Spec::peak, stretch(), "`blended`: stretch $s_p$ at which the force is largest")
            .unless(is_whole, "")
            .unless(is_not_blended, for_blended)
@@ -128,21 +129,22 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
            }))
            .written_if([](auto& damage, auto&) { return damage.peak != 0.0; })
            .moreover("from `onset` to below `critical`")
-           .default_words("required without `strength`; without any of the three the largest "
-                          "force is half that of a brittle bond of that `fracture_energy`"),
+           .default_words(
+               "required without `strength`; if `strength`, `onset` and `peak` are all missing, "
+               "the largest force is half that of a brittle bond of that `fracture_energy`"),
        K("hardening", &Spec::hardening, between(0.0, 0.99, "1"),
-         "`blended`: slope of the force between `onset` and `peak` over that of the whole "
-         "bond")
+         "`blended`: slope of the force between `onset` and `peak`, relative to that of the "
+         "undamaged bond")
            .unless(is_whole, "")
            .unless(is_not_blended, for_blended),
        K("rate", &Spec::rate, between(0.1, 50.0, "1"),
-         "tanh laws: $\\beta$, how much of the softening falls on the middle between the two "
-         "stretches; `exponential`: how much steeper the force falls at first")
+         "tanh laws: $\\beta$, how strongly the softening is concentrated midway between the two "
+         "stretches; `exponential`: how much more steeply the force falls at first")
            .unless(is_whole, "")
            .unless(has_no_rate, "is for the tanh laws and \"exponential\""),
        K("no_fail", &Spec::no_fail, known_sets(),
-         "sets whose points' bonds stay elastic at any stretch, also those to points outside "
-         "the sets")
+         "sets of points whose bonds stay elastic at any stretch, including bonds to points "
+         "outside the sets")
            .written_if([](auto& damage, auto&) { return damage.law != DamageLaw::none; })
            .early()},
       require_law};
@@ -165,10 +167,11 @@ Table<FibreSpecification> fibre_keys(const std::string& material) {
   return {
       material + ".fibre",
       {K("angle", &Spec::angle, between(-360.0, 360.0, "degrees"),
-         "2D: of the fibres against the x axis, towards y")
+         "2D: angle of the fibres against the x axis, towards y")
            .unless(in_dimension<3>, "is for dimension 2; 3D has a direction")
            .required("required in 2D"),
-       K("direction", &Spec::direction, coordinates("1"), "3D: of the fibres, of any length")
+       K("direction", &Spec::direction, coordinates("1"),
+         "3D: direction of the fibres, a vector of any length")
            .unless(in_dimension<2>, "is for dimension 3; 2D has an angle")
            .moreover("not all zero")
            .required("required in 3D"),
@@ -176,13 +179,13 @@ Table<FibreSpecification> fibre_keys(const std::string& material) {
          "Young's modulus $E_2$ across the fibres; `youngs_modulus` is $E_1$, along them")
            .required(),
        K("shear_modulus", &Spec::shear_modulus, positive("Pa"),
-         "$G$ of planes that the fibres lie in; Poisson's ratio follows")
+         "$G$ of planes that contain the fibres; Poisson's ratio follows from it")
            .moreover("such that no bond has a negative constant")
            .default_words("$\\sqrt{E_1E_2}/(2 + 2\\nu)$ with the $\\nu$ of isotropic bonds, 1/3 or "
                           "1/4"),
        K("transverse_critical", &Spec::transverse_critical, between(1e-9, 1e3, "1"),
-         "`critical` of bonds across the fibres; that of `[material.damage]` is then of those "
-         "along them, and between it goes with the square of the cosine, `onset` with it")
+         "`critical` of bonds across the fibres; that of `[material.damage]` then holds along "
+         "them. In between, `critical` varies with the square of the cosine, and `onset` with it")
            .default_words("as along the fibres")}};
 }
 
@@ -199,23 +202,23 @@ Table<ScatterSpecification> scatter_keys(const std::string& material) {
                .required(),
            K("distribution", &Spec::distribution,
              choice<Spec::Distribution>({{"weibull", Spec::Distribution::weibull}}),
-             "of the factor, whose mean is 1"),
+             "distribution of the factor, whose mean is 1"),
            K("weibull_modulus", in(field, &WeibullField::modulus), between(1.0, 1e3, "1"),
              "shape $m$: the larger, the less scatter")
                .required(),
            K("correlation_length", in(field, &WeibullField::correlation_length),
              number({0.0, 1e30, "must be 0 or a positive number [m]"}, "0 or positive", "m"),
-             "$\\ell$ over which the field changes; 0: every point has a value of its own"),
+             "length $\\ell$ over which the field changes; 0: every point has a value of its own"),
            K("seed", in(field, &WeibullField::seed),
              count_from(0, "", std::numeric_limits<std::int64_t>::max()),
-             "of the field; the same seed and place give the same value, whatever else the case "
-             "has")}};
+             "seed of the field; the same seed and position give the same value, whatever else the "
+             "case contains")}};
 }
 
 void make_linear_if_lps(const Entry& at, MaterialSpecification& material) {
   if (material.model != MaterialModel::lps) return;
   if (at.from.has("kinematics") && material.kinematics == Kinematics::finite) {
-    at.refuse("of \"lps\" is \"linear\", whatever the deformation");
+    at.refuse("must be \"linear\" with model \"lps\", whatever the deformation");
   }
   material.kinematics = Kinematics::linear;
 }
@@ -255,15 +258,16 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
                                 {"lps", MaterialModel::lps},
                                 {"green_bond", MaterialModel::green_bond},
                                 {"correspondence", MaterialModel::correspondence}}),
-         "bond-based peridynamics, whose Poisson ratio is 1/4 (3D and plane strain) or 1/3 (plane "
-         "stress); continuum-kinematics-inspired peridynamics with one-, two- and "
-         "three-neighbour interactions, dimension 2 and 3; or the "
-         "[linear peridynamic solid](theory.md#linear-peridynamic-solid) of any Poisson ratio, by "
-         "collocation or as an energy, for small displacements, dimension 2 and 3; or, at any "
-         "deformation and by `solver.operator = \"fft\"` alone, "
-         "[bonds that stretch by their squared lengths](theory.md#materials-of-convolutions-at-"
-         "finite-deformation), as `bond` at small strains, or a correspondence material of "
-         "St. Venant and Kirchhoff of any Poisson ratio, dimension 2 and 3")
+         "`\"bond\"`: bond-based peridynamics, whose Poisson ratio is 1/4 (3D and plane strain) or "
+         "1/3 (plane stress); `\"cpd\"`: continuum-kinematics-inspired peridynamics with one-, "
+         "two- and three-neighbour interactions, dimension 2 and 3; `\"lps\"`: the [linear "
+         "peridynamic solid](theory.md#linear-peridynamic-solid) of any Poisson ratio, by "
+         "collocation or as an energy, for small displacements, dimension 2 and 3; "
+         "`\"green_bond\"`: [bonds that stretch by their squared "
+         "lengths](theory.md#materials-of-convolutions-at-finite-deformation), at any deformation, "
+         "like `bond` at small strains; `\"correspondence\"`: a correspondence material of St. "
+         "Venant and Kirchhoff of any Poisson ratio, at any deformation, dimension 2 and 3. The "
+         "last two are summed by `solver.operator = \"fft\"` alone")
            .then([name](auto& at, auto& material) {
              const bool tells_body = name == "material" || (!at.so_far.material.has_constants() &&
                                                             at.so_far.regions.empty());
@@ -278,49 +282,52 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            })
            .early(),
        K("potential", &Spec::potential, one_of(bond_potentials()),
-         "of whole bonds, a function of their stretch, and below its onset of a damage law"),
+         "potential of undamaged bonds, a function of their stretch; a damage law uses it below "
+         "its onset"),
        K("plane", &Spec::plane,
          choice<PlaneState>({{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}),
-         "state of a plane body, dimension 2 only (`cpd` in 2D is purely two-dimensional, neither)")
+         "state of a plane body, dimension 2 only (`cpd` in 2D is purely two-dimensional and has "
+         "neither)")
            .unless(of_cpd, for_bond)
            .unless(in_dimension<1>, "is for dimension 2 only")
            .unless(in_dimension<3>, "is for dimension 2 only"),
        K("kinematics", &Spec::kinematics,
          choice<Kinematics>({{"finite", Kinematics::finite}, {"linear", Kinematics::linear}}),
-         "`bond`: bonds stretch by their lengths, at any deformation; or by the displacements "
-         "along them, for small ones, which is linear: without eigenstrains, with "
-         "`potential = \"harmonic\"`, and damage by `energy_density` alone. `lps` is always linear")
+         "stretch of a `bond`. `\"finite\"`: by its length, at any deformation; `\"linear\"`: by "
+         "the displacements along it, for small ones, so that forces are linear. `\"linear\"` goes "
+         "without eigenstrains, with `potential = \"harmonic\"` and with damage by "
+         "`energy_density` alone. `lps` is always linear")
            .then(make_linear_if_lps)
            .unless(of_cpd, "is for models \"bond\" and \"lps\""),
        K("influence", &Spec::influence, one_of(influence_names()),
-         "influence function $\\omega(r/\\delta)$, $c\\,\\omega s$ is the force density of a bond: "
-         "[GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, $e^{-(r/\\delta)^2}$, or $\\delta/r$; "
-         "constants, "
-         "moduli and fracture energy go with it. `cpd`: of triangles and tetrahedra the product of "
-         "those of their sides, with constants of the lattice. `lps` as an energy: the kernel "
-         "K(r), "
-         "by collocation the inverse one alone")
-           .default_words("`\"constant\"`, with `lps` `\"inverse\"`"),
-       K("youngs_modulus", &Spec::youngs_modulus, positive("Pa"), "in all models").one_of(),
+         "influence function $\\omega(r/\\delta)$: [GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, "
+         "$e^{-(r/\\delta)^2}$, or $\\delta/r$. The force density of a bond is $c\\,\\omega s$; "
+         "constants, moduli and fracture energy account for it. `cpd`: a triangle or tetrahedron "
+         "has the product of its sides' functions, and constants of the lattice. `lps` as an "
+         "energy: the kernel K(r); by collocation the inverse one alone")
+           .default_words("`\"constant\"`; `\"inverse\"` with `lps`"),
+       K("youngs_modulus", &Spec::youngs_modulus, positive("Pa"), "Young's modulus, for all models")
+           .one_of(),
        K("micromodulus", &Spec::micromodulus, positive("N/m6", 1e150),
          "`bond`: bond constant c of the pairwise force c·stretch")
            .unless(of_cpd, for_bond)
            .unless(of_lps, for_bond)
            .one_of(),
        K("poisson_ratio", &Spec::poisson_ratio, between(-1.0, 1.0),
-         "`cpd`, `lps`, `correspondence`, with `youngs_modulus`")
-           .unless(of_bond,
-                   "is not free with bonds alone: they have 1/3 in plane stress, 1/4 in plane "
-                   "strain and 3D; models \"cpd\", \"lps\" and \"correspondence\" take others")
+         "Poisson's ratio, for `cpd`, `lps` and `correspondence` with `youngs_modulus`")
+           .unless(
+               of_bond,
+               "can't be chosen with bonds alone: they have 1/3 in plane stress, 1/4 in plane "
+               "strain and 3D; models \"cpd\", \"lps\" and \"correspondence\" take other values")
            .unless(has_constants, with_moduli)
-           .moreover("`lps`, `correspondence`: to 0.5; `cpd`: in 3D to 0.5, all excluded; with "
-                     "damage from 1/3 (2D) "
-                     "or 1/4 (3D) on")
+           .moreover("`lps`, `correspondence`: to 0.5; `cpd`: in 3D to 0.5; these limits are "
+                     "excluded; `cpd` with damage: at least 1/3 (2D) or 1/4 (3D)")
            .required("required with `youngs_modulus`"),
        K("stabilisation", &Spec::stabilisation, positive("-"),
          "`correspondence`: stiffness of the "
-         "[springs](theory.md#materials-of-convolutions-at-finite-deformation) that resist what "
-         "deformation gradients do not see, relative to bonds of the same bulk modulus")
+         "[springs](theory.md#materials-of-convolutions-at-finite-deformation) that resist motions "
+         "the deformation gradients do not see (zero-energy modes), relative to bonds of the same "
+         "bulk modulus")
            .written_if(of_correspondence)
            .unless([of_correspondence](auto& material,
                                        auto& from) { return !of_correspondence(material, from); },
@@ -330,7 +337,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .unless(of_lps, for_cpd)
            .one_of(),
        K("c2", &Spec::c2, stiffness("N/m10"),
-         "`cpd`: two-neighbour constant; in 3D also beside `youngs_modulus`, in 2D it then follows")
+         "`cpd`: two-neighbour constant; in 3D it may also be given with `youngs_modulus`, in 2D "
+         "it follows from it")
            .unless(of_bond, for_cpd)
            .unless(of_lps, for_cpd)
            .unless(
@@ -341,7 +349,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .moreover("a negative one is refused with damage, and where it makes the body "
                      "[unstable at rest](theory.md#stability-at-rest)"),
        K("c3", &Spec::c3, stiffness("N/m14"),
-         "`cpd`: three-neighbour constant, 3D; follows from `youngs_modulus`")
+         "`cpd`: three-neighbour constant, 3D; it follows from `youngs_modulus` if that is given")
            .unless(of_bond, for_cpd)
            .unless(of_lps, for_cpd)
            .unless(has_moduli,
@@ -350,25 +358,26 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
              if (at.so_far.dimension == 2 && material.c3 != 0.0)
                at.refuse("must be 0 in 2D: three neighbours of a point in a plane span no volume");
            })
-           .moreover("a negative one as of `c2`"),
+           .moreover("for a negative one see `c2`"),
        K("calibration", &Spec::calibration,
          choice<Calibration>(
              {{"lattice", Calibration::lattice}, {"continuum", Calibration::continuum}}),
-         "with `youngs_modulus`: what the constants reproduce the moduli on, this lattice's sums "
-         "with their corrections (`bond`: in the mean over all directions) or integrals")
+         "with `youngs_modulus`: where the constants reproduce the moduli. `\"lattice\"`: in the "
+         "sums of this lattice with their corrections (`bond`: in the mean over all directions); "
+         "`\"continuum\"`: in the integrals")
            .unless(has_constants, with_moduli)
            .unless(has_micromodulus, "goes with youngs_modulus, not with micromodulus")
            .unless(of_lps, "is for models \"bond\", \"green_bond\" and \"cpd\"")
            .default_words("`\"lattice\"` with `cpd`, `\"continuum\"` with `bond`"),
        K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "per K"),
-         "of lengths, α: for `[temperature]`"),
+         "coefficient α of linear expansion, for `[temperature]`"),
        K("density", &Spec::density, positive("kg/m3"),
-         "for gravity and mode `dynamics`: dynamic relaxation has a density of its own"),
+         "mass density, for gravity and mode `dynamics`; dynamic relaxation has a pseudo density "
+         "of its own"),
        K("damage", &Spec::damage, damage_keys(name), "table `[material.damage]`")
            .default_words("no damage"),
        K("fibre", fibre_of, fibre_keys(name),
-         "table `[material.fibre]`: moduli and stretches by "
-         "the direction of the bond")
+         "table `[material.fibre]`: moduli and stretches that depend on the direction of the bond")
            .written_if([](auto& material, auto&) { return material.fibre.has_value(); })
            .unless(of_cpd, for_bond)
            .unless(of_lps, for_bond)
@@ -418,12 +427,12 @@ Table<RegionSpecification> region_keys() {
   using Spec = RegionSpecification;
   using K = Key<Spec>;
   return {"region",
-          {K("set", &Spec::set, known_set(), "whose points are of this material")
+          {K("set", &Spec::set, known_set(), "set of the points that have this material")
                .then([](auto& at, auto& region) {
                  if (region.set == rest_name)
                    at.refuse(
-                       "is what `between` calls the points in no region; give the set another "
-                       "name");
+                       "is the name by which `between` refers to the points in no region; give the "
+                       "set another name");
                })
                .moreover("no region shares points with another")
                .required()
@@ -470,29 +479,30 @@ Table<InterfaceSpecification> interface_keys() {
   };
   return {
       "interface",
-      {K("between", &Spec::between, two_materials(), "the two materials that it lies between")
+      {K("between", &Spec::between, two_materials(), "the two materials that meet at the interface")
            .written_if([](auto& interface, auto&) { return !interface.is_of_all(); })
            .default_words("all pairs that no other `[[interface]]` names"),
        K("rule", &Spec::rule,
          choice<InterfaceRule>({{"harmonic", InterfaceRule::harmonic},
                                 {"arithmetic", InterfaceRule::arithmetic},
                                 {"weaker", InterfaceRule::weaker}}),
-         "what a bond between them, or an interaction of points of both, makes of the constants "
-         "of its points, and of the stretches of like laws of damage: their mean, or the least")
+         "how the constants of a bond between them, or of an interaction of points of both, follow "
+         "from those of its points, and likewise the stretches of like laws of damage: their "
+         "harmonic or arithmetic mean, or the smallest value")
            .unless([](auto& interface, auto&) { return interface.material.has_value(); },
-                   "stands beside material; give one of them"),
+                   "can't be given together with material; give one of them"),
        K("material", own, material_of_body_keys("interface.material"),
          "table `[interface.material]`, with the keys of [`[material]`](#material) but "
          "`density` and `scatter`: constants and damage of its own")
            .written_if([](auto& interface, auto&) { return interface.material.has_value(); })
            .early()
-           .otherwise([](auto&, auto&) {}, "none: by the rule")},
+           .otherwise([](auto&, auto&) {}, "none: the `rule` holds")},
       {},
       [](auto& at, auto& interface) {
         for (const auto& other : at.so_far.interfaces) {
           const auto& [a, b] = interface.between;
           if (other.between == interface.between || other.between == std::array{b, a})
-            at.refuse("another interface is of the same pair");
+            at.refuse("another interface has the same pair of materials");
         }
       }};
 }

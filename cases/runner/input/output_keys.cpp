@@ -27,8 +27,8 @@ Table<OutputSpecification> output_keys() {
   return {
       "output",
       {K("directory", &Spec::directory, text(),
-         "results folder, relative to the current folder; `--output` on the command line is "
-         "the same")
+         "results folder, relative to the current folder; `--output` on the command line sets it, "
+         "too")
            .otherwise(
                [](auto& output, auto& from) { output.directory = default_directory(from.file); },
                "`results/FOLDER_NAME` of the case file: `results/bar_tension` for "
@@ -37,15 +37,15 @@ Table<OutputSpecification> output_keys() {
              if (output.directory.empty()) at.refuse("is empty");
            }),
        K("every", &Spec::every, count_from(1, "steps"),
-         "fields are written at every n-th accepted step, in mode `dynamics` time step, and at "
-         "the last one")
+         "fields are written at every n-th accepted step (in mode `dynamics` every n-th time "
+         "step), and at the last one")
            .otherwise(
                [](auto& output, auto& from) {
                  if (from.dynamics.is_asked_for)
                    output.every = std::max(1, 100 / std::max(1, from.dynamics.history_every)) *
                                   std::max(1, from.dynamics.history_every);
                },
-               "1; in mode `dynamics` some 100 time steps")
+               "1; in mode `dynamics` about 100 time steps")
            .then([](auto& at, auto& output) {
              const int rows = at.so_far.dynamics.history_every;
              if (rows > 0 && output.every % rows != 0)
@@ -57,9 +57,9 @@ Table<OutputSpecification> output_keys() {
          "so that the crack shows in the pictures from the start"),
        K("stress", &Spec::stress, boolean(),
          "whether strain and stress are among the fields: deformation gradient, strain, first "
-         "Piola–Kirchhoff and Cauchy stress, von Mises' stress, principal values and "
-         "directions ([theory](theory.md#strain-and-stress)); they take several times the room "
-         "of the others")}};
+         "Piola–Kirchhoff and Cauchy stress, von Mises' stress, principal values and directions "
+         "([theory](theory.md#strain-and-stress)); they take several times the space of the other "
+         "fields")}};
 }
 
 namespace {
@@ -83,7 +83,7 @@ void check_component_of_probe(const Entry& at, const ProbeSpecification& probe) 
   }
   if (components.empty()) at.refuse(probe.field + " has no components");
   if (std::ranges::find(components, probe.component) == components.end())
-    at.refuse("is none of " + probe.field + ", which has " + listed(components));
+    at.refuse("must be a component of " + probe.field + ", which has " + listed(components));
 }
 
 /// Checks that there is an expression for each component.
@@ -100,39 +100,41 @@ void check_expected(const Entry& at, const ProbeSpecification& probe) {
 Table<CrackTipSpecification> crack_tip_keys() {
   using Spec = CrackTipSpecification;
   using K = Key<Spec>;
-  return {"crack_tip",
-          {K("name", &Spec::name, name(), "with which its columns begin")
-               .then([](auto& at, auto& tip) {
-                 for (const auto& other : at.so_far.crack_tips)
-                   if (other.name == tip.name) at.refuse("another crack tip has this name");
-               })
-               .moreover("no other crack tip has it")
-               .required(),
-           K("at", &Spec::at, coordinates(), "of the tip; 3D: any place on its straight front")
-               .required(),
-           K("direction", &Spec::direction, coordinates(""),
-             "in which the crack would go on, of any length")
-               .moreover("not all zero")
-               .required(),
-           K("front", &Spec::front, coordinates(""),
-             "3D: along the front, of any length; it goes through the whole body")
-               .moreover("at a right angle on `direction`")
-               .unless(in_dimension<2>, "is for dimension 3")
-               .default_words("`[0, 0, 1]`"),
-           K("inner", &Spec::inner, positive("m"), "inner radius of the ring of the integrals")
-               .moreover("2 horizons at least")
-               .written_if([](auto& tip, auto&) { return tip.inner > 0.0; })
-               .default_words("2 horizons"),
-           K("outer", &Spec::outer, positive("m"), "its outer radius")
-               .moreover("a horizon more at least")
-               .written_if([](auto& tip, auto&) { return tip.outer > 0.0; })
-               .default_words("4 horizons, or twice `inner`"),
-           K("cut", &Spec::cut, positive("m"),
-             "length of a cut ahead of the tip, by which energy release rates are found, too: one "
-             "more system of equations in every step")
-               .moreover("a horizon at least")
-               .written_if([](auto& tip, auto&) { return tip.cut > 0.0; })
-               .default_words("none")}};
+  return {
+      "crack_tip",
+      {K("name", &Spec::name, name(), "name with which its columns begin")
+           .then([](auto& at, auto& tip) {
+             for (const auto& other : at.so_far.crack_tips)
+               if (other.name == tip.name) at.refuse("another crack tip has this name");
+           })
+           .moreover("no other crack tip has it")
+           .required(),
+       K("at", &Spec::at, coordinates(), "position of the tip; 3D: any place on its straight front")
+           .required(),
+       K("direction", &Spec::direction, coordinates(""),
+         "direction in which the crack would go on, a vector of any length")
+           .moreover("not all zero")
+           .required(),
+       K("front", &Spec::front, coordinates(""),
+         "3D: direction of the front, a vector of any length; the front goes through the whole "
+         "body")
+           .moreover("at a right angle to `direction`")
+           .unless(in_dimension<2>, "is for dimension 3")
+           .default_words("`[0, 0, 1]`"),
+       K("inner", &Spec::inner, positive("m"), "inner radius of the ring of the integrals")
+           .moreover("at least 2 horizons")
+           .written_if([](auto& tip, auto&) { return tip.inner > 0.0; })
+           .default_words("2 horizons"),
+       K("outer", &Spec::outer, positive("m"), "outer radius of the ring")
+           .moreover("at least a horizon more than `inner`")
+           .written_if([](auto& tip, auto&) { return tip.outer > 0.0; })
+           .default_words("4 horizons, or twice `inner`"),
+       K("cut", &Spec::cut, positive("m"),
+         "length of a cut ahead of the tip, which also gives energy release rates; every step then "
+         "solves one more system of equations")
+           .moreover("at least a horizon")
+           .written_if([](auto& tip, auto&) { return tip.cut > 0.0; })
+           .default_words("none")}};
 }
 
 Table<ProbeSpecification> probe_keys() {
@@ -146,7 +148,7 @@ Table<ProbeSpecification> probe_keys() {
   const auto has_no_other = [](auto& probe, auto&) { return probe.field != "opening"; };
   return {
       "probe",
-      {K("name", &Spec::name, name(), "of the column")
+      {K("name", &Spec::name, name(), "name of the column")
            .then([](auto& at, auto& probe) {
              for (const auto& other : at.so_far.probes)
                if (other.name == probe.name) at.refuse("another probe has this name");
@@ -154,22 +156,21 @@ Table<ProbeSpecification> probe_keys() {
            .moreover("no other probe has it")
            .required()
            .early(),
-       K("set", &Spec::set, known_set(), "over whose points")
+       K("set", &Spec::set, known_set(), "set over whose points the value is taken")
            .written_if([](auto& probe, auto&) { return !probe.set.empty(); })
            .one_of(),
-       K("at", &Spec::at, coordinates(), "place whose nearest point is looked at")
+       K("at", &Spec::at, coordinates(), "place whose nearest point gives the value")
            .unless(is_whole, "is for a field that every point has")
            .one_of(),
        K("from", &Spec::from, coordinates(),
-         "begin of a line: the points within half a spacing of it make a table, `line_NAME.csv`")
+         "start of a line; the points within half a spacing of the line make a table, "
+         "`line_NAME.csv`")
            .unless(is_whole, "is for a field that every point has")
            .one_of(),
        K("field", &Spec::field, one_of(probe_field_names()),
          "displacement, opening, length and place in m, area in m², force in N, energy densities "
-         "in "
-         "J/m³, velocity in m/s, stress in Pa, angles in degrees, work of fracture and crack "
-         "resistance in J/m²; "
-         "`stress` is Cauchy's, `strain` Green and Lagrange's")
+         "in J/m³, velocity in m/s, stress in Pa, angles in degrees, work of fracture and crack "
+         "resistance in J/m²; `stress` is the Cauchy stress, `strain` the Green–Lagrange strain")
            .then([](auto& at, auto& probe) {
              if (probe.field == "poisson_ratio" && at.so_far.dimension == 1)
                at.refuse("there is no Poisson's ratio in dimension 1");
@@ -192,15 +193,19 @@ Table<ProbeSpecification> probe_keys() {
        K("to", &Spec::to, coordinates(), "end of the line")
            .default_words("required with `from`")
            .then([](auto& at, auto& probe) {
-             if (probe.to && !probe.from) at.refuse("goes with from");
-             if (probe.from && !probe.to) at.from.refuse("", "a line from a place needs to");
-             if (probe.from && *probe.to == *probe.from) at.refuse("is where the line begins");
+             if (probe.to && !probe.from) at.refuse("needs the key from");
+             if (probe.from && !probe.to)
+               at.from.refuse("", "a line needs the key to, where it ends");
+             if (probe.from && *probe.to == *probe.from)
+               at.refuse("must not be the same place as from");
            }),
        K("component", &Spec::component, one_of(probe_component_names()),
-         "of a vector (`x`), a tensor (`xy`; of a stress or a deformation gradient first the "
-         "component, then the reference direction) or `principal_stress` (`1`: the largest)")
+         "component of a vector (`x`), of a tensor (`xy`; for a stress or a deformation gradient "
+         "first the component, then the reference direction) or of `principal_stress` (`1`: the "
+         "largest)")
            .unless(is_whole, "is for a field that every point has")
-           .default_words("all of a vector; required for `set` and `at` with others")
+           .default_words(
+               "all components of a vector; for other fields required with `set` and `at`")
            .written_if([](auto& probe, auto&) { return !probe.component.empty(); })
            .then(check_component_of_probe),
        K("statistic", &Spec::statistic,
@@ -209,9 +214,9 @@ Table<ProbeSpecification> probe_keys() {
                             {"min", Statistic::min},
                             {"rms_error", Statistic::rms_error},
                             {"max_error", Statistic::max_error}}),
-         "over the points of the set, of each component; the mean counts every point alike. "
-         "`rms_error`, `max_error`: one number, the root mean square or the largest of the lengths "
-         "of the differences from `expected`")
+         "statistic over the points of the set, per component; the mean gives all points the same "
+         "weight. `rms_error`, `max_error`: one number, the root mean square or the maximum of the "
+         "lengths of the differences from `expected`")
            .written_if(
                [](auto& probe, auto& from) { return !probe.set.empty() && !is_whole(probe, from); })
            .then([](auto& at, auto& probe) {
@@ -219,26 +224,26 @@ Table<ProbeSpecification> probe_keys() {
                at.refuse("is for a field over a set");
            }),
        K("expected", &Spec::expected, expected_components(),
-         "what the components should be at a point's reference place")
+         "expected values of the components at a point's reference position")
            .written_if([](auto& probe, auto&) { return is_of_error(probe.statistic); })
            .default_words("required with `rms_error` and `max_error`")
            .then([](auto& at, auto& probe) {
              const bool is_given = at.from.has(at.key);
              if (is_given && !is_of_error(probe.statistic))
-               at.refuse("goes with statistic \"rms_error\" or \"max_error\"");
+               at.refuse("needs statistic \"rms_error\" or \"max_error\"");
              if (!is_given && is_of_error(probe.statistic))
                at.from.refuse("", "this statistic needs expected");
              if (is_given) check_expected(at, probe);
            }),
        K("axis", &Spec::axis, axis(),
          "`poisson_ratio`: direction of the pull; `crack_length`, `crack_begin`, `crack_end`: "
-         "direction in which the crack runs; `crack_angle`: that it is counted from")
+         "direction in which the crack runs; `crack_angle`: axis from which the angle is measured")
            .unless(has_no_axis,
                    "is for fields \"poisson_ratio\", \"crack_length\", \"crack_begin\", "
                    "\"crack_end\" and \"crack_angle\""),
        K("other", &Spec::other, known_set(), "`opening`: the set on the other side of the crack")
            .unless(has_no_other, "is for field \"opening\"")
-           .required("required with it")}};
+           .required("required with `opening`")}};
 }
 
 }  // namespace peristat

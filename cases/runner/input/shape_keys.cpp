@@ -19,12 +19,14 @@ const Table<Box>& keys_of(const Box&) {
 
 template <class Round>
 Key<Round> centre() {
-  return Key<Round>("centre", &Round::centre, coordinates(), "disk, cylinder, sphere").required();
+  return Key<Round>("centre", &Round::centre, coordinates(), "disk, cylinder, sphere: centre")
+      .required();
 }
 
 template <class Round>
 Key<Round> radius() {
-  return Key<Round>("radius", &Round::radius, positive("m"), "disk, cylinder, sphere").required();
+  return Key<Round>("radius", &Round::radius, positive("m"), "disk, cylinder, sphere: radius")
+      .required();
 }
 
 const Table<Disk>& keys_of(const Disk&) {
@@ -37,12 +39,12 @@ const Table<Cylinder>& keys_of(const Cylinder&) {
   static const Table<Cylinder> table{
       "set.shape.cylinder",
       {centre<Cylinder>(),
-       K("axis", &Cylinder::axis, coordinates(""), "cylinder: direction")
+       K("axis", &Cylinder::axis, coordinates(""), "cylinder: direction of its axis")
            .moreover("not zero")
            .default_words("`[0, 0, 1]`"),
        radius<Cylinder>(),
        K("length", &Cylinder::length, positive("m", std::numeric_limits<double>::infinity()),
-         "cylinder: along its axis, half of it to each side of the centre")
+         "cylinder: length along its axis, half to each side of the centre")
            .moreover("finite if it is added")
            .default_words("infinite")}};
   return table;
@@ -57,7 +59,7 @@ const Table<Polygon>& keys_of(const Polygon&) {
   using K = Key<Polygon>;
   static const Table<Polygon> table{"set.shape.polygon",
                                     {K("vertices", &Polygon::vertices, pairs(),
-                                       "polygon: corners in order, the last is joined to the first")
+                                       "polygon: corners in order; the last is joined to the first")
                                          .moreover("around an area")
                                          .required()}};
   return table;
@@ -128,7 +130,7 @@ Kind<Shape> shape_beside() {
     const std::string kind = at.from.one_of(at.key, shape_kinds(at.so_far.dimension));
     std::vector<std::string> keys = case_keys().at("set.shape." + kind);
     keys.insert(keys.begin(), {at.key, "name", "cuts_bonds"});
-    at.from.allow_only(keys, "is no key of a " + kind);
+    at.from.allow_only(keys, "is not a key of a " + kind);
     return read_shape(at, kind);
   };
   const auto text = [](const Shape& shape, const Case& from) {
@@ -136,7 +138,7 @@ Kind<Shape> shape_beside() {
     return toml_string(kind_of(shape)) + "\n" + lines.substr(0, lines.size() - 1);
   };
   return {read, text,
-          "`\"box\"` (1D, 2D, 3D), `\"disk\"` (2D), `\"polygon\"` (2D; in 3D, where it has no end "
+          "`\"box\"` (1D, 2D, 3D), `\"disk\"` (2D), `\"polygon\"` (2D; in 3D, where it is infinite "
           "in z, only to subtract), `\"cylinder\"`, `\"sphere\"` (3D)"};
 }
 

@@ -52,7 +52,7 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
         "tangent");
   if (at.so_far.material.model == MaterialModel::cpd) at.refuse("is for material.model = \"bond\"");
   if (!at.so_far.foundations.empty())
-    at.refuse("does not go with a [[foundation]], which the tangent is stored with");
+    at.refuse("does not go with a [[foundation]], which needs the stored tangent");
   for (const LoadSpecification& load : at.so_far.loads) {
     if (load.kind == LoadSpecification::Kind::pressure)
       at.refuse("does not go with a [[load]] pressure, whose stiffness has to be stored");
@@ -63,15 +63,15 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
 void check_fragments(const Entry& at, const SolverSpecification& solver) {
   if (solver.fragments == FragmentRemedy::remove && at.so_far.eigenstrains.are_there())
     at.refuse(
-        "does not go with eigenstrains or a temperature: a piece that left the equations could not "
+        "does not go with eigenstrains or a temperature: a piece that has left the equations can't "
         "grow or shrink; take \"hold\"");
 }
 
 void check_stand_in(const Entry& at, const SolverSpecification& solver) {
   if (solver.elastic_horizon_ratio > 0.0 && !may_fail(at.so_far))
     at.refuse(
-        "is for bodies with damage: the stand-in takes the place of the body until damage begins, "
-        "and without damage it would do so to the end");
+        "is for bodies with damage: the stand-in replaces the body until damage begins, and "
+        "without damage it would replace it to the end");
 }
 
 Kind<Mode> mode() {
@@ -100,10 +100,11 @@ Table<SolverSpecification> solver_keys() {
   return {
       "solver",
       {K("mode", &Spec::mode, mode(),
-         "implicit throughout; by dynamic relaxation throughout; implicit while no damage grows "
-         "and by relaxation while it does; along the path itself, through limit points and "
-         "bifurcations, without damage; from one breaking bond to the next; the motion in time, by "
-         "explicit steps")
+         "`\"newton\"`: implicit throughout; `\"relaxation\"`: by dynamic relaxation throughout; "
+         "`\"adaptive\"`: implicit while no damage grows, by relaxation while it does; "
+         "`\"arc_length\"`: along the path itself, through limit points and bifurcations, without "
+         "damage; `\"path\"`: sequentially linear analysis, from one breaking bond to the next; "
+         "`\"dynamics\"`: the motion in time, by explicit or implicit steps")
            .extends(),
        K("linear", &Spec::linear,
          choice<LinearMethod>({{"auto", LinearMethod::automatic},
@@ -115,8 +116,8 @@ Table<SolverSpecification> solver_keys() {
                                {"bicgstab", LinearMethod::bicgstab}}),
          "solver of the linear systems ([linear-solvers.md](linear-solvers.md)); `\"auto\"` "
          "chooses, says why, and falls back where it fails. `\"lu\"` and `\"bicgstab\"` are for "
-         "models whose tangent is not symmetric, `\"gmres\"` is for all, the others are for those "
-         "whose is")
+         "models whose tangent is not symmetric, `\"gmres\"` is for all models, the others are for "
+         "symmetric tangents")
            .written_if(searches)
            .extends()
            .then(check_linear),
@@ -131,12 +132,12 @@ Table<SolverSpecification> solver_keys() {
                                      {"chebyshev", PreconditionerKind::chebyshev},
                                      {"multigrid", PreconditionerKind::multigrid},
                                      {"local_operator", PreconditionerKind::local_operator}}),
-         "of the iterative ones, not for `\"cholesky\"` and `\"lu\"`; with `linear = \"auto\"` it "
-         "means `\"pcg\"`; `\"auto\"` is `\"rigid_pieces\"`. `\"sines\"` is for points on a "
-         "lattice along the axes, "
-         "without constraints and images. Where the tangent is not symmetric: "
-         "`\"local_operator\"`, which `\"auto\"` is and with which `linear = \"auto\"` means "
-         "`\"gmres\"`, `\"jacobi\"` and `\"block_jacobi\"`")
+         "preconditioner of iterative solvers, not for `\"cholesky\"` and `\"lu\"`. Symmetric "
+         "tangent: `\"auto\"` means `\"rigid_pieces\"`, and with a preconditioner that is given "
+         "`linear = \"auto\"` means `\"pcg\"`; `\"sines\"` is for points on a lattice along the "
+         "axes, without constraints and images. Unsymmetric tangent: `\"local_operator\"`, "
+         "`\"jacobi\"` and `\"block_jacobi\"` are allowed, `\"auto\"` means `\"local_operator\"`, "
+         "and `linear = \"auto\"` then means `\"gmres\"`")
            .written_if(searches)
            .extends()
            .then(check_preconditioner),
@@ -144,57 +145,59 @@ Table<SolverSpecification> solver_keys() {
          choice<TangentStorage>({{"auto", TangentStorage::automatic},
                                  {"stored", TangentStorage::stored},
                                  {"matrix_free", TangentStorage::matrix_free}}),
-         "the tangent's blocks are stored, or computed anew in each product, which takes a third "
-         "of the memory in 3D; for `material.model = \"bond\"` without `\"cholesky\"`, "
-         "`\"riluk\"`, `\"chebyshev\"` and `\"multigrid\"`. `\"auto\"` stores for direct solvers")
+         "`\"stored\"`: the tangent's blocks are stored; `\"matrix_free\"`: they are computed anew "
+         "in each product, which takes a third of the memory in 3D, for `material.model = "
+         "\"bond\"` without `\"cholesky\"`, `\"riluk\"`, `\"chebyshev\"` and `\"multigrid\"`. "
+         "`\"auto\"` stores them for direct solvers")
            .written_if(searches)
            .then(check_tangent),
        K("operator", &Spec::force_operator,
          choice<ForceOperator>({{"auto", ForceOperator::automatic},
                                 {"bonds", ForceOperator::bonds},
                                 {"fft", ForceOperator::fft}}),
-         "forces of `material.kinematics = \"linear\"`, and of `lps` as an energy, are summed bond "
-         "by bond, or by fast Fourier "
-         "transforms, which store no bonds and take the same time whatever the horizon: for one "
-         "material on points of a lattice with equal volumes, without a `surface_correction`. "
-         "Both give the same results to round-off. `\"auto\"` takes the one that is sooner: `fft` "
-         "for "
-         "motions by explicit steps with a horizon of 2.5 spacings and more where it can. Models "
-         "`green_bond` and `correspondence`, and "
-         "`lps` as printed, have `fft` alone"),
+         "how forces of `material.kinematics = \"linear\"`, and of `lps` as an energy, are summed. "
+         "`\"bonds\"`: bond by bond; `\"fft\"`: by fast Fourier transforms, which store no bonds "
+         "and take the same time whatever the horizon, for one material on points of a lattice "
+         "with equal volumes, without a `surface_correction`. Both give the same results to "
+         "round-off. `\"auto\"` takes the faster one: where possible `fft` for motions by explicit "
+         "steps with a horizon of 2.5 spacings or more. Models `green_bond` and `correspondence`, "
+         "and `lps` as printed, have `fft` alone"),
        K("predictor", &Spec::predictor,
          choice<Predictor>({{"consistent", Predictor::consistent}, {"none", Predictor::none}}),
-         "the first iteration of a step linearises about the old state and spreads the jump of the "
-         "supports, or, as in [CPD], about the state after the jump")
+         "state about which the first iteration of a step linearises. `\"consistent\"`: the old "
+         "state, spreading the jump of the supports; `\"none\"`: the state after the jump, as in "
+         "[CPD]")
            .written_if(searches),
        K("projection", &Spec::projection,
          choice<Projection>({{"auto", Projection::automatic},
                              {"never", Projection::never},
                              {"always", Projection::always}}),
-         "of interactions to their positive semidefinite part: when the exact tangent has negative "
-         "pivots or leads nowhere, never, always")
+         "projection of interactions to their positive semidefinite part. `\"auto\"`: when the "
+         "exact tangent has negative pivots or the search fails with it")
            .written_if(searches),
-       K("relative_tolerance", &Spec::relative_tolerance, between(1e-14, 1e-2), "of the residual")
+       K("relative_tolerance", &Spec::relative_tolerance, between(1e-14, 1e-2),
+         "relative tolerance of the residual")
            .written_if(searches),
        K("linear_tolerance", &Spec::linear_tolerance, between(1e-14, 1e-1),
-         "largest relative residual that the linear system of a Newton iteration is left with")
+         "largest relative residual allowed in the linear system of a Newton iteration")
            .written_if(searches),
-       K("max_iterations", &Spec::max_iterations, integer(1, 1000), "of Newton in one step")
+       K("max_iterations", &Spec::max_iterations, integer(1, 1000),
+         "most iterations of Newton's method in one step")
            .written_if(searches)
            .extends(),
        K("fragments", &Spec::fragments,
          choice<FragmentRemedy>({{"hold", FragmentRemedy::hold},
                                  {"remove", FragmentRemedy::remove},
                                  {"stop", FragmentRemedy::stop}}),
-         "what becomes of pieces that come off: just enough of their degrees of freedom are pinned "
-         "that they cannot move freely; they leave the equations and stay where they are; the run "
-         "ends with outcome `fragmented`")
+         "what happens to pieces that come off. `\"hold\"`: just enough of their degrees of "
+         "freedom are pinned that they cannot move freely; `\"remove\"`: they leave the equations "
+         "and stay where they are; `\"stop\"`: the run ends with outcome `fragmented`")
            .written_if(is_static)
            .then(check_fragments)
            .moreover("not `\"remove\"` with eigenstrains or a temperature"),
        K("elastic_horizon_ratio", &Spec::elastic_horizon_ratio, between(1.0, 1e3),
-         "mode `adaptive`: horizon / spacing of an elastic body that stands in for the real one "
-         "until damage begins; with model `bond`, `youngs_modulus` and a damage law")
+         "mode `adaptive`: horizon / spacing of an elastic stand-in that replaces the body until "
+         "damage begins; needs model `bond`, `youngs_modulus` and a damage law")
            .then(check_stand_in)
            .written_if([](auto& solver, auto&) { return solver.elastic_horizon_ratio > 0.0; })
            .moreover("in 3D to 100")
@@ -207,17 +210,17 @@ Table<SolverSpecification> arc_length_keys() {
   constexpr auto arc_length = &Spec::arc_length;
   return {"arc_length",
           {K("steps", in(arc_length, &ArcLengthOptions::steps), count_from(0, "steps"),
-             "the path ends after so many, unless the load has come to its end before; 0: the load "
-             "has to come there, within 10 000 steps")
+             "number of steps after which the path ends, unless the load has reached its end "
+             "before; 0: the load has to reach its end within 10 000 steps")
                .extends(),
            K("largest_step", in(arc_length, &ArcLengthOptions::largest_step), between(1e-12, 1e6),
-             "of the arc length, to which steps grow where the path is straight; the first is "
-             "1/`loading.steps`, which at first is a step of the load factor")
+             "largest step of the arc length; steps grow up to it where the path is straight. The "
+             "first step is 1/`loading.steps`, and is initially a step of the load factor")
                .extends(),
            K("bifurcation", in(arc_length, &ArcLengthOptions::branches_off),
              choice<bool>({{"branch", true}, {"straight", false}}),
-             "where another path leaves a stable one: go on along that, or straight on, where "
-             "states are unstable")}};
+             "where another path leaves a stable one. `\"branch\"`: follow the other path; "
+             "`\"straight\"`: go straight on, where states are unstable")}};
 }
 
 namespace {
@@ -257,7 +260,7 @@ void check_found_loads(const Entry& at, const Case& result) {
         "must have two entries in mode arc_length, which follows one line of the load");
   if (is_arc_length && at.from.has("loading") && at.from.table("loading").has("largest_step"))
     throw InputError("loading.largest_step", "",
-                     "is not heeded in mode arc_length, which has arc_length.largest_step");
+                     "has no effect in mode arc_length; give arc_length.largest_step");
   const bool is_path = result.solver.mode == Mode::path;
   if (is_path && !may_fail(result))
     throw InputError("solver.mode", "\"path\"",
@@ -268,7 +271,7 @@ void check_found_loads(const Entry& at, const Case& result) {
     for (const char* key : {"largest_step", "max_broken_bonds"}) {
       if (at.from.table("loading").has(key))
         throw InputError(std::string("loading.") + key, "",
-                         "is not heeded in mode path, which goes from event to event");
+                         "has no effect in mode path, which goes from event to event");
     }
   }
   if (!is_path && at.from.has("loading")) {
@@ -320,36 +323,37 @@ Table<RelaxationSpecification> relaxation_keys() {
       "relaxation",
       {K("steps", &Spec::steps, count_from(1),
          "number of equal steps of the *whole* load, or from one entry of `loading.table` to the "
-         "next; 1/steps is the first one, whatever the implicit steps have left")
+         "next; the first step is 1/steps, however much of the load the implicit steps have left")
            .extends()
            .otherwise([](auto& relaxation,
                          auto& from) { relaxation.steps = default_relaxation_steps(from); },
-                      "`loading.steps`; in mode `adaptive` with damage no fewer than 50. With a "
-                      "table that is "
-                      "an expression, which has an entry for each step: 1, and 50 in all"),
+                      "`loading.steps`; in mode `adaptive` with damage at least 50. If the table "
+                      "is an expression, which has an entry for each step: 1, in mode `adaptive` "
+                      "with damage at least 50 in all"),
        K("method", in(options, &Options::method),
          choice<RelaxationMethod>(
              {{"dynamic", RelaxationMethod::dynamic}, {"flow", RelaxationMethod::flow}}),
-         "dynamic relaxation, a motion in a made-up dynamics; or the flow without inertia, whose "
-         "directions are solved for")
+         "`\"dynamic\"`: dynamic relaxation, a motion with a pseudo inertia; `\"flow\"`: the flow "
+         "without inertia, whose directions are solved for")
            .early(),
        K("flow_tolerance", in(options, &Options::flow_tolerance), between(1e-3, 0.5),
-         "method `flow`: share of a step's length by which it may leave the flow's path")
+         "method `flow`: how far a step may deviate from the flow's path, relative to its length")
            .unless(is_dynamic, "is for method = \"flow\""),
        K("peak_tolerance", &Spec::peak_tolerance, between(0.0, 1.0),
          "mode `adaptive`: a relaxed step in which the force begins to fall is halved until it is "
-         "no longer than this share of the whole load; the decision that accepts it tells between "
-         "which load factors the peak lies. 0: not searched")
+         "no longer than this share of the whole load; the decision that accepts it names the load "
+         "factors between which the peak lies. 0: no search")
            .unless([](auto&, auto& from) { return from.solver.mode != Mode::adaptive; },
                    "is for mode \"adaptive\"")
            .extends(),
        K("load", &Spec::moving, choice<bool>({{"fixed", false}, {"moving", true}}),
-         "rests after the ramp until the body is in equilibrium, or never rests")
+         "`\"fixed\"`: the load rests after the ramp until the body is in equilibrium; "
+         "`\"moving\"`: it never rests")
            .unless(flows, for_dynamic)
            .early(),
        K("iterations", &Spec::iterations, count_from(1),
          "load `moving`: iterations over the whole load, or from one entry of `loading.table` to "
-         "the next, shared out equally to the steps")
+         "the next, shared equally among the steps")
            .unless(rests, "is for load = \"moving\"")
            .then(check_iterations)
            .moreover("a multiple of `steps`"),
@@ -364,8 +368,8 @@ Table<RelaxationSpecification> relaxation_keys() {
        K("breaking", in(options, &Options::breaking),
          choice<Breaking>(
              {{"at_equilibrium", Breaking::at_equilibrium}, {"transient", Breaking::transient}}),
-         "when damage is for good: in accepted states alone, so that overshoot breaks nothing; or "
-         "in every iteration, as published")
+         "when damage becomes permanent. `\"at_equilibrium\"`: in accepted states alone, so that "
+         "overshoot breaks nothing; `\"transient\"`: in every iteration, as published")
            .otherwise(
                [](auto& relaxation, auto&) {
                  if (relaxation.moving) relaxation.options.breaking = Breaking::transient;
@@ -373,8 +377,9 @@ Table<RelaxationSpecification> relaxation_keys() {
                "`\"at_equilibrium\"`; `\"transient\"` if the load is `moving`"),
        K("damping", in(options, &Options::damping),
          choice<Damping>({{"adaptive", Damping::adaptive}, {"kinetic", Damping::kinetic}}),
-         "as published, a coefficient from the Rayleigh quotient of the present motion; or none, "
-         "and all motion stops whenever the kinetic energy has passed a peak")
+         "`\"adaptive\"`: a coefficient from the Rayleigh quotient of the present motion, as "
+         "published; `\"kinetic\"`: none, but all motion stops whenever the kinetic energy has "
+         "passed a peak")
            .unless(flows, for_dynamic)
            .otherwise(
                [](auto& relaxation, auto&) {
@@ -382,7 +387,7 @@ Table<RelaxationSpecification> relaxation_keys() {
                },
                "`\"kinetic\"`; `\"adaptive\"` if the load is `moving`"),
        K("mass_factor", in(options, &Options::mass_factor), between(1.0, 1e6),
-         "pseudo density over the least stable one: larger is slower and safer")
+         "pseudo density relative to the smallest stable one: larger is slower and safer")
            .unless(flows, for_dynamic)
            .otherwise(
                [](auto& relaxation, auto&) {
@@ -391,7 +396,7 @@ Table<RelaxationSpecification> relaxation_keys() {
                },
                "2; 1 with adaptive damping"),
        K("max_iterations", in(options, &Options::max_iterations), count_from(1),
-         "load `fixed`: after the ramp; a step with more fails and is cut")
+         "load `fixed`: most iterations after the ramp; a step that needs more fails and is cut")
            .extends(),
        K("displacement_tolerance", in(options, &Options::displacement_tolerance), between(0.0, 1.0),
          "load `fixed`: also accepts a state whose displacements changed by less than this in an "

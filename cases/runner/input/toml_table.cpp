@@ -193,7 +193,8 @@ std::string TomlTable::exactly_one(const std::vector<std::string>& keys) const {
   std::string one;
   for (const auto& key : keys) {
     if (!has(key)) continue;
-    if (!one.empty()) refuse(key, "stands beside " + one + "; give exactly one of " + listed(keys));
+    if (!one.empty())
+      refuse(key, "can't be given together with " + one + "; give exactly one of " + listed(keys));
     one = key;
   }
   if (one.empty()) refuse("", "needs exactly one of " + listed(keys));

@@ -51,8 +51,8 @@ void require_room_to_load(int, char**, char** environment) {
   }
   if (has_address_space(std::size_t(buffers) * buffer_bytes + loading_bytes)) return;
   constexpr char message[] =
-      "peristat: too little address space to start: the shell allows less than the libraries and "
-      "their 134 MB per thread take. See \"ulimit -v\"; fewer threads (OMP_NUM_THREADS=1) take "
+      "peristat: too little address space to start: the shell allows less than the libraries need "
+      "with their 134 MB per thread. See \"ulimit -v\"; fewer threads (OMP_NUM_THREADS=1) need "
       "less\n";
   [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message, sizeof message - 1);
   _exit(4);
@@ -91,7 +91,7 @@ void claim_blas_memory(int threads) {
     try_threads(threads - 1);
   } catch (const std::system_error& error) {
     if (!has_address_space(std::size_t(threads) * loading_bytes)) throw std::bad_alloc();
-    throw MachineError(std::string("the system gives no ") + std::to_string(threads) +
+    throw MachineError(std::string("the system does not provide ") + std::to_string(threads) +
                        " threads: " + error.what());
   }
 #pragma omp parallel num_threads(threads)

@@ -28,7 +28,7 @@ std::string told(const std::function<void()>& work) {
     work();
     return done;
   } catch (const std::bad_alloc&) {
-    return "it asks for more memory than there is";
+    return "it needs more memory than there is";
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -55,9 +55,9 @@ std::string read_all(int descriptor) {
 
 std::optional<std::string> fault_aside(const std::function<void()>& work) {
   std::array<int, 2> pipe{};
-  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) fail("no pipe can be opened");
+  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) fail("a pipe can't be opened");
   const pid_t child = ::fork();
-  if (child < 0) fail("no process can be started");
+  if (child < 0) fail("a process can't be started");
   if (child == 0) {
     const rlimit limit{most_seconds, most_seconds};
     static_cast<void>(::setrlimit(RLIMIT_CPU, &limit));
@@ -72,7 +72,7 @@ std::optional<std::string> fault_aside(const std::function<void()>& work) {
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (text == done) return std::nullopt;
-  return text.empty() ? "the library that reads it ends with a fault" : text;
+  return text.empty() ? "the library that reads it crashes" : text;
 }
 
 }  // namespace peristat

@@ -47,7 +47,8 @@ int open_empty_or_own(const std::filesystem::path& file, std::string_view headin
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) {
     const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor < 0 && errno == EEXIST) throw ForeignFile("is a link that leads nowhere");
+    if (descriptor < 0 && errno == EEXIST)
+      throw ForeignFile("is a link to a file that does not exist");
     return descriptor;
   }
   if (!S_ISREG(status.st_mode)) return ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
@@ -55,7 +56,7 @@ int open_empty_or_own(const std::filesystem::path& file, std::string_view headin
   if (descriptor < 0 || ::fstat(descriptor, &status) != 0 || status.st_size == 0) return descriptor;
   if (!begins_with(descriptor, heading)) {
     ::close(descriptor);
-    throw ForeignFile("holds something else, which would be lost");
+    throw ForeignFile("has other contents, which would be lost");
   }
   if (::ftruncate(descriptor, 0) != 0) fail(file, errno);
   return descriptor;

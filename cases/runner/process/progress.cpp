@@ -70,7 +70,7 @@ void Progress::write_to_person(const std::string& text) {
   quiet_ = true;
   live_ = false;
   write_to_standard_error(std::string("standard output can't be written (") + std::strerror(error) +
-                          "): the run goes on in silence");
+                          "): the run continues without output");
 }
 
 void Progress::write_to_log(const std::string& line) {
@@ -79,7 +79,7 @@ void Progress::write_to_log(const std::string& line) {
   if (error == 0) return;
   std::fclose(std::exchange(log_, nullptr));
   write_to_standard_error(std::string("the log can't be written (") + std::strerror(error) +
-                          "): the run goes on without it");
+                          "): the run continues without it");
 }
 
 void Progress::erase_live_line() {

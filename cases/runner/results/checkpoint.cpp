@@ -258,7 +258,7 @@ class Values {
     next_ = 0;
     const std::string read = bytes_.read(at_, buffer_.size() * sizeof(Value));
     if (read.size() != buffer_.size() * sizeof(Value)) {
-      throw BadCheckpoint("is damaged: it is not whole");
+      throw BadCheckpoint("is damaged: it is incomplete");
     }
     std::memcpy(buffer_.data(), read.data(), read.size());
     at_ += read.size();
@@ -379,7 +379,7 @@ class Unpacker : public StateArchive {
     std::getline(entries_, line);
     Entry entry = parse_entry(line);
     if (entry.name != name) {
-      throw BadCheckpoint("is damaged: it has " + entry.name + " in the place of " + name);
+      throw BadCheckpoint("is damaged: it has " + entry.name + " instead of " + name);
     }
     return entry;
   }
@@ -481,10 +481,11 @@ void check_head(const std::string& line, const std::string& program) {
   std::int64_t layout = 0;
   std::string writer;
   std::istringstream words(line.starts_with(magic) ? line.substr(magic.size()) : "");
-  if (!(words >> layout >> writer)) throw BadCheckpoint("is damaged: it does not begin as one");
+  if (!(words >> layout >> writer))
+    throw BadCheckpoint("is damaged: it does not start like a checkpoint");
   if (layout == checkpoint_layout) return;
   throw BadCheckpoint("has layout " + std::to_string(layout) + " of peristat " + writer +
-                      "; this is peristat " + program + ", which goes on from layout " +
+                      "; this is peristat " + program + ", which resumes from layout " +
                       std::to_string(checkpoint_layout));
 }
 
@@ -499,7 +500,7 @@ struct Outline {
 
 Outline outline_of(const CheckpointBytes& bytes, const std::string& program) {
   const auto require = [](bool holds) {
-    if (!holds) throw BadCheckpoint("is damaged: it is not whole");
+    if (!holds) throw BadCheckpoint("is damaged: it is incomplete");
   };
   constexpr std::uint64_t most_of_head = 256;
   const std::string head = bytes.read(0, std::min(bytes.size, most_of_head));

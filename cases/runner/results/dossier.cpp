@@ -19,11 +19,10 @@ constexpr std::size_t decisions_told = 20;
 
 std::string suggestion(Outcome outcome, Mode mode) {
   const std::string adaptive =
-      mode == Mode::newton
-          ? "Run it with solver.mode = \"adaptive\": relaxation follows the crack from here, and "
-            "Newton's method takes over again behind it."
-          : "Give relaxation more room: smaller steps (relaxation.steps) or more iterations "
-            "(relaxation.max_iterations).";
+      mode == Mode::newton ? "Run it with solver.mode = \"adaptive\": relaxation follows the crack "
+                             "from here, and Newton's method takes over again afterwards."
+                           : "Give relaxation more room: take smaller steps (relaxation.steps) or "
+                             "more iterations (relaxation.max_iterations).";
   switch (outcome) {
     case Outcome::limit_point:
     case Outcome::damage_limit:
@@ -32,18 +31,17 @@ std::string suggestion(Outcome outcome, Mode mode) {
              "away.";
     case Outcome::not_positive_definite:
       return "The state is unstable: it buckles, wrinkles, or the material is beyond its stable "
-             "range (./peristat calibrate tells that of cpd). A small imperfection "
+             "range (./peristat calibrate prints that of cpd). A small imperfection "
              "(lattice.perturbation) lets the body leave a symmetric state.";
     case Outcome::iteration_limit:
-      return mode == Mode::relaxation ? adaptive
-                                      : "Take smaller steps (loading.steps, "
-                                        "loading.smallest_step), allow more iterations "
-                                        "(solver.max_iterations), and look at iterations.csv: "
-                                        "residuals that fall slowly "
-                                        "and then stall want a looser solver.relative_tolerance.";
+      return mode == Mode::relaxation
+                 ? adaptive
+                 : "Take smaller steps (loading.steps, loading.smallest_step), allow more "
+                   "iterations (solver.max_iterations), and look at iterations.csv: residuals that "
+                   "fall slowly and then stall need a looser solver.relative_tolerance.";
     case Outcome::singular_tangent:
       return "Look at the worst points below: they have too few bonds, or the supports leave them "
-             "a motion. ./peristat check tells parts that may move freely; a larger "
+             "free to move. ./peristat check lists parts that may move freely; a larger "
              "lattice.horizon_ratio gives points more bonds.";
     case Outcome::no_descent:
     case Outcome::line_search_failed:
@@ -51,33 +49,34 @@ std::string suggestion(Outcome outcome, Mode mode) {
              "more robust.";
     case Outcome::degenerate:
       if (mode == Mode::dynamics) {
-        return "Take smaller time steps (dynamics.time_step, dynamics.step_share), or softer loads "
-               "and initial fields: points have met, or have left the range of numbers.";
+        return "Take smaller time steps (dynamics.time_step, dynamics.step_share), or smaller "
+               "loads and initial fields: points have met, or values are out of the range of "
+               "numbers.";
       }
       return "Points collapse onto each other near the worst points below: take smaller steps, or "
-             "see whether a support moves points onto their neighbours.";
+             "check whether a support moves points onto their neighbours.";
     case Outcome::fragmented:
-      return "Go on with solver.fragments = \"hold\" or \"remove\".";
+      return "Continue with solver.fragments = \"hold\" or \"remove\".";
     case Outcome::linear_solver_inaccurate:
-      return "The tangent is close to singular: look for points that hang on few bonds near the "
-             "worst points below.";
+      return "The tangent is close to singular: look for points with few bonds near the worst "
+             "points below.";
     case Outcome::undefined_condition:
-      return "Mend the expression of the support or load that is named above.";
+      return "Correct the expression of the support or load that is named above.";
     case Outcome::no_answer:
-      return "Control another displacement: one that grows throughout, like the opening of the "
-             "mouth of a crack, or a sum of several. Where bonds break and the path snaps back in "
-             "every displacement, run it without a control and with solver.mode = \"path\", which "
+      return "Control another displacement that grows throughout, such as the opening of a crack "
+             "mouth, or a sum of several. Where bonds break and the path snaps back in every "
+             "displacement, run it without a control and with solver.mode = \"path\", which "
              "unloads the body before the next bond breaks.";
     case Outcome::sharp_turn:
       return "Take smaller steps (loading.steps, loading.smallest_step). Where several pivots "
-             "vanish "
-             "together (decisions.csv), a small load or lattice.perturbation chooses a branch.";
+             "vanish together (decisions.csv), a small load or a lattice.perturbation selects a "
+             "branch.";
     case Outcome::step_limit:
       return "Look at history.csv: if the path goes where you want it, end it with "
-             "arc_length.steps; if it is long, allow longer steps (loading.largest_step).";
+             "arc_length.steps; if it is long, allow longer steps (arc_length.largest_step).";
     case Outcome::damage_begins:
       if (mode == Mode::dynamics) {
-        return "Begin with smaller loads at t = 0, and let them grow with the time, or take "
+        return "Start with smaller loads at t = 0, and let them grow with time, or take "
                "dynamics.start = \"rest\".";
       }
       return "Follow the damage by a [[control]] in mode newton, or in mode adaptive.";
@@ -86,12 +85,12 @@ std::string suggestion(Outcome outcome, Mode mode) {
              "follows the stable one.";
     case Outcome::inconsistent:
       if (mode == Mode::dynamics) {
-        return "The motion gains energy that nobody has put in: take smaller time steps "
+        return "The motion gains energy that was not put in: take smaller time steps "
                "(dynamics.time_step, dynamics.step_share).";
       }
-      return "What was found is no state of this body. Take smaller steps (loading.steps, "
-             "relaxation.steps, loading.smallest_step). If that does not help, the case shows a "
-             "fault of the program: please report it with its case file.";
+      return "The result is not a valid state of this body. Take smaller steps (loading.steps, "
+             "relaxation.steps, loading.smallest_step). If that does not help, the case shows an "
+             "error in the program: please report it with its case file.";
     case Outcome::converged:
     case Outcome::out_of_memory:
     case Outcome::interrupted:

@@ -26,7 +26,7 @@ std::vector<Row> first_rows(const Hdf5File& file, const std::string& group,
                             const std::vector<Column>& columns, int count) {
   std::vector<Row> rows = file.rows(group, columns);
   if (count < 0 || std::size_t(count) > rows.size()) {
-    throw BadCheckpoint("is ahead of the table " + group);
+    throw BadCheckpoint("has more rows than the table " + group);
   }
   rows.resize(std::size_t(count));
   return rows;
@@ -54,7 +54,7 @@ CheckpointBytes checkpoint_in(const fs::path& results) {
 }
 
 ResultsMarker claim(const fs::path& directory) {
-  if (!fs::is_directory(directory)) throw RefusedFolder("is no results folder of a run");
+  if (!fs::is_directory(directory)) throw RefusedFolder("is not the results folder of a run");
   std::optional<ResultsMarker> marker = ResultsMarker::find(directory);
   if (!marker || marker->is_blank()) throw RefusedFolder("holds no run");
   return std::move(*marker);
@@ -119,10 +119,10 @@ void EarlierRun::choose() {
     read(Generation::newest);
     return;
   }
-  const std::string loss = "the run can't be gone on with: " + *fault;
+  const std::string loss = "the run can't be resumed: " + *fault;
   if (!fs::exists(folder_.safe_results()) || fault_of(Generation::safe)) throw refusal(loss);
   read(Generation::safe);
-  remark_ = loss + "; an older state, which had reached the disk, is taken instead";
+  remark_ = loss + "; an older state, which is safe on the disk, is used instead";
 }
 
 InputError EarlierRun::refusal(const std::string& reason) const {
@@ -137,8 +137,8 @@ void EarlierRun::read(Generation which) {
   const bool has_checkpoint = is_gathered_ ? file.has("/checkpoint") : has_checkpoints(folder_);
   if (!has_checkpoint) {
     throw BadCheckpoint(
-        "it has no accepted step, or is of an older peristat, which left no "
-        "checkpoint; run the case again");
+        "it has no accepted step, or comes from an older peristat that wrote no checkpoint; run "
+        "the case again");
   }
   try {
     if (!is_gathered_ && checkpoint_file_.empty()) {

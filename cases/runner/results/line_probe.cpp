@@ -30,11 +30,12 @@ LineProbe::LineProbe(const ProbeSpecification& probe, const RecordedPoints& poin
 
 LineTable LineProbe::table() const {
   using Kind = Column::Kind;
-  LineTable table{probe_.name,
-                  {{Kind::integer, "step", "1", "number of the accepted step"},
-                   {Kind::number, "load_factor", "1", "load factor of the step"},
-                   {Kind::integer, "point", "1", "number of the point"},
-                   {Kind::number, "distance", "m", "of the point from the begin, along the line"}}};
+  LineTable table{
+      probe_.name,
+      {{Kind::integer, "step", "1", "number of the accepted step"},
+       {Kind::number, "load_factor", "1", "load factor of the step"},
+       {Kind::integer, "point", "1", "number of the point"},
+       {Kind::number, "distance", "m", "distance of the point from the start, along the line"}}};
   for (int c = 0; c < points_.dimension(); ++c) {
     table.columns.push_back({Kind::number, {"xyz"[c]}, "m", "reference position of the point"});
   }

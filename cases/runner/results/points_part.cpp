@@ -144,7 +144,7 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
     const auto pairs = std::uint64_t(points.neighbours.size());
     file.make_group("/points/given_neighbours");
     file.write("/points/given_neighbours/points", neighbour_points(points), {pairs, 2},
-               {"1", "points i < j that see each other, as they were given"});
+               {"1", "pairs of points i < j that interact, as given"});
     file.write("/points/given_neighbours/shares", neighbour_shares(points), {pairs, 2},
                {"1", "share of the volume of j that i counts, and of i that j counts"});
   }

@@ -58,11 +58,11 @@ const std::vector<Column>& step_columns() {
        "how equilibrium was found: newton, relaxation, arc_length or path; dynamics"},
       {integer, "newton_iterations", "1", "Newton iterations of the step"},
       {integer, "relaxation_iterations", "1",
-       "iterations of relaxation of the step; of a flow, its solves"},
+       "iterations of relaxation of the step; for a flow, its solves"},
       {number, "stored_energy", "J", "energy stored in the interactions"},
       {number, "dissipated_energy", "J", "energy dissipated by damage since the start"},
       {number, "drained_energy", "J",
-       "work that relaxation has taken out: by damping, and by stopping motion"},
+       "work that relaxation has removed by damping and by stopping motion"},
       {number, "external_work", "J",
        "work of supports and loads since the start, over the accepted steps: int P du"},
       {number, "balance_error", "J",
@@ -79,26 +79,26 @@ const std::vector<Column>& step_columns() {
 const std::vector<Column>& later_step_columns() {
   static const std::vector<Column> columns{
       {number, "numerical_work", "J",
-       "what relaxation has spent since the start beyond the external work: against its pseudo "
+       "work of relaxation since the start in addition to the external work: against its pseudo "
        "inertia, and along the way between two accepted steps"},
       {number, "pin_force", "N",
-       "2-norm of the forces that hold pinned fragments; no reaction counts them"},
+       "2-norm of the forces that hold pinned fragments; reactions do not include them"},
       {integer, "settled", "1",
-       "1: the state was not asked to be in equilibrium (moving load, displacement tolerance)"},
-      {number, "stage", "1", "stage of the loading programme: how many entries of its tables"},
+       "1: the state was not required to be in equilibrium (moving load, displacement tolerance)"},
+      {number, "stage", "1",
+       "stage of the loading programme: number of entries of its tables that have been passed"},
       {number, "control", "m", "controlled displacement; 0 without a control"},
       {integer, "negative_pivots", "1",
-       "control, arc_length: of the tangent, 0 where the state is stable under fixed loads; -1: "
-       "not "
-       "counted"},
+       "control, arc_length: negative pivots of the tangent, 0 where the state is stable under "
+       "fixed loads; -1: not counted"},
       {integer, "on_response", "1",
-       "path: 1 where the state is reached under the loads as they are given, 0 where they would "
-       "have to be taken back"},
+       "path: 1 where the state is reached under the given loads, 0 where they would have to be "
+       "reduced"},
       {number, "released_energy", "J",
-       "path: energy that has been released since the start under the loads as they are given"},
+       "path: energy that has been released since the start under the given loads"},
       {integer, "stability", "1",
-       "path: 1 stable, -1 unstable (what breaks next runs on at the same load), -2 bifurcated "
-       "(the tangent has negative pivots); other modes: 0, not judged"},
+       "path: 1 stable, -1 unstable (breaking continues at the same load), -2 bifurcated (the "
+       "tangent has negative pivots); other modes: 0, not judged"},
   };
   return columns;
 }
@@ -116,15 +116,15 @@ std::vector<Column> iteration_columns() {
       {number, "step_length", "1", "step length of the line search"},
       {integer, "linear_iterations", "1", "iterations of the linear solver, 0 for a direct solve"},
       {integer, "changed_bonds", "1",
-       "relaxation: bonds damaged since it began, each as often as it was"},
+       "relaxation: bonds damaged since it began, each counted as often as it was damaged"},
       {number, "projection", "1",
        "share by which the tangent's interactions were projected to their positive semidefinite "
        "part; 0 is the exact tangent"},
-      {integer, "negative_pivots", "1", "of the exact tangent; -1: not counted"},
+      {integer, "negative_pivots", "1", "negative pivots of the exact tangent; -1: not counted"},
       {integer, "rejected_trials", "1", "line search: trial states whose energy was too high"},
       {integer, "degenerate_trials", "1", "line search: trial states without a gradient"},
       {number, "linear_tolerance", "1",
-       "relative residual that the linear iterations were to reach, 0 for a direct solve"}};
+       "relative residual that the linear iterations had to reach, 0 for a direct solve"}};
 }
 
 std::vector<Column> decision_columns() {
@@ -132,9 +132,9 @@ std::vector<Column> decision_columns() {
           {number, "load_factor", "1", "load factor that was attempted"},
           {number, "increment", "1", "increment of the stage that was attempted"},
           {Column::Kind::text, "outcome", "none", "outcome of the search for equilibrium"},
-          {Column::Kind::text, "action", "none", "what load stepping did then"},
+          {Column::Kind::text, "action", "none", "what load stepping did next"},
           {number, "next_increment", "1", "increment of the stage of the next attempt"},
-          {Column::Kind::text, "reason", "none", "why, for a person"},
+          {Column::Kind::text, "reason", "none", "reason, as a sentence"},
           {number, "stage", "1", "stage of the loading programme that was attempted"}};
 }
 
@@ -157,7 +157,7 @@ std::vector<Column> history_columns(const std::vector<std::string>& support_sets
       if (!names.insert(name).second) {
         throw InputError(
             "probe", probe.name,
-            "history.csv already has a column \"" + name + "\"; name the probe otherwise");
+            "history.csv already has a column \"" + name + "\"; give the probe another name");
       }
       columns.push_back({number, name, probe.unit, "probe " + probe.name + " of the case"});
     }
@@ -184,12 +184,14 @@ Row make_row(const DecisionRecord& record) {
 }
 
 std::vector<Column> broken_bond_columns() {
-  return {{integer, "step", "1", "step that broke the bond; path: that it led to"},
-          {number, "load_factor", "1", "load factor of the step; path: at which the bond broke"},
+  return {{integer, "step", "1", "step that broke the bond; path: step that the break led to"},
+          {number, "load_factor", "1",
+           "load factor of the step; path: load factor at which the bond broke"},
           {integer, "first_point", "1", "number of the bond's lower point"},
           {integer, "second_point", "1", "number of its other point"},
           {integer, "second_image", "1",
-           "image of that point it ends at, row of /points/images from 1; 0: the point itself"}};
+           "image of that point at which the bond ends, row of /points/images from 1; 0: the point "
+           "itself"}};
 }
 
 Row make_row(const BrokenBondRecord& record) {

@@ -111,7 +111,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   if (!without_release.empty()) {
     progress_.problem("step " + std::to_string(record.step) +
                       ": the body has no equilibrium with the cut ahead of " + without_release +
-                      "; its energy release rates are told as 0");
+                      "; its energy release rates are reported as 0");
   }
   add_constraint_values(*body_.conditions, state.trial, state.external_force, recorded_.ranks(),
                         record.probes);

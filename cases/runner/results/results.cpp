@@ -119,14 +119,15 @@ class PartReader {
 void copy_checkpoint(const std::filesystem::path& from, Hdf5File& file) {
   const CheckpointBytes bytes = bytes_of_file(from);
   constexpr std::uint64_t most = 1 << 20;
-  file.write_rows<std::uint8_t>(
-      "/checkpoint", {bytes.size}, {"none", "what the run can go on from, for peristat"},
-      [&](const Hdf5File::PutRows<std::uint8_t>& put) {
-        for (std::uint64_t at = 0; at < bytes.size; at += most) {
-          const std::string part = bytes.read(at, std::min(most, bytes.size - at));
-          put(at, {part.begin(), part.end()});
-        }
-      });
+  file.write_rows<std::uint8_t>("/checkpoint", {bytes.size},
+                                {"none", "state from which the run can be resumed, for peristat"},
+                                [&](const Hdf5File::PutRows<std::uint8_t>& put) {
+                                  for (std::uint64_t at = 0; at < bytes.size; at += most) {
+                                    const std::string part =
+                                        bytes.read(at, std::min(most, bytes.size - at));
+                                    put(at, {part.begin(), part.end()});
+                                  }
+                                });
 }
 
 /// Start of results: an empty folder, or the results of an earlier run.
@@ -436,7 +437,7 @@ void Results::Files::gather_parts() {
     std::filesystem::remove(gathered, ignored);
     throw OutputError(
         folder.results().string() +
-        ": the steps can't be gathered into one file, they stay in parts/: " + error.what());
+        ": the steps can't be gathered into one file; they stay in parts/: " + error.what());
   }
   remove_parts(folder);
 }
@@ -656,7 +657,7 @@ std::string Results::what_is_left() const {
   const ResultsFolder folder = sender_ ? ResultsFolder{sender_->directory} : files_->folder;
   std::error_code error;
   if (!std::filesystem::exists(folder.results(), error)) {
-    return folder.directory.string() + " is gone: nothing of this run is left there";
+    return folder.directory.string() + " has been removed: nothing of this run is left there";
   }
   const int steps = sender_ ? sender_->totals.steps : files_->totals.steps;
   return (steps == 1 ? "1 accepted step is in "

@@ -105,9 +105,9 @@ Leftovers leftovers(const ResultsFolder& folder, const ResultsMarker* earlier,
 void require_plain(const ResultsFolder& folder, const Leftovers& old) {
   for (const fs::path& path : {folder.parts(), folder.plots()}) {
     if (fs::exists(fs::symlink_status(path)) && !is_real_folder(path)) {
-      throw RefusedFolder(path.filename().string() +
-                          " in it is no folder of its own but a link or "
-                          "a file; remove it or name another folder");
+      throw RefusedFolder(
+          path.filename().string() +
+          " in it is a link or a file instead of a folder; remove it or name another folder");
     }
   }
   for (const std::string& name : old.files) {
@@ -124,8 +124,8 @@ void require_no_foreign(const ResultsFolder& folder, const Leftovers& old,
     const bool is_left = std::find(old.files.begin(), old.files.end(), name) != old.files.end();
     if (!is_left && fs::exists(fs::symlink_status(folder.directory / name))) {
       throw RefusedFolder("holds a " + name +
-                          " that no earlier run has written, and this run has a file of that name; "
-                          "move it or name another folder");
+                          " that no earlier run has written, but this run writes a file of that "
+                          "name; move it or name another folder");
     }
   }
 }

@@ -96,7 +96,7 @@ std::optional<ResultsMarker> ResultsMarker::find(const fs::path& folder) {
   marker.text_ = read_all(marker.descriptor_, file);
   if (::flock(marker.descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     const std::string process = member(marker.text_, "process");
-    throw RefusedFolder("another run is writing it" +
+    throw RefusedFolder("another run is writing to it" +
                         (process.empty() ? "" : " (process " + process + ")") +
                         "; wait for its end or name another folder");
   }  // Without locks in the file system, another run can't be detected.

@@ -13,7 +13,7 @@ constexpr const char* group = "/case/settings";
 
 std::vector<Column> settings_columns() {
   constexpr auto text = Column::Kind::text;
-  return {{text, "key", "none", "dotted key of the case file that --set has given a value"},
+  return {{text, "key", "none", "dotted key of the case file that --set has overridden"},
           {text, "value", "none", "the value (TOML)"}};
 }
 

@@ -59,7 +59,9 @@ const std::vector<FieldKind>& field_kinds() {
        Rank::scalar,
        &StepFields::fragment},
       {"deformation_gradient",
-       {"1", "F of the unbroken bonds of each point, least squares; identity where they give none"},
+       {"1",
+        "deformation gradient F from the unbroken bonds of each point, least squares; identity "
+        "where they give none"},
        Rank::tensor,
        &StepFields::deformation_gradient},
       {"green_lagrange_strain",
@@ -88,7 +90,7 @@ const std::vector<FieldKind>& field_kinds() {
        Rank::vector,
        &StepFields::principal_stress},
       {"principal_direction",
-       {"1", "unit vectors of the principal stresses, a row each"},
+       {"1", "unit vectors of the principal stresses, one per row"},
        Rank::tensor,
        &StepFields::principal_direction},
       {"missing_neighbourhood",
@@ -138,7 +140,9 @@ void write_histories(const RowSink& sink, const std::string& path, const BondHis
         {"1", "other point of each bond whose history has changed since the step before"});
   if (has_images) {
     write("/second_image", changed.second_image,
-          {"1", "image of that point it ends at, row of /points/images from 1; 0: itself"});
+          {"1",
+           "image of that point at which the bond ends, row of /points/images from 1; 0: the point "
+           "itself"});
   }
   write("/largest_stretch", changed.largest_stretch,
         {"1", "largest stretch that has damaged the bond; -1: the bond never fails"});

@@ -76,7 +76,7 @@ TEST(Checkpoint, OfAnotherLayoutIsRefusedWithBothPrograms) {
     FAIL();
   } catch (const BadCheckpoint& error) {
     EXPECT_EQ(error.what(),
-              "has layout 0 of peristat 1.2.3; this is peristat 4.5.6, which goes on from layout " +
+              "has layout 0 of peristat 1.2.3; this is peristat 4.5.6, which resumes from layout " +
                   layout);
   }
 }

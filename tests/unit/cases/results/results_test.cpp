@@ -775,7 +775,7 @@ TEST_F(ResultsTest, AFolderThatDisappearsIsReported) {
   add_step(results, 1);
   fs::remove_all(directory);
   EXPECT_THROW(results.add(example_step(2), ExampleFields(2, 2).views()), MachineError);
-  EXPECT_NE(results.what_is_left().find("is gone"), std::string::npos);
+  EXPECT_NE(results.what_is_left().find("has been removed"), std::string::npos);
 }
 
 /// An accepted step of a run, told by the child that is going to be killed.

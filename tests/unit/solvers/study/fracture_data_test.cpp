@@ -151,7 +151,7 @@ TEST(FractureData, OfTheWrongUnitAreNotCalledThoseOfATanhLaw) {
   damage.strength = 3.0;  // MPa are meant
   const std::string told = refusal(damage);
   EXPECT_FALSE(tells(told, "tanh")) << told;
-  EXPECT_TRUE(tells(told, "A strength is in Pa: 3 MPa are 3e6")) << told;
+  EXPECT_TRUE(tells(told, "The strength is in Pa: 3 MPa are 3e6")) << told;
 }
 
 /// The strength is that of the body, whatever its lattice and law, not E times the force of a bond.

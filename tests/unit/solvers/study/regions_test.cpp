@@ -92,8 +92,8 @@ TEST(Regions, HaveToTakeEveryPointWithoutAMaterialForTheRest) {
   of.regions.pop_back();
   EXPECT_EQ(
       refusal(of),
-      "regions: 5 points are of no material, one of them at (5.5) m; put them in a region, or "
-      "give what is in none a [material]");
+      "regions: 5 points have no material, one of them at (5.5) m; put them in a region, or give a "
+      "[material] for points in no region");
   of.material.youngs_modulus = 1.0;
   const auto body = make_body(bar(), of, 1);
   EXPECT_EQ(body->region, (std::vector<std::int32_t>{0, 0, 0, 0, 0, -1, -1, -1, -1, -1}));
@@ -142,7 +142,8 @@ TEST(Regions, InterfacesAreOfTwoMaterialsThatMeet) {
   of.interfaces = {{.between = {"low", "hih"}}};
   EXPECT_NE(refusal(of).find("interfaces[0].between = \"hih\""), std::string::npos);
   of.interfaces = {{.between = {"low", "high"}}, {.between = {"high", "low"}}};
-  EXPECT_NE(refusal(of).find("another interface is of the same pair"), std::string::npos);
+  EXPECT_NE(refusal(of).find("another interface has the same pair of materials"),
+            std::string::npos);
   of.interfaces = {{.between = {"low", "high"}}, {}};
   EXPECT_NE(refusal(of).find("interfaces[1]: no bond joins"), std::string::npos);
   of.interfaces = {{.between = {"low", "material"}}};

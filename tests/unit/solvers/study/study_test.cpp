@@ -81,9 +81,9 @@ INSTANTIATE_TEST_SUITE_P(
                   points = make_points(block);
                   of.cross_section = 0.5;
                 }},
-        Refusal{"NoPoints", "points", "there are none",
+        Refusal{"NoPoints", "points", "there are no points",
                 [](auto& points, auto&) { points.volume.clear(), points.reference.clear(); }},
-        Refusal{"TooFewPlaces", "points.reference", "dimension entries",
+        Refusal{"TooFewPlaces", "points.reference", "as many entries as the dimension",
                 [](auto& points, auto&) { points.reference.pop_back(); }},
         Refusal{"NoDimension", "points.dimension", "must be 1, 2 or 3",
                 [](auto& points, auto&) { points.dimension = 0; }},
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](auto& points, auto&) { points.reference[3] = nan_value; }},
         Refusal{"NegativeVolume", "points.volume", "must be positive",
                 [](auto& points, auto&) { points.volume[3] = -1.0; }},
-        Refusal{"TwoPointsAtOnePlace", "points.reference", "two points stand at",
+        Refusal{"TwoPointsAtOnePlace", "points.reference", "two points have the same position",
                 [](auto& points, auto&) {
                   points.reference[2] = points.reference[0];
                   points.reference[3] = points.reference[1];
@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](auto& points, auto&) {
                   for (double& at : points.reference) at += 1e9;
                 }},
-        Refusal{"SetBeyondThePoints", "points.sets", "no point's",
+        Refusal{"SetBeyondThePoints", "points.sets", "not the number of a point",
                 [](auto& points, auto&) { points.sets["left"].push_back(points.count()); }},
         Refusal{"UnknownSet", "supports[0].set", "no set of this name; the sets are left, right",
                 [](auto&, auto& of) { of.supports[0].set = "lef"; }},

@@ -148,7 +148,7 @@ TEST(Conditions, RefusesContradictionsWhereverTheyAreUsed) {
   EXPECT_NO_THROW(conditions.prescribe(0.41, displacement));
   const InputError error = refusal([&] { conditions.prescribe(0.42, displacement); });
   EXPECT_EQ(error.key(), "supports[1].displacement[0]");
-  EXPECT_NE(error.allowed().find("0.42 m by one and 1.42 m by the other"), std::string::npos)
+  EXPECT_NE(error.allowed().find("0.42 m by the first and 1.42 m by the second"), std::string::npos)
       << error.allowed();
 }
 

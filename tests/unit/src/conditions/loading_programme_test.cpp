@@ -56,8 +56,8 @@ std::string refusal(std::vector<std::vector<double>> tables) {
 TEST(LoadingProgramme, RefusesTablesThatDoNotGoTogether) {
   const double infinite = std::numeric_limits<double>::infinity();
   EXPECT_EQ(refusal({{0.5, 1.0}}),
-            "programme[0] = 0.5: must begin with 0: the body begins at rest, without loads");
-  EXPECT_EQ(refusal({{0.0}}), "programme[0]: needs two entries or more");
+            "programme[0] = 0.5: must begin with 0: the body starts at rest, without loads");
+  EXPECT_EQ(refusal({{0.0}}), "programme[0]: needs at least two entries");
   EXPECT_EQ(refusal({{0.0, 1.0}, {0.0, 1.0, 2.0}}),
             "programme[1]: has 3 entries, but the first table has 2");
   EXPECT_EQ(refusal({{0.0, infinite}}), "programme[0] = inf: must be finite");

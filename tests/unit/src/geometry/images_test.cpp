@@ -83,7 +83,7 @@ TEST(Images, OfWhatDoesNotGoOnAreRefused) {
                 std::string::npos)
           << count;
     }
-    EXPECT_NE(refusal(row(count), {{0, 0.5}}, {}).find("runs through points"), std::string::npos);
+    EXPECT_NE(refusal(row(count), {{0, 0.5}}, {}).find("passes through points"), std::string::npos);
     EXPECT_NE(refusal(row(count), {{0, 2.0}}, {}).find("both sides"), std::string::npos);
     EXPECT_NE(refusal(row(count), {{0, 0.0}}, {{0, 0.0, length}}).find("has a plane of symmetry"),
               std::string::npos);

@@ -91,16 +91,16 @@ TEST(LatticeBox, IsNoneForCloudsAndSharedPlaces) {
   Points cloud = points;
   cloud.lattice.reset();
   EXPECT_FALSE(lattice_box(cloud, why_not));
-  EXPECT_EQ(why_not, "the points stand on no lattice");
+  EXPECT_EQ(why_not, "the points do not lie on a lattice");
   points.reference[2] = points.reference[0] + 1e-3;
   points.reference[3] = points.reference[1];
   EXPECT_FALSE(lattice_box(points, why_not));
-  EXPECT_EQ(why_not, "several points share a place of the lattice");
+  EXPECT_EQ(why_not, "several points share a lattice site");
   Points far = make_points(rectangle(0.1));
   far.reference[0] = 1e6;
   far.reference[3] = -1e6;
   EXPECT_FALSE(lattice_box(far, why_not));
-  EXPECT_EQ(why_not, "the box around the points has more than 2^31 places of the lattice");
+  EXPECT_EQ(why_not, "the box around the points has more than 2^31 lattice sites");
 }
 
 }  // namespace

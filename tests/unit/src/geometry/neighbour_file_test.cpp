@@ -73,12 +73,12 @@ TEST_F(NeighbourFileTest, TakesEachPairOnceOrInBothDirections) {
 TEST_F(NeighbourFileTest, RefusesARowThatCannotBeMeant) {
   const std::string head = "i, j, w_ij\n1, 2, 1\n";
   const std::vector<std::pair<std::string, std::string>> rows{
-      {"0, 1, 1", "no point"},          {"1, 5, 1", "no point"},
-      {"1.5, 2, 1", "no point"},        {"x, 2, 1", "not a number"},
-      {"3, 3, 1", "its own"},           {"1, 2, 1", "line 2 already"},
+      {"0, 1, 1", "not a point"},       {"1, 5, 1", "not a point"},
+      {"1.5, 2, 1", "not a point"},     {"x, 2, 1", "not a number"},
+      {"3, 3, 1", "its own"},           {"1, 2, 1", "already neighbours in line 2"},
       {"3, 4, nan", "not finite"},      {"3, 4, inf", "not finite"},
       {"3, 4, 1e999", "range"},         {"3, 4, -0.1", "from 0 to 1"},
-      {"3, 4, 1.1", "from 0 to 1"},     {"3, 4, 0", "nothing"},
+      {"3, 4, 1.1", "from 0 to 1"},     {"3, 4, 0", "share of 0"},
       {"3, 4", "2 values for 3"},       {"3, 4, 1, 1", "4 values for 3"},
       {"1, 4, 1", "beyond the horizon"}};
   for (const auto& [row, words] : rows) {

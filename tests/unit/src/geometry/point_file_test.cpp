@@ -100,7 +100,7 @@ TEST_F(PointFile, TellsThatTheLineOfNamesIsARemark) {
   const auto [line, told] = refusal("# x y volume\n0 0 1\n");
   EXPECT_EQ(line, 2);
   EXPECT_NE(told.find("this one has numbers"), std::string::npos) << told;
-  EXPECT_NE(told.find("take the # away"), std::string::npos) << told;
+  EXPECT_NE(told.find("remove the #"), std::string::npos) << told;
 }
 
 TEST_F(PointFile, RefusesNamesOfSetsThatResultsCanNotHave) {
@@ -139,7 +139,7 @@ TEST_F(PointFile, NamesTheLineOfABadValue) {
 }
 
 TEST_F(PointFile, NamesTheLinesOfTwoPointsAtOnePlace) {
-  const std::string message = "the point at (0.1, 2) stands at the place of the point in line 2";
+  const std::string message = "the point at (0.1, 2) has the same position as the point in line 2";
   EXPECT_EQ(refusal("x y volume\n0.1 2 1\n1 2 1\n\n0.1 2 1\n"), std::pair(5, message));
   // Closer than 1e-9 of the spacing, which is 1, also where a coarse cell ends (at zero).
   EXPECT_EQ(refusal("x y volume\n-4e-10 3e-10 1\n4e-10 -3e-10 1\n").first, 3);
