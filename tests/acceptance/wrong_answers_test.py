@@ -49,8 +49,9 @@ class Damage(Folder):
     def test_a_jump_that_would_tear_every_bond_at_once_is_followed_step_by_step(self):
         # One step asks for 22 times the strength: the supports' jump alone breaks all bonds across
         # it, and the torn body has no residual. No energy may be dissipated that no work has done.
-        for steps in (1, 2, 30):
-            rows = self.results(SQUARE, "solver.mode=newton", f"loading.steps={steps}", code=3).table("history")
+        for steps in (1, 30):
+            rows = self.results(SQUARE, "solver.mode=newton", f"loading.steps={steps}", "loading.smallest_step=2e-3",
+                                code=3).table("history")  # fmt: skip
             for row in rows:
                 self.assertLessEqual(row["dissipated_energy"], 1.05 * row["external_work"])
             # The limit point is where damage control by 300 small steps finds it, 0.554 to 0.586.
