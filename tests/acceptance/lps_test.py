@@ -522,7 +522,7 @@ class Motions(Folder):
         self.assertNotIn("unbalanced_force", found.summary)
 
     def test_threads(self):
-        settings = "dynamics.end_time=9e-6", "dynamics.history_every=16", "output.every=48"
+        settings = "lattice.spacing=2e-3", "dynamics.end_time=1.1e-5", "dynamics.history_every=16", "output.every=48"
         one, two = (self.results(CASES / "crack_branching.toml", *settings, threads=threads).steps[-1] for threads in (1, 2))
         self.assertGreater(one.damage.max(), 0.3)
         numpy.testing.assert_array_equal(one.damage, two.damage)

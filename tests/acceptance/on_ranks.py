@@ -9,6 +9,7 @@ import h5py
 import numpy
 
 from tests.acceptance.folder import Folder
+from tests.reference.program import Begun
 
 # Root may run them, as in a container; ranks that wait leave the core to other tests.
 ENVIRONMENT = {
@@ -196,8 +197,10 @@ def on(ranks):
 
 
 class OnRanks(Folder):
+    LIMITS = {"environment": ENVIRONMENT, "seconds": 100}
+
     def execute(self, command, **options):
-        return super().execute(command, **{"environment": ENVIRONMENT, "seconds": 100} | options)
+        return super().execute(command, **self.LIMITS | options)
 
     def run_on(self, ranks, text, *changes, words=(), **options):
         return self.run_case(text, *changes, name=f"on_{ranks}", words=(*on(ranks), *words), **options)
@@ -206,6 +209,31 @@ class OnRanks(Folder):
         """How a run ended, well or not, and its folder."""
         output = self.run_on(ranks, text, *changes, code=(0, 2, 3), **options)
         return self.ended, output
+
+    def ended_on_each(self, counts, text, *changes, words=(), code=0):
+        """How runs on several numbers of ranks ended, and their folders. Two run at a time: a start on ranks leaves
+        half of two cores idle."""
+        case = self.case(text)
+        begun, ended = {}, {}
+
+        def end_first():
+            count, run = next((count, run) for count, run in begun.items() if count not in ended)
+            ended[count] = run.end(), self.folder / f"on_{count}"
+            self.assert_code(ended[count][0], code)
+
+        for count in counts:
+            if len(begun) - len(ended) == 2:
+                end_first()
+            command = self.words_of_run(case, *changes, name=f"on_{count}", words=(*on(count), *words))
+            begun[count] = Begun(command, folder=self.folder, **self.LIMITS)
+            self.addCleanup(begun[count].kill)
+        while len(ended) < len(begun):
+            end_first()
+        return ended
+
+    def run_on_each(self, counts, text, *changes, **options):
+        """Folders of runs on several numbers of ranks."""
+        return [folder for _, folder in self.ended_on_each(counts, text, *changes, **options).values()]
 
     def resume_on(self, ranks, folder, *changes, words=(), **options):
         return self.resume(folder, *changes, words=(*on(ranks), *words), **options)
@@ -279,10 +307,9 @@ class Comparison(OnRanks):
         count = lambda folder: sum(int(row["linear_iterations"]) for row in rows(folder, "iterations.csv"))
         self.assertLessEqual(count(several), 1.1 * count(one) + 10)
 
-    def compare(self, text, ranks=(2, 3), *changes, solver=SOLVER):
-        one = self.run_on(1, text + solver, *changes)
-        for count in ranks:
-            several = self.run_on(count, text + solver, *changes)
+    def compare(self, text, ranks=(3,), *changes, solver=SOLVER):
+        one, *others = self.run_on_each((1, *ranks), text + solver, *changes)
+        for count, several in zip(ranks, others):
             with self.subTest(ranks=count):
                 self.expect_same(one, several)
                 self.expect_like_costs(one, several)
