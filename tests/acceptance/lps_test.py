@@ -599,10 +599,10 @@ mode = "dynamics"
 [dynamics]
 scheme = "newmark"
 end_time = 40.0
-time_step = 0.02
-history_every = 100
+time_step = 0.05
+history_every = 40
 [output]
-every = 500
+every = 200
 """
 
 
