@@ -14,7 +14,7 @@ from tests.reference.tear import Tear, directions
 
 SPACING, RATIO, G = 1e-3, 2.015, 4e3
 C1, C2 = 5e19, 3e27
-STEPS = 400
+STEPS = 200
 PEAK = 1e-7  # of a peak that is searched for by steps
 # Directions of the lattice in which it repeats, with the period in spacings, and a little more than
 # the opening over s_c at which the bond breaks that is flattest to the plane, L^2 / h in spacings.
