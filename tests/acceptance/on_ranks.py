@@ -211,25 +211,24 @@ class OnRanks(Folder):
         return self.ended, output
 
     def ended_on_each(self, counts, text, *changes, words=(), code=0):
-        """How runs on several numbers of ranks ended, and their folders. Two run at a time: a start on ranks leaves
-        half of two cores idle."""
+        """How runs on several numbers of ranks ended, and their folders."""
         case = self.case(text)
-        begun, ended = {}, {}
+        names = [f"on_{count}" for count in counts]
+        runs = self.side_by_side([self.words_of_run(case, *changes, name=name, words=(*on(count), *words))
+                                  for count, name in zip(counts, names)])  # fmt: skip
+        for run in runs:
+            self.assert_code(run, code)
+        return {count: (run, self.folder / name) for count, name, run in zip(counts, names, runs)}
 
-        def end_first():
-            count, run = next((count, run) for count, run in begun.items() if count not in ended)
-            ended[count] = run.end(), self.folder / f"on_{count}"
-            self.assert_code(ended[count][0], code)
-
-        for count in counts:
+    def side_by_side(self, commands):
+        """How they ended. Two run at a time: a start on ranks leaves half of two cores idle."""
+        begun, ended = [], []
+        for command in commands:
             if len(begun) - len(ended) == 2:
-                end_first()
-            command = self.words_of_run(case, *changes, name=f"on_{count}", words=(*on(count), *words))
-            begun[count] = Begun(command, folder=self.folder, **self.LIMITS)
-            self.addCleanup(begun[count].kill)
-        while len(ended) < len(begun):
-            end_first()
-        return ended
+                ended.append(begun[len(ended)].end())
+            begun.append(Begun(command, folder=self.folder, **self.LIMITS))
+            self.addCleanup(begun[-1].kill)
+        return ended + [run.end() for run in begun[len(ended) :]]
 
     def run_on_each(self, counts, text, *changes, **options):
         """Folders of runs on several numbers of ranks."""
@@ -240,6 +239,19 @@ class OnRanks(Folder):
 
     def refusal(self, text, *changes, ranks=2):
         return super().refusal(text, *changes, words=on(ranks))
+
+    def refusals(self, *refused):
+        """What runs say that are refused, each of a number of ranks, a case and its changes; they leave nothing."""
+        commands, folders = [], []
+        for k, (ranks, text, *changes) in enumerate(refused):
+            folders.append(self.folder / f"refused_{k}")
+            case = self.write(f"case_{k}.toml", text)
+            commands.append(self.words_of_run(case, *changes, name=folders[-1].name, words=on(ranks)))
+        runs = self.side_by_side(commands)
+        for run, folder in zip(runs, folders):
+            self.assert_code(run, 2)
+            self.assertFalse(folder.exists())
+        return [run.errors for run in runs]
 
 
 def children_of(process):

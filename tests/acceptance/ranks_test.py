@@ -315,7 +315,7 @@ class CutBonds(Comparison):
         hole = '{subtract="disk", centre=[0.5, 0.7], radius=0.2, cuts_bonds=true}'
         bonds = {}
         for word in ("true", "false"):
-            one = self.compare(PLATE, (3,), f"lattice.shape=[{box}, {hole}, {slit.format(word)}]")
+            self.compare(PLATE, (3,), f"lattice.shape=[{box}, {hole}, {slit.format(word)}]")
             found = {json.loads((self.folder / name / "summary.json").read_text())["bonds"] for name in ("on_1", "on_3")}
             self.assertEqual(len(found), 1)
             bonds[word] = found.pop()

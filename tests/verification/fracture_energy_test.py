@@ -209,7 +209,8 @@ class FractureEnergy(Folder):
                 damage = {"law": law, "strength": 2e6} | ({} if law == "critical_stretch" else {"critical": 4e-3})
                 tables = {"dimension": 1, "lattice": {"spacing": 0.1, "horizon_ratio": 3.0, "shape": [{"add": "box", "min": [0], "max": [3]}]},
                           "set": [{"name": "all", "where": "1"}], "material": {"youngs_modulus": 1e9, "calibration": "lattice", "damage": damage},
-                          "support": [{"set": "all", "displacement": ["4.0e-3*x*load"]}], "loading": {"steps": 400}}  # fmt: skip
+                          "support": [{"set": "all", "displacement": ["4.0e-3*x*load"]}], "loading": {"steps": 400},
+                          "output": {"every": 400}}  # fmt: skip
                 rows = self.results(tables).table("history")[1:]  # after step 0
                 stored = numpy.array([row["stored_energy"] for row in rows])
                 strain = 4e-3 * numpy.arange(1, len(stored) + 1) / 400
