@@ -22,6 +22,7 @@ from tests.acceptance.on_ranks import (
     Comparison,
     OnRanks,
     linear_iterations,
+    on,
     rows,
 )
 from tests.reference.program import PROGRAM, ROOT
@@ -223,19 +224,23 @@ class SameResults(Comparison):
             self.assertLess(found, 0.7 * linear_iterations(self.run_on(1, text + STORED)))
 
     def test_other_linear_solvers(self):
-        one = self.run_on(1, PLATE + SOLVER)
-        for solver, preconditioner in (
-            ("pcg", "surrogate"), ("pcg", "multigrid"), ("pcg", "riluk"), ("pcg", "chebyshev"),
-            ("minres", "rigid_pieces"), ("gmres", "surrogate"),
-        ):  # fmt: skip
-            with self.subTest(solver=solver, preconditioner=preconditioner):
-                settings = f'solver.linear="{solver}"', f'solver.preconditioner="{preconditioner}"', 'solver.tangent="auto"'
-                several = self.run_on(3, PLATE + SOLVER, *settings)
-                self.expect_same(one, several)
-        one = self.run_on(1, SQUARE + STORED)
-        for preconditioner in ("surrogate", "multigrid"):
-            with self.subTest(preconditioner=preconditioner):
-                self.expect_same(one, self.run_on(2, SQUARE + STORED, f'solver.preconditioner="{preconditioner}"'))
+        self.expect_same_with(PLATE + SOLVER, 3, *(
+            (f'solver.linear="{solver}"', f'solver.preconditioner="{preconditioner}"', 'solver.tangent="auto"')
+            for solver, preconditioner in (
+                ("pcg", "surrogate"), ("pcg", "multigrid"), ("pcg", "riluk"), ("pcg", "chebyshev"),
+                ("minres", "rigid_pieces"), ("gmres", "surrogate"),
+            )))  # fmt: skip
+        self.expect_same_with(SQUARE + STORED, 2, *((f'solver.preconditioner="{kind}"',) for kind in ("surrogate", "multigrid")))
+
+    def expect_same_with(self, text, ranks, *settings):
+        """Results of one rank, with each of these settings on several."""
+        case, names = self.case(text), [f"with_{k}" for k in range(len(settings))]
+        commands = [self.words_of_run(case, *of, name=name, words=on(ranks)) for of, name in zip(settings, names)]
+        runs = self.side_by_side([self.words_of_run(case, name="on_1"), *commands])
+        for run, name, of in zip(runs, ["on_1", *names], [(), *settings]):
+            with self.subTest(settings=of):
+                self.assert_completed(run)
+                self.expect_same(self.folder / "on_1", self.folder / name)
 
     def expect_same_displacements(self, one, several):
         with h5py.File(one / "results.h5") as expected, h5py.File(several / "results.h5") as found:
@@ -289,7 +294,7 @@ class LoadZero(Comparison):
 
     def test_by_both(self):
         for name in LASTING:
-            self.compare_from_zero(name, 'solver.mode="adaptive"')
+            self.compare_from_zero(name, 'solver.mode="adaptive"', ranks=(2,))
 
     def test_where_nothing_acts(self):
         one = self.compare(PLATE, (3,))
@@ -334,11 +339,12 @@ class Page(OnRanks):
         first = next(k for k, line in enumerate(lines) if "cases/plate_with_hole/elastic.toml --ranks N` |" in line)
         table = [[cell.strip() for cell in lines[k].strip("|").split("|")] for k in range(first, first + 6)]
         case = (ROOT / "cases/plate_with_hole/elastic.toml").read_text()
-        for column, ranks in enumerate(table[0][1:], 1):
-            self.run_on(int(ranks), case, "loading.steps=1")
+        runs = self.ended_on_each([int(ranks) for ranks in table[0][1:]], case, "loading.steps=1")
+        self.assertEqual(len(runs), 4)
+        for column, (run, _) in enumerate(runs.values(), 1):
             points, ghosts, messages, size = (row[column] for row in table[2:])
-            self.assertIn(f"at most {points} points on a rank, {ghosts} ghosts", self.ended.output)
-            self.assertIn(f"{messages} messages, {size} bytes each", self.ended.output.replace("\n    ", " "))
+            self.assertIn(f"at most {points} points on a rank, {ghosts} ghosts", run.output)
+            self.assertIn(f"{messages} messages, {size} bytes each", run.output.replace("\n    ", " "))
 
     def test_the_list_of_keys_is_that_of_the_program(self):
         page = (ROOT / "docs/cluster.md").read_text().split("## What runs")[1].split("\nThe list is")[0]
