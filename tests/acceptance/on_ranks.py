@@ -207,7 +207,7 @@ class OnRanks(Folder):
 
     def ended_on(self, ranks, text, *changes, **options):
         """How a run ended, well or not, and its folder."""
-        output = self.run_on(ranks, text, *changes, code=(0, 2, 3), **options)
+        output = self.run_on(ranks, text, *changes, code=(0, 3), **options)
         return self.ended, output
 
     def ended_on_each(self, counts, text, *changes, words=(), code=0):

@@ -199,7 +199,7 @@ class States(Terms):
 
     def compare_torn(self, text, *of, ranks=(2,)):
         options = of
-        runs = self.ended_on_each((1, *ranks), text, *options, code=(0, 2, 3))
+        runs = self.ended_on_each((1, *ranks), text, *options, code=(0, 3))
         one_run, one = runs.pop(1)
         for count, (several, found) in runs.items():
             with self.subTest(ranks=count, settings=of):
