@@ -1,6 +1,7 @@
 """Bonds that are loaded and unloaded: force, energy and dissipation of every accepted step in closed form."""
 
 import collections
+import itertools
 import unittest
 
 import numpy
@@ -48,10 +49,9 @@ class DamageHistory(Folder):
 
     def test_one_bond_follows_its_closed_form(self):
         seen = collections.Counter()
-        for law, mode in ((law, mode) for law in LAWS for mode in MODES):
-            for _ in range(3):
-                with self.subTest(law=law, mode=mode):
-                    self.one_bond(law, mode, seen)
+        for law, mode in itertools.product(LAWS, MODES):
+            with self.subTest(law=law, mode=mode):
+                self.one_bond(law, mode, seen)
         self.assertGreater(min(seen[kind] for kind in ("loading", "secant", "broken", "compressed")), 20)
 
     def one_bond(self, law, mode, seen):
@@ -88,7 +88,8 @@ class DamageHistory(Folder):
 
     def test_six_bonds_follow_the_reference(self):
         seen = collections.Counter()
-        for dimension, law, mode in ((d, law, mode) for d in (2, 3) for law in LAWS for mode in MODES):
+        # All laws in all modes; each law and each mode in both dimensions.
+        for (law, mode), dimension in zip(itertools.product(LAWS, MODES), itertools.cycle((2, 3))):
             with self.subTest(dimension=dimension, law=law, mode=mode):
                 self.six_bonds(dimension, law, mode, seen)
         self.assertGreater(seen["steps"], 300)

@@ -52,11 +52,14 @@ class Folder(unittest.TestCase):
         return self.peristat(name, self.case(case), *words, *settings(*changes), **options)
 
     def run_case(self, case, *changes, name="out", words=(), threads=None, code=0, **options):
-        """The folder of a run that ends with the given code, or one of several; `ended` is the ending."""
-        words = ("--output", self.folder / name, "--overwrite", "--no-plots", "--threads", threads or self.threads, *words)
-        self.ended = self.command("run", case, *changes, words=words, **options)
+        """The folder of a run that ends with a code, or with one of several; `ended` is how it did."""
+        self.ended = self.execute(self.words_of_run(case, *changes, name=name, words=words, threads=threads), **options)
         self.assert_code(self.ended, code)
         return self.folder / name
+
+    def words_of_run(self, case, *changes, name="out", words=(), threads=None):
+        words = ("--output", self.folder / name, "--overwrite", "--no-plots", "--threads", threads or self.threads, *words)
+        return [PROGRAM, "run", self.case(case), *words, *settings(*changes)]
 
     def results(self, *arguments, **options):
         return Results(self.run_case(*arguments, **options))

@@ -9,6 +9,7 @@ import h5py
 import numpy
 
 from tests.acceptance.folder import Folder
+from tests.reference.program import Begun
 
 # Root may run them, as in a container; waiting ranks yield the core to other tests.
 ENVIRONMENT = {
@@ -196,22 +197,61 @@ def on(ranks):
 
 
 class OnRanks(Folder):
+    LIMITS = {"environment": ENVIRONMENT, "seconds": 100}
+
     def execute(self, command, **options):
-        return super().execute(command, **{"environment": ENVIRONMENT, "seconds": 100} | options)
+        return super().execute(command, **self.LIMITS | options)
 
     def run_on(self, ranks, text, *changes, words=(), **options):
         return self.run_case(text, *changes, name=f"on_{ranks}", words=(*on(ranks), *words), **options)
 
     def ended_on(self, ranks, text, *changes, **options):
-        """The ending of a run, with any code, and its folder."""
-        output = self.run_on(ranks, text, *changes, code=(0, 2, 3), **options)
+        """How a run ended, well or not, and its folder."""
+        output = self.run_on(ranks, text, *changes, code=(0, 3), **options)
         return self.ended, output
+
+    def ended_on_each(self, counts, text, *changes, words=(), code=0):
+        """How runs on several numbers of ranks ended, and their folders."""
+        case = self.case(text)
+        names = [f"on_{count}" for count in counts]
+        runs = self.side_by_side([self.words_of_run(case, *changes, name=name, words=(*on(count), *words))
+                                  for count, name in zip(counts, names)])  # fmt: skip
+        for run in runs:
+            self.assert_code(run, code)
+        return {count: (run, self.folder / name) for count, name, run in zip(counts, names, runs)}
+
+    def side_by_side(self, commands):
+        """How they ended. Two run at a time: a start on ranks leaves half of two cores idle."""
+        begun, ended = [], []
+        for command in commands:
+            if len(begun) - len(ended) == 2:
+                ended.append(begun[len(ended)].end())
+            begun.append(Begun(command, folder=self.folder, **self.LIMITS))
+            self.addCleanup(begun[-1].kill)
+        return ended + [run.end() for run in begun[len(ended) :]]
+
+    def run_on_each(self, counts, text, *changes, **options):
+        """Folders of runs on several numbers of ranks."""
+        return [folder for _, folder in self.ended_on_each(counts, text, *changes, **options).values()]
 
     def resume_on(self, ranks, folder, *changes, words=(), **options):
         return self.resume(folder, *changes, words=(*on(ranks), *words), **options)
 
     def refusal(self, text, *changes, ranks=2):
         return super().refusal(text, *changes, words=on(ranks))
+
+    def refusals(self, *refused):
+        """What runs say that are refused, each of a number of ranks, a case and its changes; they leave nothing."""
+        commands, folders = [], []
+        for k, (ranks, text, *changes) in enumerate(refused):
+            folders.append(self.folder / f"refused_{k}")
+            case = self.write(f"case_{k}.toml", text)
+            commands.append(self.words_of_run(case, *changes, name=folders[-1].name, words=on(ranks)))
+        runs = self.side_by_side(commands)
+        for run, folder in zip(runs, folders):
+            self.assert_code(run, 2)
+            self.assertFalse(folder.exists())
+        return [run.errors for run in runs]
 
 
 def children_of(process):
@@ -279,10 +319,9 @@ class Comparison(OnRanks):
         count = lambda folder: sum(int(row["linear_iterations"]) for row in rows(folder, "iterations.csv"))
         self.assertLessEqual(count(several), 1.1 * count(one) + 10)
 
-    def compare(self, text, ranks=(2, 3), *changes, solver=SOLVER):
-        one = self.run_on(1, text + solver, *changes)
-        for count in ranks:
-            several = self.run_on(count, text + solver, *changes)
+    def compare(self, text, ranks=(3,), *changes, solver=SOLVER):
+        one, *others = self.run_on_each((1, *ranks), text + solver, *changes)
+        for count, several in zip(ranks, others):
             with self.subTest(ranks=count):
                 self.expect_same(one, several)
                 self.expect_like_costs(one, several)

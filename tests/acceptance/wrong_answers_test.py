@@ -47,10 +47,11 @@ displacement = [0, 0]
 
 class Damage(Folder):
     def test_a_jump_that_would_tear_every_bond_at_once_is_followed_step_by_step(self):
-        # One step goes to 22 times the strength: the supports' jump alone breaks all bonds across
-        # it, and the torn body has no residual. No energy may be dissipated without work.
-        for steps in (1, 2, 30):
-            rows = self.results(SQUARE, "solver.mode=newton", f"loading.steps={steps}", code=3).table("history")
+        # One step asks for 22 times the strength: the supports' jump alone breaks all bonds across
+        # it, and the torn body has no residual. No energy may be dissipated that no work has done.
+        for steps in (1, 30):
+            rows = self.results(SQUARE, "solver.mode=newton", f"loading.steps={steps}", "loading.smallest_step=2e-3",
+                                code=3).table("history")  # fmt: skip
             for row in rows:
                 self.assertLessEqual(row["dissipated_energy"], 1.05 * row["external_work"])
             # A control by damage in 300 small steps finds the limit point between 0.554 and 0.586.

@@ -8,13 +8,16 @@ import unittest
 from tests.unit.architecture_test import ROOT, in_parallel, sources
 
 
+def first_of(file):
+    """The header that a file begins with; none if it begins with one that is not ours."""
+    first = re.search(r'^#include "(.*)"$|^#include <', file.read_text("utf-8"), re.MULTILINE)
+    return ROOT / first.group(1) if first and first.group(1) else None
+
+
 def leads_its_source(header):
     """Whether the build already compiles it alone, because its own source includes it first."""
     source = header.with_suffix(".cpp")
-    if not source.exists():
-        return False
-    first = re.search(r'^#include "(.*)"$|^#include <', source.read_text("utf-8"), re.MULTILINE)
-    return first is not None and first.group(1) == header.relative_to(ROOT).as_posix()
+    return source.exists() and first_of(source) == header
 
 
 def compile_alone(header):
@@ -32,7 +35,10 @@ def compile_alone(header):
 
 class Headers(unittest.TestCase):
     def test_every_header_compiles_alone(self):
-        headers = [path for path in sources(".hpp") if not leads_its_source(path)]
+        headers = sources(".hpp")
+        proven = {first_of(path) for path in headers}  # by a header that begins with it and compiles alone
+        headers = [path for path in headers if path not in proven and not leads_its_source(path)]
+        self.assertGreater(len(headers), 50)
         wrong = in_parallel(compile_alone, headers)
         self.assertFalse(wrong, "\n".join(wrong))
 

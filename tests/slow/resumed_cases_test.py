@@ -36,7 +36,7 @@ OTHERS = {
     "three_point_bending/mouth_opening": ["loading.table=[0,7e-4]", "loading.steps=2"],  # with the first avalanche
 }  # fmt: skip
 MODES = {  # of the square
-    "newton": ['solver.mode="newton"', "loading.smallest_step=1e-2"],
+    "newton": ['solver.mode="newton"', "loading.smallest_step=4e-2"],
     "relaxation": ['solver.mode="relaxation"', "relaxation.steps=12"],
     "moving": ['solver.mode="relaxation"', 'relaxation.load="moving"', "relaxation.steps=12",
                "relaxation.iterations=3600"],

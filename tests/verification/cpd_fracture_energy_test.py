@@ -14,10 +14,10 @@ from tests.reference.tear import Tear, directions
 
 SPACING, RATIO, G = 1e-3, 2.015, 4e3
 C1, C2 = 5e19, 3e27
-STEPS = 400
-PEAK = 1e-7  # relative error of a peak that is searched for by steps
-# Directions in which the lattice repeats, with the period in spacings, and slightly more than
-# the opening over s_c at which the bond flattest to the plane breaks, L^2 / h in spacings.
+STEPS = 200
+PEAK = 1e-7  # of a peak that is searched for by steps
+# Directions of the lattice in which it repeats, with the period in spacings, and a little more than
+# the opening over s_c at which the bond breaks that is flattest to the plane, L^2 / h in spacings.
 ANGLES = ((0.0, 1.0, 2.1), (math.degrees(math.atan(0.5)), math.sqrt(5.0), 4.7), (45.0, math.sqrt(2.0), 3.0))
 
 
