@@ -234,9 +234,8 @@ bool& all_have_failed() {
 }
 
 /// Runs `act`, which needs no communication, and records if it fails on all ranks. Collective.
-/// @param ranks null for one rank
 template <class Act>
-auto on_each_rank(const Communicator* ranks, const Act& act) {
+auto on_each_rank(const Communicator& ranks, const Act& act) {
   std::exception_ptr failure;
   std::optional<decltype(act())> result;
   try {
@@ -244,17 +243,16 @@ auto on_each_rank(const Communicator* ranks, const Act& act) {
   } catch (...) {
     failure = std::current_exception();
   }
-  if (ranks) all_have_failed() = ranks->min(failure ? 1.0 : 0.0) > 0.0;
+  all_have_failed() = ranks.min(failure ? 1.0 : 0.0) > 0.0;
   if (failure) std::rethrow_exception(failure);
   return *std::move(result);
 }
 
 Exit execute(const CLI::App& program, const CommandLine& line, int threads,
-             const Communicator* ranks) {
-  const SoleRank sole;
+             const Communicator& ranks) {
   if (program.got_subcommand("keys")) return print_keys(line.table);
   if (program.got_subcommand("resume")) {
-    return resume(line.results, overrides(line), run_options(line, threads), ranks ? *ranks : sole);
+    return resume(line.results, overrides(line), run_options(line, threads), ranks);
   }
   const bool is_calibration = program.got_subcommand("calibrate");
   if (is_calibration && line.case_file.empty()) {
@@ -263,7 +261,7 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads,
   }
   const Case from = on_each_rank(ranks, [&] {
     Case read = read_case(line.case_file, overrides(line));
-    if (ranks) refuse_keys_without_ranks(read);
+    if (ranks.count() > 1) refuse_keys_without_ranks(read);
     return read;
   });
   if (is_calibration) return calibrate(from, line.calibration.with_strengths);
@@ -271,7 +269,7 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads,
   if (program.got_subcommand("check-tangent")) {
     return check_tangent(from, line.deformation, threads);
   }
-  return run(from, run_options(line, threads), ranks ? *ranks : sole);
+  return run(from, run_options(line, threads), ranks);
 }
 
 /// Returns a sentence about unexpected words on the command line.
@@ -303,9 +301,8 @@ std::unique_ptr<Communicator>& all_ranks() {
   return ranks;
 }
 
-/// @return null for a run of one rank
-const Communicator* start_ranks_of(const CLI::App& program, int asked_for) {
-  if (!is_started_as_rank()) return nullptr;
+const Communicator& start_ranks_of(const CLI::App& program, int asked_for) {
+  if (!is_started_as_rank()) return sole_rank();
   all_ranks() = start_ranks();
   all_have_failed() = true;  // the refusals below occur on all ranks
   if (asked_for > 0 && asked_for != all_ranks()->count()) {
@@ -315,13 +312,13 @@ const Communicator* start_ranks_of(const CLI::App& program, int asked_for) {
   }
   if (all_ranks()->count() == 1) {
     all_have_failed() = false;
-    return nullptr;
+    return sole_rank();
   }
   if (!program.got_subcommand("run") && !program.got_subcommand("resume")) {
     throw InputError("", "", "only the commands run and resume are for more than one rank");
   }
   all_have_failed() = false;
-  return all_ranks().get();
+  return *all_ranks();
 }
 
 /// Returns the arguments without --ranks.

@@ -12,10 +12,10 @@ namespace peristat {
 
 void require_memory_for(const Body& body, double bytes) {
   const IndexMap& index_map = *body.index_map;
-  require_memory(
-      sum_on_machine(index_map.ranks(), bytes),
-      fmt::format("{}the body with {} points", index_map.is_whole() ? "" : "what a machine has of ",
-                  index_map.is_whole() ? body.points.count() : index_map.whole()));
+  require_memory(sum_on_machine(index_map.ranks(), bytes),
+                 fmt::format("{}the body with {} points",
+                             index_map.ranks().count() == 1 ? "" : "what a machine has of ",
+                             index_map.whole()));
 }
 
 }  // namespace peristat

@@ -6,7 +6,6 @@ namespace peristat {
 
 std::vector<char> without_equation(const Body& body) {
   const std::vector<char>& prescribed = body.conditions->prescribed();
-  if (body.index_map->is_whole()) return prescribed;
   return without_ghosts(*body.index_map, prescribed, body.points.dimension);
 }
 

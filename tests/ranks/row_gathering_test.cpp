@@ -35,7 +35,7 @@ TEST(RowGathering, brings_the_values_of_all_points_in_their_order_and_in_parts) 
             EXPECT_LE(rows.size(), 2 * std::size_t(most_rows));
             all.insert(all.end(), rows.begin(), rows.end());
           });
-      EXPECT_EQ(all.size(), ranks.rank() == 0 ? 2 * gathering.rows() : 0);
+      EXPECT_EQ(all.size(), ranks.rank() == 0 ? 2 * std::size_t(part.whole()) : 0);
       for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(all[k], std::int32_t(k));
     }
   }
@@ -120,7 +120,7 @@ TEST(RowSink, writes_parts_of_rows_one_after_the_other) {
   const RowGathering gathering(part, 100);
   std::optional<Hdf5File> file;
   if (ranks.rank() == 0) file.emplace(Hdf5File::in_memory("rows (in memory)", 1 << 16));
-  const RowSink sink(file ? &*file : nullptr, gathering);
+  const RowSink sink(file ? &*file : nullptr, gathering, std::uint64_t(part.whole()));
   std::vector<double> vectors;
   std::vector<std::uint8_t> flags;
   for (const GlobalIndex number : part.numbered().owned) {
@@ -132,8 +132,8 @@ TEST(RowSink, writes_parts_of_rows_one_after_the_other) {
   if (!file) return;
   const std::vector<double> all_vectors = file->numbers("/vectors");
   const std::vector<std::uint8_t> all_flags = file->bytes("/flags");
-  EXPECT_EQ(all_flags.size(), gathering.rows());
-  EXPECT_EQ(all_vectors.size(), 2 * gathering.rows());
+  EXPECT_EQ(all_flags.size(), std::size_t(part.whole()));
+  EXPECT_EQ(all_vectors.size(), 2 * std::size_t(part.whole()));
   for (std::size_t i = 0; 2 * i + 1 < all_vectors.size() && i < all_flags.size(); ++i) {
     EXPECT_EQ(all_vectors[2 * i], 0.5 * double(i));
     EXPECT_EQ(all_vectors[2 * i + 1], -double(i));

@@ -150,11 +150,11 @@ class CaseRun {
   void make() {
     body_ = ranks_.count() > 1 ? make_part_body(from_, ranks_, options_.threads)
                                : make_body(from_, options_.threads);
-    if (!body_->index_map->is_whole()) gathering_.emplace(*body_->index_map);
+    gathering_.emplace(*body_->index_map);
     further_ = {from_.output.stress, lines_of(from_, body_->points)};
     study_.emplace(*body_, study_options(from_, options_.threads),
                    [this](const std::string& reason) { recorder_->changed_solver(reason); });
-    if (gathering_) {
+    if (!gathering_->is_whole()) {
       recorded_.emplace(body_->points, *body_->index_map);
       numbering_.emplace(*recorded_, *gathering_, body_->model, body_->conditions->prescribed());
     }
@@ -179,13 +179,13 @@ class CaseRun {
 
   void tell_size() {
     const std::int64_t bonds =
-        gathering_ ? summary_.counted("bonds") : body_->model.count_of_bonds();
+        numbering_ ? summary_.counted("bonds") : body_->model.count_of_bonds();
     const std::string of_ranks =
-        gathering_ ? fmt::format("{} ranks with {} threads each", ranks_.count(), options_.threads)
+        numbering_ ? fmt::format("{} ranks with {} threads each", ranks_.count(), options_.threads)
                    : fmt::format("{} threads", options_.threads);
     progress_.say(fmt::format("{} points, {} bonds, {} free degrees of freedom, {}",
                               summary_.points, bonds, summary_.free_dofs, of_ranks));
-    if (gathering_) {
+    if (numbering_) {
       const double most = ranks_.max(double(body_->index_map->owned()));
       const double ghosts = ranks_.sum(double(body_->points.count() - body_->index_map->owned()));
       progress_.say(fmt::format("at most {:.0f} points on a rank, {:.0f} ghosts", most, ghosts));
@@ -210,7 +210,7 @@ class CaseRun {
     };
     const auto all_say = [&](bool holds) { return ranks_.min(double(holds)) > 0.0; };
     if (!all_say(
-            earlier.has_points(only_recorded({body_->points, *body_->index_map}), gathering()))) {
+            earlier.has_points(only_recorded({body_->points, *body_->index_map}), *gathering_))) {
       refuse("its points are not those that the case now makes");
     }
     if (!all_say(is_of_body(earlier.checkpoint().path, study_->equations().assembler(),
@@ -234,7 +234,7 @@ class CaseRun {
     } else {
       results_.emplace(from_.output.directory, points, text, support_sets_, probes_,
                        constant_fields_of(from_, *body_), options_.overwrite, further_,
-                       gathering());
+                       *gathering_);
       recorder_.emplace(from_, *body_, assembler, *results_, progress_, crack_tips_);
     }
     if (ranks_.rank() == 0) leave_note(from_.output.directory);
@@ -299,9 +299,6 @@ class CaseRun {
   }
 
   /// Null for a whole body.
-  [[nodiscard]] const RowGathering* gathering() const {
-    return gathering_ ? &*gathering_ : nullptr;
-  }
   [[nodiscard]] StateNumbering* numbering() { return numbering_ ? &*numbering_ : nullptr; }
 
   [[nodiscard]] double largest_of_all(const std::vector<double>& displacement) const {
@@ -335,7 +332,7 @@ class CaseRun {
     summary_.max_displacement = largest_of_all(result.state.displacement);
     recorder_->finish();
     summary_.costs = costs(result.relaxation_seconds);
-    if (gathering_) tell_traffic();
+    if (numbering_) tell_traffic();
     if (result.outcome == Outcome::converged || result.outcome == Outcome::interrupted) return;
     const Dossier dossier =
         make_dossier(from_, *body_, result, recorder_->last(), recorder_->decisions());

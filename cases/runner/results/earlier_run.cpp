@@ -248,7 +248,7 @@ EarlierResults EarlierRun::read_results(const std::vector<std::string>& support_
   return earlier;
 }
 
-bool EarlierRun::has_points(const Points& points, const RowGathering* gathering) const {
+bool EarlierRun::has_points(const Points& points, const RowGathering& gathering) const {
   if (ranks_.rank() > 0) return holds_points(nullptr, "", points, gathering);
   const auto file = Hdf5File::open_for_reading(results_);
   const ObjectInFile place = place_of(file, results_, "/points");

@@ -63,7 +63,7 @@ class EarlierRun {
                                        const std::vector<LineTable>& lines = {}) const;
   /// True if the run had these points, on this rank.
   /// @param gathering with several ranks: collective, each with the points that it owns
-  [[nodiscard]] bool has_points(const Points& points, const RowGathering* gathering) const;
+  [[nodiscard]] bool has_points(const Points& points, const RowGathering& gathering) const;
 
   /// Prepares the folder for results that link to the existing ones.
   /// @param earlier names of files that move are updated

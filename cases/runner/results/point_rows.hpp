@@ -11,12 +11,13 @@
 #include <vector>
 
 #include "cases/runner/results/hdf5_file.hpp"
+#include "src/parallel/collectives.hpp"
 #include "src/parallel/index_map.hpp"
 
 namespace peristat {
 
 /// Gathers values of points on rank 0, in the order of the whole body and in parts: no rank ever
-/// holds the values of all points.
+/// holds the values of all points of a partitioned body.
 class RowGathering {
  public:
   /// @param most_rows largest number of rows of a part
@@ -24,7 +25,13 @@ class RowGathering {
       : part_(part), most_rows_(most_rows) {}
 
   [[nodiscard]] const IndexMap& part() const { return part_; }
-  [[nodiscard]] std::uint64_t rows() const { return std::uint64_t(part_.whole()); }
+  [[nodiscard]] const Communicator& ranks() const { return part_.ranks(); }
+  /// True if nothing has to be gathered.
+  [[nodiscard]] bool is_whole() const { return part_.is_whole(); }
+  /// Number of rows of an array of the body, of which so many are here.
+  [[nodiscard]] std::uint64_t rows(std::size_t here) const {
+    return is_whole() ? here : std::uint64_t(part_.whole());
+  }
 
   /// Gathers values of the owned points on rank 0. Collective.
   /// @param mine as many values per owned point on all ranks
@@ -202,46 +209,47 @@ class RowGathering {
   std::int64_t most_rows_;
 };
 
-/// Source of values per point: a file, or for a distributed body rank 0, which sends them out in
+/// Gathering of a body that is not partitioned.
+[[nodiscard]] inline const RowGathering& no_gathering() {
+  static const RowGathering whole(whole_body());
+  return whole;
+}
+
+/// Source of values per point: a file, or for a partitioned body rank 0, which sends them out in
 /// parts. All calls are collective.
 class RowSource {
  public:
   /// @param file null on all ranks but 0
-  /// @param gathering null for a whole body
-  RowSource(const Hdf5File* file, const RowGathering* gathering)
+  RowSource(const Hdf5File* file, const RowGathering& gathering)
       : file_(file), gathering_(gathering) {}
 
   /// Result of `find` on rank 0, on all ranks.
   template <class Find>
   [[nodiscard]] bool all_agree(const Find& find) const {
-    const bool is_found = file_ && find();
-    if (!gathering_) return is_found;
-    return gathering_->part().ranks().max(is_found ? 1.0 : 0.0) > 0.0;
+    return any_of_all(gathering_.ranks(), file_ && find());
   }
 
   /// Reads the values of the points that this rank owns.
   template <class Value>
   [[nodiscard]] std::vector<Value> read(const std::string& path, std::size_t values_per_row) const {
-    if (!gathering_) return file_->some_rows<Value>(path, 0, file_->count_of_rows(path));
-    return gathering_->scatter<Value>(values_per_row,
-                                      [&](std::uint64_t first, std::uint64_t count) {
-                                        return file_->some_rows<Value>(path, first, count);
-                                      });
+    if (gathering_.is_whole()) return file_->some_rows<Value>(path, 0, file_->count_of_rows(path));
+    return gathering_.scatter<Value>(values_per_row, [&](std::uint64_t first, std::uint64_t count) {
+      return file_->some_rows<Value>(path, first, count);
+    });
   }
 
  private:
   const Hdf5File* file_;
-  const RowGathering* gathering_;
+  const RowGathering& gathering_;
 };
 
 /// Destination of values per point: a file, directly for a whole body or gathered from ranks.
 class RowSink {
  public:
-  /// @param rows points of the body
-  RowSink(Hdf5File& file, std::uint64_t rows) : file_(&file), rows_(rows) {}
   /// @param file null on ranks that send only
-  RowSink(Hdf5File* file, const RowGathering& gathering)
-      : file_(file), rows_(gathering.rows()), gathering_(&gathering) {}
+  /// @param rows points of the body
+  RowSink(Hdf5File* file, const RowGathering& gathering, std::uint64_t rows)
+      : file_(file), rows_(rows), gathering_(gathering) {}
 
   /// @param row extents of a point's values; none: one value
   template <class Value>
@@ -251,13 +259,13 @@ class RowSink {
     shape.insert(shape.end(), row.begin(), row.end());
     std::size_t values_per_row = 1;
     for (const std::uint64_t extent : row) values_per_row *= extent;
-    if (!gathering_ || values_per_row == 0) {
+    if (gathering_.is_whole() || values_per_row == 0) {
       if (file_) file_->write(path, values, shape, label);
     } else if (!file_) {
-      gathering_->gather<Value>(values, values_per_row, {});
+      gathering_.gather<Value>(values, values_per_row, {});
     } else {
       file_->write_rows<Value>(path, shape, label, [&](const Hdf5File::PutRows<Value>& put) {
-        gathering_->gather<Value>(values, values_per_row, put);
+        gathering_.gather<Value>(values, values_per_row, put);
       });
     }
   }
@@ -271,7 +279,7 @@ class RowSink {
                       const std::vector<Index>& second_point,
                       const std::vector<Index>& second_image, const std::vector<Value>& values,
                       std::uint64_t count, const DatasetLabel& label) const {
-    if (!gathering_ || count == 0) {
+    if (gathering_.is_whole() || count == 0) {
       if (file_) file_->write(path, values, {count}, label);
       return;
     }
@@ -284,10 +292,10 @@ class RowSink {
       const Index image = second_image.empty() ? 0 : second_image[k];
       mine.push_back({first_point[k], second_point[k], image, values[k]});
     }
-    if (!file_) return gathering_->gather_of_bonds(std::move(mine), [](const auto&) {});
+    if (!file_) return gathering_.gather_of_bonds(std::move(mine), [](const auto&) {});
     file_->write_rows<Value>(path, {count}, label, [&](const Hdf5File::PutRows<Value>& put) {
       std::uint64_t first = 0;
-      gathering_->gather_of_bonds(std::move(mine), [&](const std::vector<Item>& items) {
+      gathering_.gather_of_bonds(std::move(mine), [&](const std::vector<Item>& items) {
         std::vector<Value> rows;
         for (const Item& item : items) rows.push_back(item.value);
         put(first, rows);
@@ -299,7 +307,7 @@ class RowSink {
  private:
   Hdf5File* file_;
   std::uint64_t rows_;
-  const RowGathering* gathering_ = nullptr;
+  const RowGathering& gathering_;
 };
 
 }  // namespace peristat

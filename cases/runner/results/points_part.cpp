@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <span>
 
 namespace peristat {
 namespace {
@@ -88,7 +87,8 @@ namespace {
 
 /// Writes all arrays with a row per point.
 void write_rows_of(const Points& points, const std::vector<PointCounts>& counts,
-                   std::span<const GlobalIndex> number, const RowSink& sink) {
+                   const RowGathering& gathering, Hdf5File* file) {
+  const RowSink sink(file, gathering, gathering.rows(points.volume.size()));
   const auto dimension = static_cast<std::uint64_t>(points.dimension);
   sink.write("/points/reference", points.reference, {dimension},
              {"m", "reference position of each point"});
@@ -112,7 +112,7 @@ void write_rows_of(const Points& points, const std::vector<PointCounts>& counts,
   for (Index point = 0; point < points.count(); ++point) {
     const Coordinates at = points.position(point);
     geometry.insert(geometry.end(), at.begin(), at.end());
-    numbers.push_back(number.empty() ? point : std::int32_t(number[std::size_t(point)]));
+    numbers.push_back(std::int32_t(gathering.part().number_of(point)));
   }
   sink.write("/points/geometry", geometry, {3},
              {"m", "reference position with zeros beyond the dimension, for results.xdmf"});
@@ -122,7 +122,7 @@ void write_rows_of(const Points& points, const std::vector<PointCounts>& counts,
 }  // namespace
 
 void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts,
-                  const RowGathering* gathering) {
+                  const RowGathering& gathering) {
   file.make_group("/points");
   file.set_attribute("/points", "dimension", std::int64_t{points.dimension});
   file.set_attribute("/points", "spacing", double(points.spacing));
@@ -131,11 +131,7 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
   }
   if (points.angle != 0.0) file.set_attribute("/points", "angle", points.angle);
   file.make_group("/points/sets");
-  if (gathering) {
-    write_rows_of(points, counts, gathering->part().numbered().owned, RowSink(&file, *gathering));
-  } else {
-    write_rows_of(points, counts, {}, RowSink(file, points.volume.size()));
-  }
+  write_rows_of(points, counts, gathering, &file);
   std::vector<std::string> names;
   for (const auto& [name, members] : points.sets) names.push_back(name);
   if (!names.empty()) file.set_attribute("/points/set_ids", "sets", names);
@@ -153,7 +149,7 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
 
 void send_points(const Points& points, const std::vector<PointCounts>& counts,
                  const RowGathering& gathering) {
-  write_rows_of(points, counts, gathering.part().numbered().owned, RowSink(nullptr, gathering));
+  write_rows_of(points, counts, gathering, nullptr);
 }
 
 std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts,
@@ -167,12 +163,12 @@ std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& cou
 }
 
 bool holds_points(const Hdf5File* file, const std::string& group, const Points& points,
-                  const RowGathering* gathering) {
+                  const RowGathering& gathering) {
   std::vector<std::string> names;
   for (const auto& [set, members] : points.sets) names.push_back(name_of_flags(set));
   std::sort(names.begin(), names.end());
   const RowSource source(file, gathering);
-  const std::uint64_t rows = gathering ? gathering->rows() : points.volume.size();
+  const std::uint64_t rows = gathering.rows(points.volume.size());
   const bool is_outline_held = source.all_agree([&] {
     return file->names(group + "/sets") == names && holds_neighbours(*file, group, points) &&
            file->count_of_rows(group + "/volume") == rows;

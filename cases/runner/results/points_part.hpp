@@ -22,10 +22,10 @@ struct PointCounts {
 [[nodiscard]] std::string flags_of(const std::string& set);
 
 /// Writes the group /points.
-/// @param gathering null: points of the whole body; otherwise points and counts are those that this
-///        rank owns, and all ranks but 0 call send_points at the same time
+/// @param points and counts of the points that this rank owns; all ranks but 0 call send_points at
+///        the same time
 void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts,
-                  const RowGathering* gathering = nullptr);
+                  const RowGathering& gathering = no_gathering());
 void send_points(const Points& points, const std::vector<PointCounts>& counts,
                  const RowGathering& gathering);
 
@@ -36,9 +36,8 @@ void send_points(const Points& points, const std::vector<PointCounts>& counts,
 
 /// True if a group written by write_points holds these points and sets, to the last bit.
 /// @param file      null on all ranks but 0
-/// @param gathering null: points of the whole body; otherwise those that this rank owns, to which
-///        the result refers. Collective
+/// Collective; the result refers to the points that this rank owns.
 [[nodiscard]] bool holds_points(const Hdf5File* file, const std::string& group,
-                                const Points& points, const RowGathering* gathering);
+                                const Points& points, const RowGathering& gathering);
 
 }  // namespace peristat

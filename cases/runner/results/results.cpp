@@ -142,13 +142,18 @@ struct Beginning {
   }
 };
 
+StepShape shape_of(const Points& points, const RowGathering& gathering,
+                   const FurtherOutput& further) {
+  return {Index(gathering.rows(points.volume.size())), points.dimension, further.has_stress};
+}
+
 }  // namespace
 
 struct Results::Files {
   Files(Beginning beginning, const Points& points, const CaseText& text,
         const std::vector<std::string>& sets, const std::vector<ProbeColumns>& probe_columns,
         const std::vector<PointCounts>& counts, const FurtherOutput& further,
-        const RowGathering* of_ranks = nullptr);
+        const RowGathering& of_ranks);
 
   void describe(const CaseText& text);
   void go_on(const EarlierResults& earlier, const Checkpoint& checkpoint,
@@ -168,7 +173,7 @@ struct Results::Files {
   /// Largest peak memory among all ranks when the run ended.
   std::int64_t peak_memory_of_others = 0;
 
-  const RowGathering* gathering;
+  const RowGathering& gathering;
   StepShape shape;
   std::vector<std::string> support_sets;
   std::vector<ProbeColumns> probes;
@@ -206,10 +211,9 @@ Results::Files::Files(Beginning beginning, const Points& points, const CaseText&
                       const std::vector<std::string>& sets,
                       const std::vector<ProbeColumns>& probe_columns,
                       const std::vector<PointCounts>& counts, const FurtherOutput& further,
-                      const RowGathering* of_ranks)
+                      const RowGathering& of_ranks)
     : gathering(of_ranks),
-      shape{of_ranks ? Index(of_ranks->rows()) : points.count(), points.dimension,
-            further.has_stress},
+      shape(shape_of(points, of_ranks, further)),
       support_sets(sets),
       probes(probe_columns),
       history_header(history_columns(sets, probe_columns)),
@@ -378,9 +382,7 @@ void Results::Files::add_dossier(const std::vector<double>& residual,
   const std::filesystem::path file = folder.parts() / "dossier.h5";
   publish_part(file, bytes, [&](Hdf5File& made) {
     made.make_group("/dossier");
-    const RowSink sink =
-        gathering ? RowSink(&made, *gathering) : RowSink(made, std::uint64_t(shape.points));
-    write_dossier(sink, residual, displacement, shape);
+    write_dossier({&made, gathering, std::uint64_t(shape.points)}, residual, displacement, shape);
   });
   dossier_part = ObjectInFile{name_in(folder, file), "/dossier"};
   master.link("/dossier", dossier_part->file, dossier_part->object);
@@ -451,7 +453,7 @@ struct Results::Sender {
   StepTotals totals{};
 
   void send(const StepRecord& record, const StepFields& fields) {
-    StepPart(shape, fields, &gathering).send();
+    StepPart(shape, fields, gathering).send();
     last_with_fields = record.step;
   }
   /// Writes the summary in the place of rank 0, which waits for this rank.
@@ -464,11 +466,11 @@ struct Results::Sender {
 Results::Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
                  const std::vector<std::string>& support_sets,
                  const std::vector<ProbeColumns>& probes, const std::vector<PointCounts>& counts,
-                 bool overwrite, const FurtherOutput& further, const RowGathering* gathering) {
-  if (gathering && gathering->part().ranks().rank() > 0) {
-    const StepShape shape{Index(gathering->rows()), points.dimension, further.has_stress};
-    sender_ = std::make_unique<Sender>(Sender{*gathering, shape, directory});
-    send_points(points, counts, *gathering);
+                 bool overwrite, const FurtherOutput& further, const RowGathering& gathering) {
+  if (!gathering.part().is_first_rank()) {
+    const StepShape shape = shape_of(points, gathering, further);
+    sender_ = std::make_unique<Sender>(Sender{gathering, shape, directory});
+    send_points(points, counts, gathering);
     return;
   }
   double seconds = 0.0;
@@ -487,10 +489,10 @@ Results::Results(EarlierRun& run, EarlierResults& earlier, const Points& points,
                  const CaseText& text, const std::vector<std::string>& support_sets,
                  const std::vector<ProbeColumns>& probes, const FurtherOutput& further,
                  StateNumbering* numbering) {
-  const RowGathering* const gathering = numbering ? &numbering->gathering() : nullptr;
-  if (gathering && gathering->part().ranks().rank() > 0) {
-    const StepShape shape{Index(gathering->rows()), points.dimension, further.has_stress};
-    sender_ = std::make_unique<Sender>(Sender{*gathering, shape, run.directory()});
+  const RowGathering& gathering = numbering ? numbering->gathering() : no_gathering();
+  if (!gathering.part().is_first_rank()) {
+    const StepShape shape = shape_of(points, gathering, further);
+    sender_ = std::make_unique<Sender>(Sender{gathering, shape, run.directory()});
     for (const Row& row : earlier.history) {
       sender_->totals.add(read_step(row, support_sets, probes));
     }
@@ -551,8 +553,8 @@ void Results::add(const std::vector<BrokenBondRecord>& records) {
       ++files_->rows.broken_bonds;
     }
   };
-  if (!files_->gathering) return append(records);
-  files_->gathering->gather_of_bonds(records, append);
+  if (files_->gathering.is_whole()) return append(records);
+  files_->gathering.gather_of_bonds(records, append);
 }
 
 void Results::add_line(const std::string& name, const std::vector<Row>& rows) {
@@ -606,7 +608,8 @@ void Results::add_fields(const StepRecord& record, const StepFields& fields) {
 void Results::add_dossier(const std::string& text, const std::vector<double>& residual,
                           const std::vector<double>& displacement) {
   if (sender_)
-    return write_dossier({nullptr, sender_->gathering}, residual, displacement, sender_->shape);
+    return write_dossier({nullptr, sender_->gathering, std::uint64_t(sender_->shape.points)},
+                         residual, displacement, sender_->shape);
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   files_->add_dossier(residual, displacement);
@@ -615,15 +618,13 @@ void Results::add_dossier(const std::string& text, const std::vector<double>& re
 
 void Results::close(Summary summary) {
   if (sender_) {
-    static_cast<void>(sender_->gathering.part().ranks().max(double(peak_memory_bytes())));
+    static_cast<void>(sender_->gathering.ranks().max(double(peak_memory_bytes())));
     return;
   }
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
-  if (files_->gathering) {
-    const Communicator& ranks = files_->gathering->part().ranks();
-    files_->peak_memory_of_others = std::int64_t(ranks.max(double(peak_memory_bytes())));
-  }
+  files_->peak_memory_of_others =
+      std::int64_t(files_->gathering.ranks().max(double(peak_memory_bytes())));
   files_->closed = true;
   files_->append_pending();
   std::exception_ptr failure;

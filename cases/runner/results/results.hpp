@@ -53,8 +53,7 @@ class Results {
  public:
   /// Creates the folder and its files; an earlier run of the same case file is replaced, other
   /// files are left alone.
-  /// @param points and counts of all points, or with `gathering` of those that the rank owns
-  /// @param gathering null for a whole body
+  /// @param points and counts of the points that this rank owns
   /// @param overwrite also replaces an earlier run of another case
   /// @throws InputError ("directory") if the folder can't be written or must be left
   ///         alone, see claim_results_folder; (key "probe") if a probe's name is the name of
@@ -63,7 +62,7 @@ class Results {
   Results(const std::filesystem::path& directory, const Points& points, const CaseText& text,
           const std::vector<std::string>& support_sets, const std::vector<ProbeColumns>& probes,
           const std::vector<PointCounts>& counts = {}, bool overwrite = false,
-          const FurtherOutput& further = {}, const RowGathering* gathering = nullptr);
+          const FurtherOutput& further = {}, const RowGathering& gathering = no_gathering());
   /// Continues the results of an earlier run from its checkpoint. Later results, and files on how
   /// it ended, are dropped.
   /// @param earlier its results up to the checkpoint; names of files that move are updated

@@ -156,10 +156,10 @@ std::string WrittenStep::name() const {
   return text;
 }
 
-StepPart::StepPart(StepShape shape, const StepFields& fields, const RowGathering* gathering)
+StepPart::StepPart(StepShape shape, const StepFields& fields, const RowGathering& gathering)
     : shape_(shape), fields_(fields), gathering_(gathering) {
   StepShape here = shape;
-  if (gathering) here.points = gathering->part().owned();
+  here.points = gathering.part().own_rows(shape.points);
   for (const FieldKind& kind : field_kinds()) {
     if (fields.*kind.values == nullptr) continue;
     check(kind, *(fields.*kind.values), here);
@@ -167,13 +167,8 @@ StepPart::StepPart(StepShape shape, const StepFields& fields, const RowGathering
   }
   if (!fields.histories) return;
   const std::size_t changed = fields.histories->largest_stretch.size();
-  changed_bonds_ = changed;
-  have_images_ = !fields.histories->second_image.empty();
-  if (gathering) {
-    const Communicator& ranks = gathering->part().ranks();
-    changed_bonds_ = std::uint64_t(ranks.count_all(std::int64_t(changed)).all);
-    have_images_ = ranks.max(double(have_images_)) > 0.0;
-  }
+  changed_bonds_ = std::uint64_t(gathering.ranks().count_all(std::int64_t(changed)).all);
+  have_images_ = any_of_all(gathering.ranks(), !fields.histories->second_image.empty());
 }
 
 std::uint64_t StepPart::bytes() const {
@@ -192,14 +187,15 @@ void StepPart::write(Hdf5File& file, const WrittenStep& step) const {
   file.set_attribute(step.group, "load_factor", step.load_factor);
   file.set_attribute(step.group, "mode", step.mode);
   if (fields_.velocity != nullptr) file.set_attribute(step.group, "time", step.load_factor);
-  const RowSink sink =
-      gathering_ ? RowSink(&file, *gathering_) : RowSink(file, std::uint64_t(shape_.points));
+  const RowSink sink(&file, gathering_, std::uint64_t(shape_.points));
   if (fields_.histories) file.make_group(step.group + "/history");
   write_rows(sink, step.group);
   if (shape_.has_views()) write_views(file, step.views, step.group, names_, shape_);
 }
 
-void StepPart::send() const { write_rows(RowSink(nullptr, *gathering_), ""); }
+void StepPart::send() const {
+  write_rows(RowSink(nullptr, gathering_, std::uint64_t(shape_.points)), "");
+}
 
 void StepPart::write_rows(const RowSink& sink, const std::string& group) const {
   for (const std::string& name : names_) {

@@ -38,11 +38,11 @@ struct WrittenStep {
 class StepPart {
  public:
   /// @param fields outlive it
-  /// @param gathering null: fields of all points; otherwise of those that this rank owns: rank 0
-  ///        writes while all others send. Collective
+  /// Collective: rank 0 writes, all others send the fields of the points that they own.
   /// @throws std::logic_error that names a field of the wrong size, or with values that are not
   ///         finite
-  StepPart(StepShape shape, const StepFields& fields, const RowGathering* gathering = nullptr);
+  StepPart(StepShape shape, const StepFields& fields,
+           const RowGathering& gathering = no_gathering());
 
   [[nodiscard]] bool is_empty() const { return names_.empty(); }
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
@@ -57,7 +57,7 @@ class StepPart {
 
   StepShape shape_;
   const StepFields& fields_;
-  const RowGathering* gathering_;
+  const RowGathering& gathering_;
   std::vector<std::string> names_;
   std::uint64_t changed_bonds_ = 0;  // whose histories are written, on all ranks
   bool have_images_ = false;         // any rank has values of `second_image`
