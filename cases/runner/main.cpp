@@ -39,6 +39,7 @@ using namespace peristat;
 
 struct CommandLine {
   std::string case_file, results, output, log_file, deformation, table;
+  bool lists_keys_on_ranks = false;
   std::vector<std::string> settings;
   int threads = 0, steps = 0, ranks = 0;
   bool quiet = false, overwrite = false;
@@ -250,7 +251,9 @@ auto on_each_rank(const Communicator& ranks, const Act& act) {
 
 Exit execute(const CLI::App& program, const CommandLine& line, int threads,
              const Communicator& ranks) {
-  if (program.got_subcommand("keys")) return print_keys(line.table);
+  if (program.got_subcommand("keys")) {
+    return line.lists_keys_on_ranks ? print_keys_on_ranks() : print_keys(line.table);
+  }
   if (program.got_subcommand("resume")) {
     return resume(line.results, overrides(line), run_options(line, threads), ranks);
   }
@@ -383,9 +386,11 @@ int main(int count, char** arguments) try {
   add_case_options(*tangent_command, line);
   tangent_command->add_option("--deformation", line.deformation,
                               "current coordinates as expressions of x, y, z: 'EXPR; EXPR; …'");
-  program.add_subcommand("keys", "keys of case files, as tables in markdown")
-      ->add_option("table", line.table,
-                   "one table, such as solver or lattice.shape (default: all)");
+  CLI::App* const keys =
+      program.add_subcommand("keys", "keys of case files, as tables in markdown");
+  CLI::Option* const table = keys->add_option(
+      "table", line.table, "one table, such as solver or lattice.shape (default: all)");
+  keys->add_flag("--ranks", line.lists_keys_on_ranks, "the keys that run on several ranks")->excludes(table);
   CLI::App* const calibration = program.add_subcommand(
       "calibrate", "constants from moduli and fracture data, and back; prints JSON");
   add_calibration(*calibration, line);

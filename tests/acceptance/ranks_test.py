@@ -346,18 +346,6 @@ class Page(OnRanks):
             self.assertIn(f"at most {points} points on a rank, {ghosts} ghosts", run.output)
             self.assertIn(f"{messages} messages, {size} bytes each", run.output.replace("\n    ", " "))
 
-    def test_the_list_of_keys_is_that_of_the_program(self):
-        page = (ROOT / "docs/cluster.md").read_text().split("## What runs")[1].split("\nThe list is")[0]
-        source = (ROOT / "cases/runner/build/part_body.cpp").read_text()
-        listed = source.split("keys_of_ranks{")[1].split("};")[0]
-        keys = re.findall(r'"([^"]+)"', listed)
-        self.assertGreater(len(keys), 30)
-        for key in keys:
-            with self.subTest(key=key):
-                table, _, name = key.rpartition(".")
-                shown = [f"`{name}"] if name else [f"[[{table}]]", f"`[{table}]`", f"`{table.rpartition('.')[2]}`"]
-                self.assertTrue(any(text in page for text in shown))
-
 
 if __name__ == "__main__":
     unittest.main()

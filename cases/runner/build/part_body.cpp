@@ -1,16 +1,15 @@
 #include "cases/runner/build/part_body.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <variant>
 
 #include "cases/runner/build/body.hpp"
 #include "cases/runner/build/find_boundary.hpp"
 #include "cases/runner/build/recorded_points.hpp"
+#include "cases/runner/input/case_keys.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 #include "solvers/study/bonds_of_part.hpp"
@@ -27,39 +26,6 @@
 namespace peristat {
 namespace {
 
-/// Keys that tests run on several ranks. A key that ends in a dot includes all keys below it.
-constexpr std::array keys_of_ranks{
-    "title", "dimension",
-    // points
-    "lattice.spacing", "lattice.horizon_ratio", "lattice.thickness", "lattice.area",
-    "lattice.origin", "lattice.perturbation", "lattice.seed", "lattice.shape.", "lattice.layer.",
-    "lattice.angle", "lattice.volumes", "lattice.cell_perturbation", "lattice.points",
-    "points.file", "points.thickness", "points.area", "points.horizon", "set.",
-    // bonds
-    "quadrature.volume_correction", "quadrature.surface_correction", "quadrature.horizon_shape",
-    "crack.", "material.model", "material.kinematics", "material.plane", "material.youngs_modulus",
-    "material.micromodulus", "material.density", "material.influence", "material.potential",
-    "material.calibration", "material.fibre.", "material.scatter.", "region.", "interface.",
-    // triangles and tetrahedra, states
-    "quadrature.weights", "quadrature.form", "quadrature.degree", "quadrature.traction_form",
-    "quadrature.normals", "material.poisson_ratio", "material.c1", "material.c2", "material.c3",
-    // damage
-    "material.damage.", "loading.max_broken_bonds", "loading.stop_below", "solver.fragments",
-    "solver.projection", "solver.elastic_horizon_ratio", "relaxation.",
-    // conditions
-    "support.", "symmetry.", "period.", "rigid.", "roller.", "constraint.", "load.set", "load.side",
-    "load.body_force", "load.total_force", "load.gravity", "load.traction", "load.depth",
-    "load.pressure", "load.boundary", "load.stress", "foundation.", "eigenstrain.", "temperature.",
-    "material.thermal_expansion",
-    // search
-    "loading.steps", "loading.table", "loading.table2", "loading.adaptive", "loading.smallest_step",
-    "loading.largest_step", "initial.", "absorbing.", "dynamics.", "solver.mode", "solver.operator",
-    "solver.linear", "solver.preconditioner", "solver.tangent", "solver.predictor",
-    "solver.relative_tolerance", "solver.linear_tolerance", "solver.max_iterations",
-    // results
-    "output.directory", "output.every", "output.stress", "output.count_cracks", "probe.",
-    "crack_tip."};
-
 /// "load[2].body_force[0]" as "load.body_force".
 std::string without_numbers(const std::string& key) {
   std::string plain;
@@ -72,12 +38,10 @@ std::string without_numbers(const std::string& key) {
   return plain;
 }
 
-/// True if a key is on the list, below one that is, or a table with one that is.
+/// True if a key runs on ranks, is below one that does, or is a table with one that does.
 bool has_ranks(const std::string& key) {
-  return std::any_of(keys_of_ranks.begin(), keys_of_ranks.end(), [&](std::string_view known) {
-    const bool is_below = known.back() == '.' && key.starts_with(known);
-    const bool is_table = known.starts_with(key + ".");
-    return key == known || is_below || is_table;
+  return std::ranges::any_of(keys_on_ranks(), [&](const std::string& known) {
+    return key == known || key.starts_with(known + ".") || known.starts_with(key + ".");
   });
 }
 

@@ -1,5 +1,6 @@
 #include "cases/runner/commands/key_reference.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <vector>
 
@@ -31,6 +32,23 @@ std::string raised(const std::string& unit) {
   for (const char c : unit)
     text += is_number || !std::isdigit(c) ? std::string(1, c) : digits[std::size_t(c - '0')];
   return text;
+}
+
+/// `[solver]`, or `[[load]]` of an array.
+std::string header(const TableDescription& table) {
+  return table.is_array ? "`[[" + table.name + "]]`" : "`[" + table.name + "]`";
+}
+
+/// The table that a key of another one names; null if it has a value.
+const TableDescription* table_of(const TableDescription& table, const KeyDescription& key) {
+  const std::string name = table.name.empty() ? key.name : table.name + "." + key.name;
+  const auto found = std::ranges::find(table_descriptions(), name, &TableDescription::name);
+  return found == table_descriptions().end() ? nullptr : &*found;
+}
+
+std::string shown_key(const TableDescription& table, const KeyDescription& key) {
+  const TableDescription* const inner = table_of(table, key);
+  return inner != nullptr ? header(*inner) : "`" + key.name + "`";
 }
 
 std::string shown_name(const TableDescription& table) {
@@ -74,6 +92,23 @@ Exit print_keys(const std::string& asked) {
                      "is not a table of a case file" + did_you_mean(asked, names) +
                          "  (tables: " + listed(names) + ")");
   fmt::print("{}", page);
+  return Exit::done;
+}
+
+Exit print_keys_on_ranks() {
+  std::string whole, parts;  // tables all of whose keys run there, and rows of the others
+  for (const auto& table : table_descriptions()) {
+    if (repeats_another(table.name)) continue;
+    std::string row;
+    for (const auto& key : table.keys) {
+      if (!key.on_ranks) continue;
+      std::string& list = table_of(table, key) != nullptr ? whole : row;
+      list += (list.empty() ? "" : ", ") + shown_key(table, key);
+    }
+    if (row.empty()) continue;
+    parts += fmt::format("| {} | {} |\n", table.name.empty() ? "" : header(table), row);
+  }
+  fmt::print("| table | keys |\n|---|---|\n{}| {} | all |\n", parts, whole);
   return Exit::done;
 }
 

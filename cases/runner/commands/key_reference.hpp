@@ -15,4 +15,7 @@ namespace peristat {
 /// @throws InputError with a similar name if there is no such table
 [[nodiscard]] Exit print_keys(const std::string& table);
 
+/// The command `keys --ranks`: prints the keys that run on several ranks, a row for each table.
+[[nodiscard]] Exit print_keys_on_ranks();
+
 }  // namespace peristat

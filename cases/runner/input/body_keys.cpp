@@ -25,7 +25,8 @@ Key<Case> thickness(Member cross_section) {
                    "thickness of the plate, dimension 2 only")
       .unless(in_dimension<1>, "is for dimension 2; dimension 1 has an area")
       .unless(in_dimension<3>, "is for dimension 2 only")
-      .default_words("1");
+      .default_words("1")
+      .on_ranks();
 }
 
 template <class Member>
@@ -34,7 +35,8 @@ Key<Case> area(Member cross_section) {
                    "cross-section of the bar, dimension 1 only")
       .unless(in_dimension<2>, "is for dimension 1; dimension 2 has a thickness")
       .unless(in_dimension<3>, "is for dimension 1 only")
-      .default_words("1");
+      .default_words("1")
+      .on_ranks();
 }
 
 template <class Spec>
@@ -85,7 +87,8 @@ Table<Case> lattice_keys() {
       "lattice",
       {K("spacing", in(lattice, &Lattice::spacing), spacing(),
          "distance between neighbouring points, or one distance along each of the lattice's axes")
-           .required(),
+           .required()
+           .on_ranks(),
        K("points", in(lattice, &Lattice::arrangement),
          choice<Arrangement>(
              {{"lattice", Arrangement::lattice}, {"blue_noise", Arrangement::blue_noise}}),
@@ -93,7 +96,8 @@ Table<Case> lattice_keys() {
          "spacing from their neighbours, with the volumes of their Voronoi cells")
            .unless(in_dimension<1>, "is for dimensions 2 and 3")
            .moreover("`blue_noise` with model `bond`")
-           .early(),
+           .early()
+           .on_ranks(),
        K("lloyd_steps", in(lattice, &Lattice::lloyd_steps), integer(0, 100, ""),
          "number of times that points of blue noise move to the centroids of their Voronoi cells")
            .unless([](auto& from,
@@ -102,7 +106,8 @@ Table<Case> lattice_keys() {
        K("angle", in(lattice, &Lattice::angle), between(-360.0, 360.0, "degrees"),
          "angle by which the lattice is turned under the body, anticlockwise about the origin, in "
          "3D about the z axis; shapes, layers and sets stay where they are")
-           .unless(in_dimension<1>, "is for dimensions 2 and 3"),
+           .unless(in_dimension<1>, "is for dimensions 2 and 3")
+           .on_ranks(),
        K("horizon_ratio", &Case::horizon_ratio, number(Range::positive("-"), "1 to 1000"),
          "horizon / spacing; if spacings differ, over their geometric mean")
            .then([](auto& at, auto& result) {
@@ -117,39 +122,47 @@ Table<Case> lattice_keys() {
                          "largest spacing, " +
                          number_text(spacing.largest()) + " m");
            })
-           .moreover("in 3D to 100; with model `cpd` to 50 in 2D, to 8 in 3D"),
+           .moreover("in 3D to 100; with model `cpd` to 50 in 2D, to 8 in 3D")
+           .on_ranks(),
        thickness(in(lattice, &Lattice::cross_section)), area(in(lattice, &Lattice::cross_section)),
        K("origin", in(lattice, &Lattice::origin),
          choice<LatticeOrigin>(
              {{"cell_centres", LatticeOrigin::cell_centres}, {"nodes", LatticeOrigin::nodes}}),
          "where points stand relative to the lower corner of the first shape. `\"cell_centres\"`: "
-         "half a spacing inside; `\"nodes\"`: on the corner itself"),
+         "half a spacing inside; `\"nodes\"`: on the corner itself")
+           .on_ranks(),
        K("volumes", in(lattice, &Lattice::volumes),
          choice<CellVolumes>(
              {{"cells", CellVolumes::whole}, {"fractional", CellVolumes::fractional}}),
          "volumes of points. `\"cells\"`: the whole cell, if its lattice point lies in the body; "
          "`\"fractional\"`: the part of each cell that lies in the body")
-           .moreover("`fractional` with model `bond`"),
+           .moreover("`fractional` with model `bond`")
+           .on_ranks(),
        K("perturbation", in(lattice, &Lattice::perturbation), between(0.0, 0.49, "spacings"),
          "largest random shift of a point along each of the lattice's axes; points of layers are "
-         "not shifted"),
+         "not shifted")
+           .on_ranks(),
        K("cell_perturbation", in(lattice, &Lattice::cell_perturbation),
          between(0.0, 0.249, "spacings"),
          "largest random shift of the corners of cells inside the body along each of the lattice's "
          "axes; points stand at the cells' centroids and have their volumes")
            .unless(in_dimension<3>, "is for dimensions 1 and 2")
-           .moreover("model `bond`"),
+           .moreover("model `bond`")
+           .on_ranks(),
        K("seed", in(lattice, &Lattice::seed),
          count_from(0, "", std::numeric_limits<std::int64_t>::max()),
-         "seed of the random shifts and positions; the same seed gives the same points"),
+         "seed of the random shifts and positions; the same seed gives the same points")
+           .on_ranks(),
        K("shape", in(lattice, &Lattice::shapes), shape_step_keys(),
          "tables: shapes that make up the body")
            .then([](auto& at, auto& result) {
              if (lattice(result).shapes.empty())
                at.refuse("this array of tables is missing; a lattice needs at least one shape");
            })
-           .default_words("at least one is required"),
-       K("layer", in(lattice, &Lattice::layers), layer_keys(), "tables: points outside the body")},
+           .default_words("at least one is required")
+           .on_ranks(),
+       K("layer", in(lattice, &Lattice::layers), layer_keys(), "tables: points outside the body")
+           .on_ranks()},
       [](auto&, auto& result) {
         result.body = Lattice();
         lattice(result).dimension = result.dimension;
@@ -180,12 +193,14 @@ Table<Case> points_keys() {
       "points",
       {K("file", in(points, &PointSource::file), file_beside_the_case(),
          "file with comma- or blank-separated text; its path is relative to the case file's folder")
-           .required(),
+           .required()
+           .on_ranks(),
        K("horizon", in(points, &PointSource::horizon), positive("m"),
          "horizon, the same for every point")
            .moreover("at least the mean spacing; at most as many mean spacings as "
                      "`lattice.horizon_ratio` allows")
-           .required(),
+           .required()
+           .on_ranks(),
        K("neighbours", in(points, &PointSource::neighbours), file_beside_the_case(),
          "file with the neighbours of the points and the shares of their volumes that count, "
          "relative to the case file's folder like `file`; model `bond`")
@@ -294,7 +309,8 @@ Table<Case> quadrature_keys() {
          "and loads of the other models except mode `path`. `\"printed\"`: forces of [FCBM] (A-8), "
          "for comparisons only; they have no potential where neighbourhoods differ, and need "
          "`solver.operator = \"fft\"` in mode `dynamics` with `scheme = \"verlet\"`")
-           .written_if(of_lps),
+           .written_if(of_lps)
+           .on_ranks(),
        K("volume_correction", &Case::volume_correction,
          choice<VolumeCorrection>({{"none", VolumeCorrection::none},
                                    {"linear", VolumeCorrection::linear},
@@ -305,7 +321,8 @@ Table<Case> quadrature_keys() {
          "its cell within the horizon; `\"exact_centroids\"`: the same, with the bond's length and "
          "influence taken at that part's centroid. The last two are for whole cells of a lattice, "
          "whose corners `cell_perturbation` may shift")
-           .written_if(of_kernel),
+           .written_if(of_kernel)
+           .on_ranks(),
        K("horizon_shape", &Case::horizon_shape,
          choice<HorizonShape>({{"ball", HorizonShape::ball},
                                {"box", HorizonShape::box},
@@ -314,7 +331,8 @@ Table<Case> quadrature_keys() {
          "by its largest component along the lattice's axes (`\"box\"`), or by the sum of these "
          "components (`\"diamond\"`). Boxes and diamonds are stiffer along some directions than "
          "along others: [moduli](theory.md#horizon-shapes) are means over all directions")
-           .written_if(of_bond),
+           .written_if(of_bond)
+           .on_ranks(),
        K("surface_correction", &Case::surface_correction,
          choice<SurfaceCorrection>({{"none", SurfaceCorrection::none},
                                     {"volume", SurfaceCorrection::volume},
@@ -322,30 +340,35 @@ Table<Case> quadrature_keys() {
          "factor that restores the stiffness of points whose neighbourhood is cut by a surface. "
          "`\"none\"`: no factor; `\"volume\"`: from the volume of the neighbourhood; `\"energy\"`: "
          "from the energy of simple deformations")
-           .written_if(of_bond),
+           .written_if(of_bond)
+           .on_ranks(),
        K("weights", &Case::weights,
          choice<InteractionWeights>(
              {{"mean", InteractionWeights::mean}, {"bulk", InteractionWeights::bulk}}),
          "model `cpd`: weights of interactions near surfaces. `\"mean\"`: from the mean of their "
          "points' effective volumes; `\"bulk\"`: as in the bulk everywhere")
-           .written_if([](auto&, const Case& from) { return is_cpd(from); }),
+           .written_if([](auto&, const Case& from) { return is_cpd(from); })
+           .on_ranks(),
        K("degree", in(collocation, &CollocationSpecification::degree),
          count_from(least_exact_degree, "", most_exact_degree),
          "model `lps` by collocation: degree of the polynomials that the quadrature is exact for")
-           .written_if(of_collocation),
+           .written_if(of_collocation)
+           .on_ranks(),
        K("traction_form", in(collocation, &CollocationSpecification::traction_form),
          choice<TractionForm>({{"full", TractionForm::full}, {"paper", TractionForm::paper}}),
          "model `lps` by collocation: part of the displacements' continuation over the boundary "
          "that counts. `\"full\"`: all of it, which is exact for linear fields on every grid; "
          "`\"paper\"`: the part that [LPS] eq. 4.6 keeps")
-           .written_if(of_collocation),
+           .written_if(of_collocation)
+           .on_ranks(),
        K("normals", in(collocation, &CollocationSpecification::normals),
          choice<NormalSource>(
              {{"numerical", NormalSource::numerical}, {"exact", NormalSource::exact}}),
          "model `lps` by collocation: normals of surfaces. `\"numerical\"`: from the "
          "neighbourhoods; `\"exact\"`: from the shapes' faces, at points that have one face and "
          "all of their bonds")
-           .written_if(of_collocation)}};
+           .written_if(of_collocation)
+           .on_ranks()}};
 }
 
 void check_quadrature(const Entry& at, const Case& result) {

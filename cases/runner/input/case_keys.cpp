@@ -34,16 +34,21 @@ Table<Case> all_keys() {
                  result.title = std::filesystem::path(result.file).stem().string();
                },
                "name of the file without its ending")
-           .early(),
-       K("dimension", &Case::dimension, integer(1, 3), "dimension of the body").required().early(),
+           .early()
+           .on_ranks(),
+       K("dimension", &Case::dimension, integer(1, 3), "dimension of the body")
+           .required()
+           .early()
+           .on_ranks(),
        K("lattice", itself, lattice_keys(), "table: points on a lattice")
            .written_if(body_is<Lattice>)
            .one_of(),
        K("points", itself, points_keys(), "table: points from a file")
            .written_if(body_is<PointSource>)
            .one_of(),
-       K("set", &Case::sets, set_keys(), "tables: named sets of points"),
-       K("crack", &Case::cracks, crack_keys(), "tables: cracks that are there from the start"),
+       K("set", &Case::sets, set_keys(), "tables: named sets of points").on_ranks(),
+       K("crack", &Case::cracks, crack_keys(), "tables: cracks that are there from the start")
+           .on_ranks(),
        K("quadrature", itself, quadrature_keys(), "table: corrections of the weights"),
        K("material", &Case::material, material_keys("material"),
          "table: model, constants and damage of the points in no region")
@@ -51,55 +56,71 @@ Table<Case> all_keys() {
            .written_if([](auto& result, auto&) { return result.material.has_constants(); }),
        K("region", &Case::regions, region_keys(),
          "tables: sets of points with materials of their own")
-           .then(check_regions),
+           .then(check_regions)
+           .on_ranks(),
        K("interface", &Case::interfaces, interface_keys(),
          "tables: interactions between points of two materials")
            .then([](auto& at, auto& result) {
              if (!result.interfaces.empty() && result.regions.empty()) at.refuse("needs regions");
-           }),
-       K("support", &Case::supports, support_keys(), "tables: prescribed displacements"),
+           })
+           .on_ranks(),
+       K("support", &Case::supports, support_keys(), "tables: prescribed displacements").on_ranks(),
        K("rigid", in(&Case::constraints, &ConstraintSpecification::rigid_sets), rigid_set_keys(),
-         "tables: sets that move as rigid bodies"),
+         "tables: sets that move as rigid bodies")
+           .on_ranks(),
        K("roller", in(&Case::constraints, &ConstraintSpecification::rollers), roller_keys(),
-         "tables: points that slide along a plane at any angle"),
+         "tables: points that slide along a plane at any angle")
+           .on_ranks(),
        K("constraint", in(&Case::constraints, &ConstraintSpecification::linear),
-         linear_constraint_keys(), "tables: linear constraints between sets"),
+         linear_constraint_keys(), "tables: linear constraints between sets")
+           .on_ranks(),
        K("symmetry", in(&Case::constraints, &ConstraintSpecification::symmetries), symmetry_keys(),
-         "tables: planes of symmetry, with the bonds across them"),
+         "tables: planes of symmetry, with the bonds across them")
+           .on_ranks(),
        K("period", in(&Case::constraints, &ConstraintSpecification::periods), period_keys(),
-         "tables: sides across which the body repeats"),
+         "tables: sides across which the body repeats")
+           .on_ranks(),
        K("load", &Case::loads, load_keys(), "tables: forces"),
        K("foundation", &Case::foundations, foundation_keys(),
-         "tables: springs between a part of the body and a ground"),
+         "tables: springs between a part of the body and a ground")
+           .on_ranks(),
        K("eigenstrain", in(&Case::eigenstrains, &Eigenstrains::given), eigenstrain_keys(),
-         "tables: strains that cost no energy"),
+         "tables: strains that cost no energy")
+           .on_ranks(),
        K("temperature", &Case::eigenstrains, temperature_keys(), "table: change of temperature")
            .then(check_temperature)
            .written_if([](auto& result, auto&) {
              return result.eigenstrains.temperature_change.has_value();
-           }),
+           })
+           .on_ranks(),
        K("control", &Case::controls, control_keys(),
          "tables: the displacement that is controlled instead of `load`"),
        K("initial", &Case::initial, initial_keys(),
-         "tables: displacements and velocities at time 0"),
-       K("absorbing", &Case::absorbing, absorbing_keys(), "tables: layers that absorb waves"),
+         "tables: displacements and velocities at time 0")
+           .on_ranks(),
+       K("absorbing", &Case::absorbing, absorbing_keys(), "tables: layers that absorb waves")
+           .on_ranks(),
        K("loading", &Case::loading, loading_keys(), "table: the path of the loads, and its steps")
            .written_if(searches)
            .early(),
        K("solver", &Case::solver, solver_keys(), "table: search for equilibrium"),
        K("relaxation", &Case::relaxation, relaxation_keys(), "table: steps by dynamic relaxation")
-           .written_if(searches),
+           .written_if(searches)
+           .on_ranks(),
        K("arc_length", &Case::solver, arc_length_keys(), "table: steps in mode `arc_length`")
            .written_if(searches)
            .then(check_found_loads),
        K("dynamics", &Case::dynamics, dynamics_keys(), "table: the motion in time")
            .early()
            .unless([](auto& result, auto&) { return !result.dynamics.is_asked_for; }, "")
-           .default_words("required in mode `dynamics`"),
+           .default_words("required in mode `dynamics`")
+           .on_ranks(),
        K("output", &Case::output, output_keys(), "table: results folder"),
-       K("probe", &Case::probes, probe_keys(), "tables: values that are recorded in the history"),
+       K("probe", &Case::probes, probe_keys(), "tables: values that are recorded in the history")
+           .on_ranks(),
        K("crack_tip", &Case::crack_tips, crack_tip_keys(),
-         "tables: J, stress intensity factors and T-stress in the history")},
+         "tables: J, stress intensity factors and T-stress in the history")
+           .on_ranks()},
       [](auto& at, auto& result) {
         ask_for_dynamics(at, result);
         check_dynamics(at, result);
@@ -138,14 +159,26 @@ const std::map<std::string, std::vector<std::string>>& case_keys() {
   return keys;
 }
 
+namespace {
+
+/// Dotted names of the keys with a mark.
+std::vector<std::string> marked_keys(bool KeyDescription::*mark) {
+  std::vector<std::string> marked;
+  for (const auto& table : table_descriptions())
+    for (const auto& key : table.keys)
+      if (key.*mark) marked.push_back(table.name + (table.name.empty() ? "" : ".") + key.name);
+  return marked;
+}
+
+}  // namespace
+
 const std::vector<std::string>& extending_keys() {
-  static const auto keys = [] {
-    std::vector<std::string> extending;
-    for (const auto& table : table_descriptions())
-      for (const auto& key : table.keys)
-        if (key.extends) extending.push_back(table.name + "." + key.name);
-    return extending;
-  }();
+  static const auto keys = marked_keys(&KeyDescription::extends);
+  return keys;
+}
+
+const std::vector<std::string>& keys_on_ranks() {
+  static const auto keys = marked_keys(&KeyDescription::on_ranks);
   return keys;
 }
 

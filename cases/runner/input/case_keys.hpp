@@ -13,7 +13,8 @@ struct Table;
 /// Entry of a key in the reference, in markdown.
 struct KeyDescription {
   std::string name, meaning, unit, fallback, allowed;
-  bool extends = false;  ///< may change when a run is resumed
+  bool extends = false;   ///< may change when a run is resumed
+  bool on_ranks = false;  ///< runs on several ranks; a table: with all keys below it
 };
 
 /// Entry of a table in the reference; `listed` has its keys in the order of messages.
@@ -43,5 +44,8 @@ struct TableDescription {
 /// Dotted names of the keys that may change when a run is resumed: they set how far it goes and how
 /// it is solved and reported from then on, but not the problem itself.
 [[nodiscard]] const std::vector<std::string>& extending_keys();
+
+/// Dotted names of the keys that run on several ranks, and of tables all of whose keys do.
+[[nodiscard]] const std::vector<std::string>& keys_on_ranks();
 
 }  // namespace peristat

@@ -190,6 +190,12 @@ class Key : public UntypedKey {
     set_extends();
     return *this;
   }
+  /// Tests run the key on several ranks, a table with all that is in it: see keys_on_ranks. Any
+  /// other key is refused there.
+  Key& on_ranks() {
+    set_on_ranks();
+    return *this;
+  }
   /// Action after the key, given or not: checks that involve keys read before.
   template <class Action>
   Key& then(Action action) {

@@ -27,7 +27,8 @@ Key<LoadSpecification> load_value(LoadSpecification::Kind kind, const std::strin
                    force_components(kind == Spec::Kind::total_force, unit), meaning)
       .then([=](auto&, auto& load) { load.kind = kind; })
       .written_if([=](auto& load, auto&) { return load.kind == kind; })
-      .one_of();
+      .one_of()
+      .on_ranks();
 }
 
 /// Checks where a load acts, which depends on its kind.
@@ -63,7 +64,8 @@ Table<LoadSpecification> load_keys() {
            .early()
            .written_if([](auto& load, auto&) { return !load.set.empty(); })
            .default_words("required, except for `gravity`, which then acts on the whole body, and "
-                          "for `traction` and `pressure` with a `side`"),
+                          "for `traction` and `pressure` with a `side`")
+           .on_ranks(),
        load_value(Kind::body_force, "N/m3", "force density per component"),
        load_value(Kind::total_force, "N",
                   "force on the whole set per component, distributed in proportion to the volume"),
@@ -78,22 +80,26 @@ Table<LoadSpecification> load_keys() {
          "the faces as they deform, and pushes if it is positive; on a lattice only")
            .then([](auto&, auto& load) { load.kind = Kind::pressure; })
            .written_if([](auto& load, auto&) { return load.kind == Kind::pressure; })
-           .one_of(),
+           .one_of()
+           .on_ranks(),
        K("stress", &Spec::stress, stress_components(),
          "model `lps`: stress of the surroundings, [xx, yy, xy] or [xx, yy, zz, xy, yz, xz]; it "
          "loads the surface by its traction, the stress times the outward normal")
            .then([](auto&, auto& load) { load.kind = Kind::stress; })
            .written_if([](auto& load, auto&) { return load.kind == Kind::stress; })
-           .one_of(),
+           .one_of()
+           .on_ranks(),
        K("boundary", &Spec::boundary, text(),
          "model `lps`: `name` of the `[[lattice.shape]]` whose boundary is loaded")
-           .written_if([](auto& load, auto&) { return !load.boundary.empty(); }),
+           .written_if([](auto& load, auto&) { return !load.boundary.empty(); })
+           .on_ranks(),
        K("side", &Spec::side, optional_side(),
          "`traction`, `pressure`: the body's outermost plane of points on a side, named as in "
          "`[[lattice.layer]]`")
            .written_if([](auto& load, auto&) { return load.side.has_value(); })
            .default_words("`traction`, `pressure`: this or a `set` is required; the set of a "
-                          "traction lies in one plane of points"),
+                          "traction lies in one plane of points")
+           .on_ranks(),
        K("depth", &Spec::depth,
          choice<Depth>(
              {{"row", Depth::row}, {"horizon", Depth::horizon}, {"surface", Depth::surface}}),
@@ -102,7 +108,8 @@ Table<LoadSpecification> load_keys() {
          "only and always with model `lps`")
            .written_if([=](auto& load, const Case& from) {
              return is_traction(load, from) && !from.is_collocated();
-           })},
+           })
+           .on_ranks()},
       {},
       check_place_of_load};
 }

@@ -68,7 +68,8 @@ Table<LoadingSpecification> loading_keys() {
                    {K("steps", &Spec::steps, integer(1, 1'000'000),
                       "number of equal steps from one entry of the tables to the next, or of a "
                       "table that is an expression; without a table from 0 to 1")
-                        .extends()}};
+                        .extends()
+                        .on_ranks()}};
   for (std::size_t k = 0; k < LoadingProgramme::most_parameters; ++k) {
     const std::string parameter = LoadingProgramme::names(k + 1).back();
     const auto member = [k](auto& loading) -> auto& {
@@ -89,6 +90,7 @@ Table<LoadingSpecification> loading_keys() {
     key.written_if([k](auto& loading, auto&) { return loading.tables.size() > k; })
         .default_words(k == 0 ? "`[0, 1]`; required with `[[control]]`" : "no `" + parameter + "`")
         .extends();
+    if (k < 2) key.on_ranks();  // as many as tests give there
     if (k + 1 == LoadingProgramme::most_parameters) key.then(resolve_tables);
     keys.add(key);
   }
@@ -98,12 +100,14 @@ Table<LoadingSpecification> loading_keys() {
        {K("adaptive", &Spec::adaptive, boolean(),
           "whether a step that does not converge is cut, after which steps grow again; otherwise "
           "it ends the run")
-            .extends(),
+            .extends()
+            .on_ranks(),
         K("smallest_step", &Spec::smallest_step, between(1e-12, 1.0),
           "smallest step of the stage (the load factor, without a table); the run ends when it "
           "needs a smaller one")
             .extends()
-            .moreover("at most the first step"),
+            .moreover("at most the first step")
+            .on_ranks(),
         K("largest_step", &Spec::largest_step, between(1e-12, 1.0),
           "largest step of the stage, to which steps may grow")
             .extends()
@@ -121,17 +125,20 @@ Table<LoadingSpecification> loading_keys() {
               if (loading.largest_step < step)
                 at.refuse("must not be smaller than the first step, 1 / steps");
             })
-            .moreover("at least the first step"),
+            .moreover("at least the first step")
+            .on_ranks(),
         K("max_broken_bonds", &Spec::max_broken_bonds, count_from(0, "bonds"),
           "mode `newton`: most bonds that may break in one step; a step with more is cut. 0: no "
           "limit")
             .written_if(takes_steps)
-            .extends(),
+            .extends()
+            .on_ranks(),
         K("stop_below", &Spec::stop_below, between(0.0, 1.0),
           "share of the largest support reaction so far: the run is complete when the largest "
           "reaction falls below this share of it, as that of a specimen that tears. 0: only the "
           "load ends the run")
-            .extends(),
+            .extends()
+            .on_ranks(),
         K("event_tolerance", in(&Spec::events, &EventOptions::tolerance), between(0.0, 0.5),
           "mode `path`: bonds whose utilisation is within this share of the largest one break with "
           "it; 0: only bonds that tie with it")

@@ -280,17 +280,20 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
              if (material.model == MaterialModel::correspondence)
                at.refuse("correspondence needs dimension 2 or 3");
            })
-           .early(),
+           .early()
+           .on_ranks(),
        K("potential", &Spec::potential, one_of(bond_potentials()),
          "potential of undamaged bonds, a function of their stretch; a damage law uses it below "
-         "its onset"),
+         "its onset")
+           .on_ranks(),
        K("plane", &Spec::plane,
          choice<PlaneState>({{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}),
          "state of a plane body, dimension 2 only (`cpd` in 2D is purely two-dimensional and has "
          "neither)")
            .unless(of_cpd, for_bond)
            .unless(in_dimension<1>, "is for dimension 2 only")
-           .unless(in_dimension<3>, "is for dimension 2 only"),
+           .unless(in_dimension<3>, "is for dimension 2 only")
+           .on_ranks(),
        K("kinematics", &Spec::kinematics,
          choice<Kinematics>({{"finite", Kinematics::finite}, {"linear", Kinematics::linear}}),
          "stretch of a `bond`. `\"finite\"`: by its length, at any deformation; `\"linear\"`: by "
@@ -298,21 +301,25 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "without eigenstrains, with `potential = \"harmonic\"` and with damage by "
          "`energy_density` alone. `lps` is always linear")
            .then(make_linear_if_lps)
-           .unless(of_cpd, "is for models \"bond\" and \"lps\""),
+           .unless(of_cpd, "is for models \"bond\" and \"lps\"")
+           .on_ranks(),
        K("influence", &Spec::influence, one_of(influence_names()),
          "influence function $\\omega(r/\\delta)$: [GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, "
          "$e^{-(r/\\delta)^2}$, or $\\delta/r$. The force density of a bond is $c\\,\\omega s$; "
          "constants, moduli and fracture energy account for it. `cpd`: a triangle or tetrahedron "
          "has the product of its sides' functions, and constants of the lattice. `lps` as an "
          "energy: the kernel K(r); by collocation the inverse one alone")
-           .default_words("`\"constant\"`; `\"inverse\"` with `lps`"),
+           .default_words("`\"constant\"`; `\"inverse\"` with `lps`")
+           .on_ranks(),
        K("youngs_modulus", &Spec::youngs_modulus, positive("Pa"), "Young's modulus, for all models")
-           .one_of(),
+           .one_of()
+           .on_ranks(),
        K("micromodulus", &Spec::micromodulus, positive("N/m6", 1e150),
          "`bond`: bond constant c of the pairwise force c·stretch")
            .unless(of_cpd, for_bond)
            .unless(of_lps, for_bond)
-           .one_of(),
+           .one_of()
+           .on_ranks(),
        K("poisson_ratio", &Spec::poisson_ratio, between(-1.0, 1.0),
          "Poisson's ratio, for `cpd`, `lps` and `correspondence` with `youngs_modulus`")
            .unless(
@@ -322,7 +329,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .unless(has_constants, with_moduli)
            .moreover("`lps`, `correspondence`: to 0.5; `cpd`: in 3D to 0.5; these limits are "
                      "excluded; `cpd` with damage: at least 1/3 (2D) or 1/4 (3D)")
-           .required("required with `youngs_modulus`"),
+           .required("required with `youngs_modulus`")
+           .on_ranks(),
        K("stabilisation", &Spec::stabilisation, positive("-"),
          "`correspondence`: stiffness of the "
          "[springs](theory.md#materials-of-convolutions-at-finite-deformation) that resist motions "
@@ -335,7 +343,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
        K("c1", &Spec::c1, positive("N/m6", 1e200), "`cpd`: one-neighbour constant")
            .unless(of_bond, for_cpd)
            .unless(of_lps, for_cpd)
-           .one_of(),
+           .one_of()
+           .on_ranks(),
        K("c2", &Spec::c2, stiffness("N/m10"),
          "`cpd`: two-neighbour constant; in 3D it may also be given with `youngs_modulus`, in 2D "
          "it follows from it")
@@ -347,7 +356,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
                },
                "follows from youngs_modulus and poisson_ratio in 2D; give c1 for a free c2")
            .moreover("a negative one is refused with damage, and where it makes the body "
-                     "[unstable at rest](theory.md#stability-at-rest)"),
+                     "[unstable at rest](theory.md#stability-at-rest)")
+           .on_ranks(),
        K("c3", &Spec::c3, stiffness("N/m14"),
          "`cpd`: three-neighbour constant, 3D; it follows from `youngs_modulus` if that is given")
            .unless(of_bond, for_cpd)
@@ -358,7 +368,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
              if (at.so_far.dimension == 2 && material.c3 != 0.0)
                at.refuse("must be 0 in 2D: three neighbours of a point in a plane span no volume");
            })
-           .moreover("for a negative one see `c2`"),
+           .moreover("for a negative one see `c2`")
+           .on_ranks(),
        K("calibration", &Spec::calibration,
          choice<Calibration>(
              {{"lattice", Calibration::lattice}, {"continuum", Calibration::continuum}}),
@@ -368,23 +379,29 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .unless(has_constants, with_moduli)
            .unless(has_micromodulus, "goes with youngs_modulus, not with micromodulus")
            .unless(of_lps, "is for models \"bond\", \"green_bond\" and \"cpd\"")
-           .default_words("`\"lattice\"` with `cpd`, `\"continuum\"` with `bond`"),
+           .default_words("`\"lattice\"` with `cpd`, `\"continuum\"` with `bond`")
+           .on_ranks(),
        K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "per K"),
-         "coefficient α of linear expansion, for `[temperature]`"),
+         "coefficient α of linear expansion, for `[temperature]`")
+           .on_ranks(),
        K("density", &Spec::density, positive("kg/m3"),
          "mass density, for gravity and mode `dynamics`; dynamic relaxation has a pseudo density "
-         "of its own"),
+         "of its own")
+           .on_ranks(),
        K("damage", &Spec::damage, damage_keys(name), "table `[material.damage]`")
-           .default_words("no damage"),
+           .default_words("no damage")
+           .on_ranks(),
        K("fibre", fibre_of, fibre_keys(name),
          "table `[material.fibre]`: moduli and stretches that depend on the direction of the bond")
            .written_if([](auto& material, auto&) { return material.fibre.has_value(); })
            .unless(of_cpd, for_bond)
            .unless(of_lps, for_bond)
            .unless(in_dimension<1>, "needs dimension 2 or 3")
-           .otherwise([](auto&, auto&) {}, "none"),
+           .otherwise([](auto&, auto&) {}, "none")
+           .on_ranks(),
        K("scatter", &Spec::scatter, scatter_keys(name),
-         "tables `[[material.scatter]]`: random fields")}};
+         "tables `[[material.scatter]]`: random fields")
+           .on_ranks()}};
 }
 
 namespace {

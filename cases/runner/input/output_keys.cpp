@@ -35,7 +35,8 @@ Table<OutputSpecification> output_keys() {
                "`cases/bar/tension.toml`")
            .then([](auto& at, auto& output) {
              if (output.directory.empty()) at.refuse("is empty");
-           }),
+           })
+           .on_ranks(),
        K("every", &Spec::every, count_from(1, "steps"),
          "fields are written at every n-th accepted step (in mode `dynamics` every n-th time "
          "step), and at the last one")
@@ -51,15 +52,18 @@ Table<OutputSpecification> output_keys() {
              if (rows > 0 && output.every % rows != 0)
                at.refuse("must be a multiple of dynamics.history_every, " + std::to_string(rows));
            })
-           .extends(),
+           .extends()
+           .on_ranks(),
        K("count_cracks", &Spec::count_cracks, boolean(),
          "whether bonds that a `[[crack]]` has cut count as lost in `damage` and `max_damage`, "
-         "so that the crack shows in the pictures from the start"),
+         "so that the crack shows in the pictures from the start")
+           .on_ranks(),
        K("stress", &Spec::stress, boolean(),
          "whether strain and stress are among the fields: deformation gradient, strain, first "
          "Piola–Kirchhoff and Cauchy stress, von Mises' stress, principal values and directions "
          "([theory](theory.md#strain-and-stress)); they take several times the space of the other "
-         "fields")}};
+         "fields")
+           .on_ranks()}};
 }
 
 namespace {

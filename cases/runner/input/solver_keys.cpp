@@ -105,7 +105,8 @@ Table<SolverSpecification> solver_keys() {
          "`\"arc_length\"`: along the path itself, through limit points and bifurcations, without "
          "damage; `\"path\"`: sequentially linear analysis, from one breaking bond to the next; "
          "`\"dynamics\"`: the motion in time, by explicit or implicit steps")
-           .extends(),
+           .extends()
+           .on_ranks(),
        K("linear", &Spec::linear,
          choice<LinearMethod>({{"auto", LinearMethod::automatic},
                                {"cholesky", LinearMethod::cholesky},
@@ -120,7 +121,8 @@ Table<SolverSpecification> solver_keys() {
          "symmetric tangents")
            .written_if(searches)
            .extends()
-           .then(check_linear),
+           .then(check_linear)
+           .on_ranks(),
        K("preconditioner", &Spec::preconditioner,
          choice<PreconditionerKind>({{"auto", PreconditionerKind::automatic},
                                      {"jacobi", PreconditionerKind::jacobi},
@@ -140,7 +142,8 @@ Table<SolverSpecification> solver_keys() {
          "and `linear = \"auto\"` then means `\"gmres\"`")
            .written_if(searches)
            .extends()
-           .then(check_preconditioner),
+           .then(check_preconditioner)
+           .on_ranks(),
        K("tangent", &Spec::tangent,
          choice<TangentStorage>({{"auto", TangentStorage::automatic},
                                  {"stored", TangentStorage::stored},
@@ -150,7 +153,8 @@ Table<SolverSpecification> solver_keys() {
          "\"bond\"` without `\"cholesky\"`, `\"riluk\"`, `\"chebyshev\"` and `\"multigrid\"`. "
          "`\"auto\"` stores them for direct solvers")
            .written_if(searches)
-           .then(check_tangent),
+           .then(check_tangent)
+           .on_ranks(),
        K("operator", &Spec::force_operator,
          choice<ForceOperator>({{"auto", ForceOperator::automatic},
                                 {"bonds", ForceOperator::bonds},
@@ -161,30 +165,36 @@ Table<SolverSpecification> solver_keys() {
          "with equal volumes, without a `surface_correction`. Both give the same results to "
          "round-off. `\"auto\"` takes the faster one: where possible `fft` for motions by explicit "
          "steps with a horizon of 2.5 spacings or more. Models `green_bond` and `correspondence`, "
-         "and `lps` as printed, have `fft` alone"),
+         "and `lps` as printed, have `fft` alone")
+           .on_ranks(),
        K("predictor", &Spec::predictor,
          choice<Predictor>({{"consistent", Predictor::consistent}, {"none", Predictor::none}}),
          "state about which the first iteration of a step linearises. `\"consistent\"`: the old "
          "state, spreading the jump of the supports; `\"none\"`: the state after the jump, as in "
          "[CPD]")
-           .written_if(searches),
+           .written_if(searches)
+           .on_ranks(),
        K("projection", &Spec::projection,
          choice<Projection>({{"auto", Projection::automatic},
                              {"never", Projection::never},
                              {"always", Projection::always}}),
          "projection of interactions to their positive semidefinite part. `\"auto\"`: when the "
          "exact tangent has negative pivots or the search fails with it")
-           .written_if(searches),
+           .written_if(searches)
+           .on_ranks(),
        K("relative_tolerance", &Spec::relative_tolerance, between(1e-14, 1e-2),
          "relative tolerance of the residual")
-           .written_if(searches),
+           .written_if(searches)
+           .on_ranks(),
        K("linear_tolerance", &Spec::linear_tolerance, between(1e-14, 1e-1),
          "largest relative residual allowed in the linear system of a Newton iteration")
-           .written_if(searches),
+           .written_if(searches)
+           .on_ranks(),
        K("max_iterations", &Spec::max_iterations, integer(1, 1000),
          "most iterations of Newton's method in one step")
            .written_if(searches)
-           .extends(),
+           .extends()
+           .on_ranks(),
        K("fragments", &Spec::fragments,
          choice<FragmentRemedy>({{"hold", FragmentRemedy::hold},
                                  {"remove", FragmentRemedy::remove},
@@ -194,14 +204,16 @@ Table<SolverSpecification> solver_keys() {
          "and stay where they are; `\"stop\"`: the run ends with outcome `fragmented`")
            .written_if(is_static)
            .then(check_fragments)
-           .moreover("not `\"remove\"` with eigenstrains or a temperature"),
+           .moreover("not `\"remove\"` with eigenstrains or a temperature")
+           .on_ranks(),
        K("elastic_horizon_ratio", &Spec::elastic_horizon_ratio, between(1.0, 1e3),
          "mode `adaptive`: horizon / spacing of an elastic stand-in that replaces the body until "
          "damage begins; needs model `bond`, `youngs_modulus` and a damage law")
            .then(check_stand_in)
            .written_if([](auto& solver, auto&) { return solver.elastic_horizon_ratio > 0.0; })
            .moreover("in 3D to 100")
-           .default_words("no stand-in")}};
+           .default_words("no stand-in")
+           .on_ranks()}};
 }
 
 Table<SolverSpecification> arc_length_keys() {

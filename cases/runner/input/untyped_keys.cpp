@@ -18,7 +18,7 @@ UntypedKind::~UntypedKind() = default;
 UntypedKey::UntypedKey(std::string_view name, const UntypedMember& member,
                        const ValueOfMember& value, const UntypedKind& kind,
                        std::string_view meaning)
-    : description_{std::string(name), std::string(meaning), kind.unit, {}, kind.allowed, false},
+    : description_{std::string(name), std::string(meaning), kind.unit, {}, kind.allowed},
       member_(member),
       value_(value),
       kind_(std::make_shared<UntypedKind>(kind)) {}
@@ -26,7 +26,7 @@ UntypedKey::UntypedKey(std::string_view name, const UntypedMember& member,
 UntypedKey::UntypedKey(std::string_view name, const UntypedMember& member,
                        const UntypedTable& inner, const ElementsOfMember* elements,
                        std::string_view meaning)
-    : description_{std::string(name), std::string(meaning), {}, {}, {}, false},
+    : description_{std::string(name), std::string(meaning), {}, {}, {}},
       member_(member),
       elements_(elements),
       inner_(std::make_shared<UntypedTable>(inner)) {

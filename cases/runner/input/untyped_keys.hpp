@@ -119,6 +119,7 @@ class UntypedKey {
   void set_one_of() { is_one_of_ = true; }
   void set_early() { is_early_ = true; }
   void set_extends() { description_.extends = true; }
+  void set_on_ranks() { description_.on_ranks = true; }
   void set_then(Action action);
   void set_written_if(Predicate holds);
   void set_described(DescribeInside tables_inside) { describe_inside_ = tables_inside; }

@@ -1,4 +1,4 @@
-"""The tables of docs/case-file.md are the output of `peristat keys`.
+"""The tables of docs/case-file.md, and of docs/cluster.md, are the output of `peristat keys`.
 
     PERISTAT_PROGRAM=build/release/peristat /usr/bin/python3 -BEs tests/unit/cases/case_file_page_test.py --write
 
@@ -14,9 +14,11 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 PAGE = ROOT / "docs/case-file.md"
+CLUSTER = ROOT / "docs/cluster.md"
 PROGRAM = os.environ["PERISTAT_PROGRAM"]
 # <!-- keys: TABLE --> ... <!-- end -->, below a heading
 BLOCK = re.compile(r"(?<=<!-- keys: )([\w.]+) -->\n(.*?)(?=<!-- end -->)", re.DOTALL)
+ON_RANKS = re.compile(r"(?<=<!-- keys on ranks -->\n)(.*?)(?=<!-- end -->)", re.DOTALL)
 HEADING = re.compile(r"^(?:(The document)|\[+([\w.]+)\]+)\n\n", re.MULTILINE)
 
 
@@ -42,6 +44,11 @@ class CaseFilePage(unittest.TestCase):
             command = f"PERISTAT_PROGRAM={PROGRAM} /usr/bin/python3 -BEs {pathlib.Path(__file__).relative_to(ROOT)} --write"
             self.assertEqual(on_page[table], text, f"[{table}] in {PAGE.name} is out of date; write it anew by\n{command}")
 
+    def test_the_page_on_clusters_has_the_keys_that_run_on_ranks(self):
+        printed = keys("--ranks").stdout
+        self.assertGreater(printed.count("`"), 2 * 80)
+        self.assertEqual(ON_RANKS.search(CLUSTER.read_text())[0], printed)
+
     def test_has_a_heading_for_every_table(self):
         page = PAGE.read_text()
         for table in printed_tables():
@@ -61,5 +68,6 @@ if __name__ == "__main__":
     if sys.argv[1:] == ["--write"]:
         tables = printed_tables()
         PAGE.write_text(BLOCK.sub(lambda block: f"{block[1]} -->\n{tables[block[1]]}", PAGE.read_text()))
+        CLUSTER.write_text(ON_RANKS.sub(lambda _: keys("--ranks").stdout, CLUSTER.read_text()))
     else:
         unittest.main()
