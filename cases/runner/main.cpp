@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "cases/runner/build/part_body.hpp"
 #include "cases/runner/commands/calibrate.hpp"
 #include "cases/runner/commands/check.hpp"
 #include "cases/runner/commands/check_tangent.hpp"
@@ -27,6 +26,7 @@
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/ranks_environment.hpp"
 #include "cases/runner/process/runtime_environment.hpp"
+#include "cases/runner/setup/part_body.hpp"
 #include "solvers/ranks/ranks.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/machine_error.hpp"
@@ -390,7 +390,8 @@ int main(int count, char** arguments) try {
       program.add_subcommand("keys", "keys of case files, as tables in markdown");
   CLI::Option* const table = keys->add_option(
       "table", line.table, "one table, such as solver or lattice.shape (default: all)");
-  keys->add_flag("--ranks", line.lists_keys_on_ranks, "the keys that run on several ranks")->excludes(table);
+  keys->add_flag("--ranks", line.lists_keys_on_ranks, "the keys that run on several ranks")
+      ->excludes(table);
   CLI::App* const calibration = program.add_subcommand(
       "calibrate", "constants from moduli and fracture data, and back; prints JSON");
   add_calibration(*calibration, line);

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "cases/runner/build/body.hpp"
-#include "cases/runner/build/solver_options.hpp"
 #include "cases/runner/input/case.hpp"
+#include "cases/runner/setup/body.hpp"
+#include "cases/runner/setup/solver_options.hpp"
 #include "solvers/linear/cholesky.hpp"
 
 namespace peristat {

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "cases/runner/build/body.hpp"
 #include "cases/runner/commands/calibrate_bonds.hpp"
+#include "cases/runner/setup/body.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"

@@ -13,7 +13,7 @@
 #include "assembly/operators/constrained_product.hpp"
 #include "assembly/operators/constrained_tangent.hpp"
 #include "assembly/operators/rows_of_energy.hpp"
-#include "cases/runner/build/body.hpp"
+#include "cases/runner/setup/body.hpp"
 #include "solvers/motion/newmark.hpp"
 #include "solvers/study/motion.hpp"
 #include "src/core/expression.hpp"

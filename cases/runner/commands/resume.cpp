@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cases/runner/build/part_body.hpp"
 #include "cases/runner/commands/run_facts.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/input/case_difference.hpp"
@@ -16,6 +15,7 @@
 #include "cases/runner/input/toml_text.hpp"
 #include "cases/runner/process/progress.hpp"
 #include "cases/runner/results/earlier_run.hpp"
+#include "cases/runner/setup/part_body.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/core/input_error.hpp"
 #include "src/parallel/communicator.hpp"

@@ -10,12 +10,6 @@
 #include <H5public.h>
 #include <fmt/format.h>
 
-#include "cases/runner/build/body.hpp"
-#include "cases/runner/build/part_body.hpp"
-#include "cases/runner/build/preflight.hpp"
-#include "cases/runner/build/preflight_rules.hpp"
-#include "cases/runner/build/recorded_points.hpp"
-#include "cases/runner/build/solver_options.hpp"
 #include "cases/runner/commands/run_facts.hpp"
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/interruption.hpp"
@@ -26,6 +20,12 @@
 #include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/recorder.hpp"
 #include "cases/runner/results/results.hpp"
+#include "cases/runner/setup/body.hpp"
+#include "cases/runner/setup/part_body.hpp"
+#include "cases/runner/setup/preflight.hpp"
+#include "cases/runner/setup/preflight_rules.hpp"
+#include "cases/runner/setup/recorded_points.hpp"
+#include "cases/runner/setup/solver_options.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/lu_factor.hpp"
 #include "solvers/ranks/part_bonds.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/runner/build/body.hpp"
+#include "cases/runner/setup/body.hpp"
 #include "solvers/drivers/load_stepping.hpp"
 #include "solvers/problem/records.hpp"
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "cases/runner/build/recorded_points.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/results/line_table.hpp"
+#include "cases/runner/setup/recorded_points.hpp"
 #include "solvers/problem/records.hpp"
 #include "src/geometry/points_on_line.hpp"
 

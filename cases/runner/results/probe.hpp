@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "cases/runner/build/recorded_points.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/results/crack_measures.hpp"
 #include "cases/runner/results/results.hpp"
+#include "cases/runner/setup/recorded_points.hpp"
 
 namespace peristat {
 

@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "cases/runner/build/body.hpp"
-#include "cases/runner/build/recorded_points.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/process/progress.hpp"
 #include "cases/runner/results/crack_measures.hpp"
@@ -15,6 +13,8 @@
 #include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/results.hpp"
 #include "cases/runner/results/stress_fields.hpp"
+#include "cases/runner/setup/body.hpp"
+#include "cases/runner/setup/recorded_points.hpp"
 #include "solvers/drivers/load_stepping.hpp"
 #include "solvers/study/crack_tips.hpp"
 #include "solvers/study/motion.hpp"

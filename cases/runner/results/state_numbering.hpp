@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "assembly/terms/model.hpp"
-#include "cases/runner/build/recorded_points.hpp"
 #include "cases/runner/results/point_rows.hpp"
+#include "cases/runner/setup/recorded_points.hpp"
 #include "solvers/drivers/state_archive.hpp"
 #include "src/parallel/index_map.hpp"
 

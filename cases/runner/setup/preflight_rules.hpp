@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "cases/runner/build/preflight.hpp"
+#include "cases/runner/setup/preflight.hpp"
 
 namespace peristat {
 

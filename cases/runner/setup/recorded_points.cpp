@@ -1,4 +1,4 @@
-#include "cases/runner/build/recorded_points.hpp"
+#include "cases/runner/setup/recorded_points.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "cases/runner/build/feature_lengths.hpp"
 #include "cases/runner/input/given_values.hpp"
+#include "cases/runner/setup/feature_lengths.hpp"
 #include "solvers/study/body.hpp"
 #include "src/parallel/communicator.hpp"
 

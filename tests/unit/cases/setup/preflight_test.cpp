@@ -1,4 +1,4 @@
-#include "cases/runner/build/preflight.hpp"
+#include "cases/runner/setup/preflight.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "cases/runner/build/body.hpp"
-#include "cases/runner/build/preflight_rules.hpp"
+#include "cases/runner/setup/body.hpp"
+#include "cases/runner/setup/preflight_rules.hpp"
 #include "src/core/input_error.hpp"
 
 namespace peristat {

@@ -1,4 +1,4 @@
-#include "cases/runner/build/body.hpp"
+#include "cases/runner/setup/body.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "cases/runner/build/find_boundary.hpp"
+#include "cases/runner/setup/find_boundary.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/ranks/agree_on_kinds.hpp"
 #include "solvers/study/bond_materials.hpp"

@@ -1,4 +1,4 @@
-#include "cases/runner/build/preflight.hpp"
+#include "cases/runner/setup/preflight.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 
 #include "assembly/terms/damage.hpp"
 #include "assembly/terms/points/point_term.hpp"
-#include "cases/runner/build/body.hpp"
+#include "cases/runner/setup/body.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/fracture_data.hpp"
 #include "src/core/expression.hpp"

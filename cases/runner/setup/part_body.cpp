@@ -1,4 +1,4 @@
-#include "cases/runner/build/part_body.hpp"
+#include "cases/runner/setup/part_body.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -6,10 +6,10 @@
 #include <utility>
 #include <variant>
 
-#include "cases/runner/build/body.hpp"
-#include "cases/runner/build/find_boundary.hpp"
-#include "cases/runner/build/recorded_points.hpp"
 #include "cases/runner/input/case_keys.hpp"
+#include "cases/runner/setup/body.hpp"
+#include "cases/runner/setup/find_boundary.hpp"
+#include "cases/runner/setup/recorded_points.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 #include "solvers/study/bonds_of_part.hpp"

@@ -1,4 +1,4 @@
-#include "cases/runner/build/find_boundary.hpp"
+#include "cases/runner/setup/find_boundary.hpp"
 
 #include <memory>
 #include <variant>

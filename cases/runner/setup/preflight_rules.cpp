@@ -1,4 +1,4 @@
-#include "cases/runner/build/preflight_rules.hpp"
+#include "cases/runner/setup/preflight_rules.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "cases/runner/build/feature_lengths.hpp"
+#include "cases/runner/setup/feature_lengths.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "cases/runner/build/solver_options.hpp"
+#include "cases/runner/setup/solver_options.hpp"
 
 namespace peristat {
 
