@@ -63,12 +63,11 @@ CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free,
 
   CompressedRows rows;
   rows.rows = free.count();
-  std::vector<Index> with_ghosts;
+  std::vector<Index> column_of = free.equation;
   if (!index_map.is_whole()) {
     rows.ranks = &index_map.ranks();
-    with_ghosts = number_columns(pattern, free, index_map, rows);
+    column_of = number_columns(pattern, free, index_map, rows);
   }
-  const std::vector<Index>& column_of = index_map.is_whole() ? free.equation : with_ghosts;
   rows.begin.reserve(std::size_t(rows.rows) + 1);
   rows.begin.push_back(0);
   const std::size_t entries =

@@ -37,6 +37,7 @@ ROOMS = [
     "solvers/search",
     "solvers/motion",
     "solvers/drivers",
+    "solvers/observe",
     "solvers/study",
     "cases/runner/process",
     "cases/runner/input",
@@ -46,7 +47,7 @@ ROOMS = [
     "cases/runner",
 ]
 # Ceilings, to be lowered.
-PARTITION_BRANCHES, MODEL_BRANCHES = 60, 150
+PARTITION_BRANCHES, MODEL_BRANCHES = 60, 129
 OUTSIDE = ["tests", "benchmarks"]
 # Headers outside the standard library that headers of a floor may include; keep it this small.
 ALLOWED_IN_HEADERS = {"omp.h"}
@@ -155,7 +156,7 @@ class Architecture(unittest.TestCase):
 
     def test_few_places_ask_whether_a_body_is_partitioned(self):
         """Each such branch is code that ranks or one rank alone run. The index map has an answer without it."""
-        asking = lines_with(r"is_whole\(\)|\bnumbering_?\b( \?|\)| &&)|[(!]numbering_?\b", outside=("src/parallel",))
+        asking = lines_with(r"is_whole\(\)|if \(numbering_?\b|!numbering_?\b|\bnumbering_? (\?|&&)", outside=("src/parallel",))
         self.assertLessEqual(len(asking), PARTITION_BRANCHES, asking)
 
     def test_few_places_know_the_models(self):

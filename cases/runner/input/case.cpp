@@ -5,8 +5,8 @@
 #include "cases/runner/input/case_file.hpp"
 #include "cases/runner/input/given_values.hpp"
 #include "cases/runner/input/key_table.hpp"
-#include "cases/runner/input/probe_fields.hpp"
 #include "cases/runner/input/toml_table.hpp"
+#include "solvers/observe/point_fields.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -172,8 +172,8 @@ InputError located(const Case& from, const InputError& error) {
 }
 
 bool needs_stress(const ProbeSpecification& probe) {
-  const ProbeField* const field = probe_field(probe.field);
-  return field != nullptr && field->is_of_stress;
+  const PointField* const field = point_field(probe.field);
+  return field != nullptr && field->needs == FieldNeeds::stress;
 }
 
 bool tells_stress(const Case& from) {

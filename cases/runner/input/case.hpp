@@ -119,7 +119,7 @@ enum class Statistic { mean, max, min, rms_error, max_error };
 struct ProbeSpecification {
   std::string name, set;
   std::optional<Coordinates> at{}, from{}, to{};  ///< [m]
-  /// One of ProbeField, or poisson_ratio, opening or crack_length of a set
+  /// One of point_fields, or poisson_ratio, opening or crack_length of a set
   std::string field = "displacement";
   std::string component;  ///< of a vector or tensor; empty: all
   Statistic statistic = Statistic::mean;

@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "cases/runner/input/key_kinds.hpp"
-#include "cases/runner/input/probe_fields.hpp"
+#include "solvers/observe/point_fields.hpp"
 
 namespace peristat {
 namespace {
@@ -68,19 +68,30 @@ Table<OutputSpecification> output_keys() {
 
 namespace {
 
+/// Quantities of a whole set, which single points don't have, and fields of points.
+std::vector<std::string> quantities() {
+  std::vector<std::string> names{"poisson_ratio", "opening",          "crack_length",
+                                 "crack_begin",   "crack_end",        "crack_angle",
+                                 "crack_area",    "work_of_fracture", "crack_resistance"};
+  for (const PointField& field : point_fields()) {
+    if (field.shown_by != ShownBy::steps) names.push_back(field.name);
+  }
+  return names;
+}
+
 /// True for quantities of a whole set, which single points don't have.
 bool is_whole(const ProbeSpecification& probe, const Case&) {
-  return probe_field(probe.field) == nullptr;
+  return point_field(probe.field) == nullptr;
 }
 
 /// Checks that a probe's component is one of its field's, and is given where it is needed.
 void check_component_of_probe(const Entry& at, const ProbeSpecification& probe) {
-  const ProbeField* field = probe_field(probe.field);
+  const PointField* field = point_field(probe.field);
   if (field == nullptr) return;
   const auto components = field->components(at.so_far.dimension);
   if (probe.component.empty()) {
-    const bool must_choose = field->kind != ProbeField::Kind::scalar &&
-                             field->kind != ProbeField::Kind::vector && !probe.from;
+    const bool must_choose =
+        field->rank != FieldRank::scalar && field->rank != FieldRank::vector && !probe.from;
     if (must_choose)
       at.from.refuse("", "needs a component of " + probe.field + ": one of " + listed(components));
     return;
@@ -92,7 +103,7 @@ void check_component_of_probe(const Entry& at, const ProbeSpecification& probe) 
 
 /// Checks that there is an expression for each component.
 void check_expected(const Entry& at, const ProbeSpecification& probe) {
-  const ProbeField* const field = probe_field(probe.field);
+  const PointField* const field = point_field(probe.field);
   const std::size_t all = std::max<std::size_t>(1, field->components(at.so_far.dimension).size());
   const std::size_t components = probe.component.empty() ? all : 1;
   if (probe.expected.size() != components)
@@ -171,7 +182,7 @@ Table<ProbeSpecification> probe_keys() {
          "`line_NAME.csv`")
            .unless(is_whole, "is for a field that every point has")
            .one_of(),
-       K("field", &Spec::field, one_of(probe_field_names()),
+       K("field", &Spec::field, one_of(quantities()),
          "displacement, opening, length and place in m, area in m², force in N, energy densities "
          "in J/m³, velocity in m/s, stress in Pa, angles in degrees, work of fracture and crack "
          "resistance in J/m²; `stress` is the Cauchy stress, `strain` the Green–Lagrange strain")
@@ -189,8 +200,9 @@ Table<ProbeSpecification> probe_keys() {
              const bool fails_in_bands = at.so_far.material.damage.law == DamageLaw::energy_density;
              if (has_area && fails_in_bands && probe.field != "crack_angle")
                at.refuse("is for bonds that break: points that fail make a band of many faces");
-             const ProbeField* const field = probe_field(probe.field);
-             if (field != nullptr && field->is_of_motion && !at.so_far.dynamics.is_asked_for)
+             const PointField* const field = point_field(probe.field);
+             if (field != nullptr && field->needs == FieldNeeds::motion &&
+                 !at.so_far.dynamics.is_asked_for)
                at.refuse("is for solver.mode = \"dynamics\"");
            })
            .early(),
@@ -203,7 +215,7 @@ Table<ProbeSpecification> probe_keys() {
              if (probe.from && *probe.to == *probe.from)
                at.refuse("must not be the same place as from");
            }),
-       K("component", &Spec::component, one_of(probe_component_names()),
+       K("component", &Spec::component, one_of(component_names()),
          "component of a vector (`x`), of a tensor (`xy`; for a stress or a deformation gradient "
          "first the component, then the reference direction) or of `principal_stress` (`1`: the "
          "largest)")

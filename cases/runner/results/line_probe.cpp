@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <utility>
 
-#include "cases/runner/input/probe_fields.hpp"
 #include "cases/runner/results/probe.hpp"
+#include "solvers/observe/point_fields.hpp"
 #include "src/parallel/collectives.hpp"
 
 namespace peristat {
@@ -39,7 +39,7 @@ LineTable LineProbe::table() const {
   for (int c = 0; c < points_.dimension(); ++c) {
     table.columns.push_back({Kind::number, {"xyz"[c]}, "m", "reference position of the point"});
   }
-  const ProbeField& field = *probe_field(probe_.field);
+  const PointField& field = *point_field(probe_.field);
   for (const std::string& component : chosen_components(probe_, points_.dimension())) {
     const std::string name = component.empty() ? field.name : field.name + "_" + component;
     table.columns.push_back({Kind::number, name, field.unit, name + " of the point"});

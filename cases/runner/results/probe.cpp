@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
-#include "cases/runner/input/probe_fields.hpp"
 #include "cases/runner/results/crack_measures.hpp"
+#include "solvers/observe/point_fields.hpp"
 #include "src/core/expression.hpp"
 #include "src/dense/least_squares.hpp"
 #include "src/parallel/collectives.hpp"
@@ -18,26 +17,6 @@
 
 namespace peristat {
 namespace {
-
-/// Values of a field, as many per point as it has components.
-const std::vector<double>& values_of(const ProbeField& field, const StepFields& fields) {
-  static const std::map<std::string, const std::vector<double> * StepFields::*> members{
-      {"displacement", &StepFields::displacement},
-      {"force", &StepFields::force},
-      {"damage", &StepFields::damage},
-      {"stretch", &StepFields::stretch},
-      {"energy_density", &StepFields::energy_density},
-      {"deformation_gradient", &StepFields::deformation_gradient},
-      {"strain", &StepFields::strain},
-      {"first_piola_stress", &StepFields::first_piola_stress},
-      {"stress", &StepFields::stress},
-      {"von_mises", &StepFields::von_mises},
-      {"principal_stress", &StepFields::principal_stress},
-      {"missing_neighbourhood", &StepFields::missing_neighbourhood},
-      {"velocity", &StepFields::velocity},
-      {"kinetic_energy_density", &StepFields::kinetic_energy_density}};
-  return *(fields.*members.at(field.name));
-}
 
 /// Reorders values from row by row to column by column.
 std::vector<double> by_columns(const std::vector<double>& rows, std::size_t columns) {
@@ -140,16 +119,6 @@ std::vector<double> opening_of(const ProbeSpecification& probe, const RecordedPo
   return opening;
 }
 
-/// tr F - d of a point.
-double divergence_at(const std::vector<double>& gradients, int dimension, Index point) {
-  const auto d = std::size_t(dimension);
-  double divergence = 0.0;
-  for (std::size_t c = 0; c < d; ++c) {
-    divergence += gradients[std::size_t(point) * d * d + c * d + c] - 1.0;
-  }
-  return divergence;
-}
-
 /// Root mean square, or the largest, of the lengths of a set's differences from expected values.
 double error_over_set(const ProbeSpecification& probe, const RecordedPoints& points,
                       const StepFields& fields, const LoadValues& loads) {
@@ -199,22 +168,18 @@ std::vector<double> at_place(const ProbeSpecification& probe, const RecordedPoin
 }  // namespace
 
 std::vector<std::string> chosen_components(const ProbeSpecification& probe, int dimension) {
-  const auto components = probe_field(probe.field)->components(dimension);
+  const auto components = point_field(probe.field)->components(dimension);
   if (components.empty()) return {""};
   return probe.component.empty() ? components : std::vector<std::string>{probe.component};
 }
 
 std::vector<double> values_at(const ProbeSpecification& probe, int dimension,
                               const StepFields& fields, Index point) {
-  const ProbeField& field = *probe_field(probe.field);
-  if (field.name == "divergence")
-    return {divergence_at(*fields.deformation_gradient, dimension, point)};
-  const std::vector<double>& values = values_of(field, fields);
+  const PointField& field = *point_field(probe.field);
+  const std::vector<double> values = field.at(fields, dimension, point);
+  if (probe.component.empty()) return values;
   const auto components = field.components(dimension);
-  const std::size_t width = std::max<std::size_t>(components.size(), 1);
-  const double* const of_point = &values[std::size_t(point) * width];
-  if (probe.component.empty()) return {of_point, of_point + width};
-  return {of_point[std::ranges::find(components, probe.component) - components.begin()]};
+  return {values[std::size_t(std::ranges::find(components, probe.component) - components.begin())]};
 }
 
 ProbeColumns columns_of(const ProbeSpecification& probe, int dimension) {
@@ -223,9 +188,9 @@ ProbeColumns columns_of(const ProbeSpecification& probe, int dimension) {
     return {probe.name, 1, measure->unit};
   }
   if (probe.field == "opening") return {probe.name, dimension, "m"};
-  if (is_of_error(probe.statistic)) return {probe.name, 1, probe_field(probe.field)->unit};
+  if (is_of_error(probe.statistic)) return {probe.name, 1, point_field(probe.field)->unit};
   return {probe.name, int(chosen_components(probe, dimension).size()),
-          probe_field(probe.field)->unit};
+          point_field(probe.field)->unit};
 }
 
 std::vector<double> probe_values(const ProbeSpecification& probe, const RecordedPoints& points,
