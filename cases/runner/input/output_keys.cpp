@@ -68,14 +68,14 @@ Table<OutputSpecification> output_keys() {
 
 namespace {
 
-/// Quantities of a whole set, which single points don't have, and fields of points.
+/// Fields of points, and quantities of a whole set, which single points don't have.
 std::vector<std::string> quantities() {
-  std::vector<std::string> names{"poisson_ratio", "opening",          "crack_length",
-                                 "crack_begin",   "crack_end",        "crack_angle",
-                                 "crack_area",    "work_of_fracture", "crack_resistance"};
+  std::vector<std::string> names;
   for (const PointField& field : point_fields()) {
     if (field.shown_by != ShownBy::steps) names.push_back(field.name);
   }
+  names.insert(names.end(), {"poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end",
+                             "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"});
   return names;
 }
 
