@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cases/runner/setup/find_boundary.hpp"
+#include "cases/runner/setup/probe_places.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/ranks/agree_on_kinds.hpp"
 #include "solvers/study/bond_materials.hpp"
@@ -14,9 +15,7 @@
 #include "src/connectivity/free_motion.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
-#include "src/geometry/nearest_point.hpp"
 #include "src/geometry/point_file.hpp"
-#include "src/geometry/points_on_line.hpp"
 #include "src/neighbourhood/ghost_sites.hpp"
 
 namespace peristat {
@@ -94,23 +93,7 @@ Points make_points_of(const Case& from) {
       const std::string table = "set[" + std::to_string(k) + "]";
       errors_in_table(table, [&] { add_set(points, rule); });
     }
-    for (std::size_t k = 0; k < from.probes.size(); ++k) {
-      const ProbeSpecification& probe = from.probes[k];
-      const std::string table = "probe[" + std::to_string(k) + "]";
-      const auto require = [&](const std::string& key, const std::string& set) {
-        if (set.empty() || points.sets.contains(set)) return;
-        throw InputError(table + key, '"' + set + '"', "no set of this name");
-      };
-      require(".set", probe.set);
-      require(".other", probe.other);
-      // A place off the body would be represented by a distant point.
-      if (probe.at && nearest_point(points, *probe.at).distance > 2.0 * points.spacing.largest()) {
-        throw InputError(table + ".at", "", "no point lies within two spacings of this place");
-      }
-      if (probe.from && points_on_line(points, *probe.from, *probe.to).empty()) {
-        throw InputError(table + ".from", "", "no point lies within half a spacing of this line");
-      }
-    }
+    require_places_of_probes(from, RecordedPoints(points));
     return points;
   });
 }

@@ -9,7 +9,7 @@
 #include "cases/runner/input/case_keys.hpp"
 #include "cases/runner/setup/body.hpp"
 #include "cases/runner/setup/find_boundary.hpp"
-#include "cases/runner/setup/recorded_points.hpp"
+#include "cases/runner/setup/probe_places.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 #include "solvers/study/bonds_of_part.hpp"
@@ -18,7 +18,6 @@
 #include "src/geometry/image_kinds.hpp"
 #include "src/geometry/point_file.hpp"
 #include "src/geometry/point_set.hpp"
-#include "src/geometry/points_on_line.hpp"
 #include "src/geometry/slab.hpp"
 #include "src/neighbourhood/ghost_sites.hpp"
 #include "src/parallel/communicator.hpp"
@@ -77,30 +76,6 @@ void refuse_values_without_ranks(const Case& from) {
   if (mode == Mode::path || mode == Mode::arc_length) {
     refuse("solver.mode", std::string(mode.name),
            "take \"newton\", \"adaptive\", \"relaxation\" or \"dynamics\"");
-  }
-}
-
-/// Refuses probes of sets that are not there, and of places off the body.
-void require_places_of_probes(const Case& from, const RecordedPoints& recorded) {
-  const Points& points = recorded.points();
-  for (std::size_t k = 0; k < from.probes.size(); ++k) {
-    const ProbeSpecification& probe = from.probes[k];
-    const std::string table = "probe[" + std::to_string(k) + "]";
-    const auto require = [&](const std::string& key, const std::string& set) {
-      if (set.empty() || points.sets.contains(set)) return;
-      throw InputError(table + key, '"' + set + '"', "no set of this name");
-    };
-    require(".set", probe.set);
-    require(".other", probe.other);
-    if (probe.at &&
-        nearest_recorded(recorded, *probe.at).distance > 2.0 * points.spacing.largest()) {
-      throw InputError(table + ".at", "", "no point lies within two spacings of this place");
-    }
-    if (!probe.from) continue;
-    const auto here = points_on_line(points, *probe.from, *probe.to, recorded.count()).size();
-    if (recorded.ranks().count_all(std::int64_t(here)).all == 0) {
-      throw InputError(table + ".from", "", "no point lies within half a spacing of this line");
-    }
   }
 }
 
