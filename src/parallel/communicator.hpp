@@ -39,8 +39,8 @@ class Communicator {
   /// Gives all ranks the bytes of rank 0.
   virtual void broadcast(std::string& bytes) const = 0;
 
-  /// Ends all ranks with a message on standard error; not collective.
-  [[noreturn]] virtual void abort(const std::string& message, int exit_code) const = 0;
+  /// Ends all ranks; not collective.
+  [[noreturn]] virtual void abort(int exit_code) const = 0;
 
   /// The MPI_Comm, for code compiled with MPI; null: a sole rank without MPI.
   [[nodiscard]] virtual const void* handle() const = 0;
@@ -55,9 +55,10 @@ class Communicator {
   [[nodiscard]] std::vector<double> max(const std::vector<double>& mine) const {
     return reduced(mine, [](double a, double b) { return a != a || a > b ? a : b; });
   }
-  [[nodiscard]] double sum(double mine) const { return sum(std::vector<double>{mine})[0]; }
-  [[nodiscard]] double min(double mine) const { return min(std::vector<double>{mine})[0]; }
-  [[nodiscard]] double max(double mine) const { return max(std::vector<double>{mine})[0]; }
+  // One rank makes no vectors: every iteration of a relaxation asks.
+  [[nodiscard]] double sum(double mine) const { return count() == 1 ? mine : sum(one(mine))[0]; }
+  [[nodiscard]] double min(double mine) const { return count() == 1 ? mine : min(one(mine))[0]; }
+  [[nodiscard]] double max(double mine) const { return count() == 1 ? mine : max(one(mine))[0]; }
 
   /// Sum of the numbers of the ranks before this one, and of all ranks: exact below 2^53.
   struct Counts {
@@ -74,6 +75,8 @@ class Communicator {
   }
 
  private:
+  [[nodiscard]] static std::vector<double> one(double number) { return {number}; }
+
   template <class Reduce>
   [[nodiscard]] std::vector<double> reduced(const std::vector<double>& mine,
                                             const Reduce& reduce) const {
@@ -97,10 +100,7 @@ class SoleRank : public Communicator {
   }
   void gather(const std::string& mine, const Visit& visit) const override { visit(0, mine); }
   void broadcast(std::string&) const override {}
-  [[noreturn]] void abort(const std::string& message, int exit_code) const override {
-    std::fputs((message + '\n').c_str(), stderr);
-    std::_Exit(exit_code);
-  }
+  [[noreturn]] void abort(int exit_code) const override { std::_Exit(exit_code); }
   [[nodiscard]] const void* handle() const override { return nullptr; }
 };
 

@@ -13,6 +13,7 @@
 #include "cases/runner/commands/run_facts.hpp"
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/interruption.hpp"
+#include "cases/runner/process/ranks_environment.hpp"
 #include "cases/runner/results/constraint_columns.hpp"
 #include "cases/runner/results/crack_tip_columns.hpp"
 #include "cases/runner/results/dossier.hpp"
@@ -416,8 +417,8 @@ Exit run(const Case& from, const RunOptions& options, const Communicator& ranks,
     if (ranks.count() > 1) give_way_to_first(ranks);
     results->fail(summary, failure.message);
     if (ranks.count() > 1) {
-      ranks.abort(fmt::format("peristat: {}\n{}", failure.message, results->what_is_left()),
-                  static_cast<int>(failure.code));
+      say_last_words(fmt::format("peristat: {}\n{}\n", failure.message, results->what_is_left()));
+      ranks.abort(static_cast<int>(failure.code));
     }
     progress.problem(failure.message);
     progress.problem(results->what_is_left());

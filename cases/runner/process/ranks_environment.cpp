@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <thread>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -27,6 +30,45 @@ void keep_note_reachable() {
   if (!note || std::string(note).rfind(descriptors, 0) != 0) return;
   const std::string here = "/proc/" + std::to_string(getpid()) + "/fd/";
   setenv("PERISTAT_NOTE", (here + (note + descriptors.size())).c_str(), 1);
+}
+
+constexpr const char* last_words = "PERISTAT_LAST_WORDS";
+
+/// A pipe from the ranks to this process. The ranks open it through /proc.
+class LastWords {
+ public:
+  LastWords() {
+    if (pipe2(ends_, O_CLOEXEC | O_NONBLOCK) != 0) {
+      throw MachineError(std::string("a pipe can't be made: ") + std::strerror(errno));
+    }
+    setenv(last_words, fmt::format("/proc/{}/fd/{}", getpid(), ends_[1]).c_str(), 1);
+  }
+  LastWords(const LastWords&) = delete;
+  LastWords& operator=(const LastWords&) = delete;
+  ~LastWords() {
+    for (const int end : ends_) close(end);
+  }
+
+  void print() const {
+    char text[4096];
+    ssize_t bytes = 0;
+    while ((bytes = read(ends_[0], text, sizeof text)) > 0) {
+      std::fwrite(text, 1, std::size_t(bytes), stderr);
+    }
+  }
+
+ private:
+  int ends_[2] = {-1, -1};
+};
+
+/// Returns the number of bytes that reach the process that has started the ranks.
+std::size_t pass_to_launcher(const std::string& text) {
+  const char* const pipe = std::getenv(last_words);
+  const int end = pipe ? open(pipe, O_WRONLY | O_NONBLOCK | O_CLOEXEC) : -1;
+  if (end < 0) return 0;
+  const ssize_t bytes = write(end, text.data(), text.size());
+  close(end);
+  return std::size_t(std::max<ssize_t>(bytes, 0));
 }
 
 volatile pid_t mpirun = 0;
@@ -76,6 +118,7 @@ int run_as_ranks(int ranks, const std::vector<std::string>& arguments) {
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   keep_note_reachable();
+  const LastWords said;
   mpirun = fork();
   if (mpirun < 0) throw MachineError(std::string("mpirun can't be started: ") + strerror(errno));
   if (mpirun == 0) become_mpirun(pointers);
@@ -83,8 +126,16 @@ int run_as_ranks(int ranks, const std::vector<std::string>& arguments) {
   int status = 0;
   while (waitpid(mpirun, &status, 0) < 0 && errno == EINTR) {
   }
+  said.print();
   constexpr int of_signals = 128;  // as in shells
   return WIFEXITED(status) ? WEXITSTATUS(status) : of_signals + WTERMSIG(status);
+}
+
+void say_last_words(const std::string& text) {
+  std::fflush(stdout);
+  std::fputs(text.c_str() + pass_to_launcher(text), stderr);
+  constexpr std::chrono::milliseconds until_mpirun_has_read{300};
+  std::this_thread::sleep_for(until_mpirun_has_read);
 }
 
 }  // namespace peristat

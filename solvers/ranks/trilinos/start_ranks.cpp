@@ -1,9 +1,6 @@
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
-#include <iostream>
 #include <stdexcept>
-#include <thread>
 
 #include <mpi.h>
 
@@ -85,11 +82,7 @@ class MpiRanks : public Communicator {
     });
   }
 
-  [[noreturn]] void abort(const std::string& message, int exit_code) const override {
-    std::cerr << message << std::endl;
-    // mpirun drops output that it has not read when all ranks end.
-    constexpr std::chrono::milliseconds until_read{300};
-    std::this_thread::sleep_for(until_read);
+  [[noreturn]] void abort(int exit_code) const override {
     MPI_Abort(world_, exit_code);
     std::_Exit(exit_code);
   }
