@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "cases/runner/results/probe.hpp"
-#include "solvers/study/cpd_model.hpp"
+#include "solvers/formulations/cpd/cpd_model.hpp"
 #include "src/core/number_text.hpp"
 #include "tests/verification/solved_case.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "cases/runner/commands/calibrate_bonds.hpp"
 #include "cases/runner/setup/body.hpp"
-#include "solvers/study/bond_materials.hpp"
+#include "solvers/formulations/materials/bond_materials.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "solvers/study/bond_materials.hpp"
-#include "solvers/study/bond_potential.hpp"
-#include "solvers/study/fracture_data.hpp"
+#include "solvers/formulations/materials/bond_materials.hpp"
+#include "solvers/formulations/materials/bond_potential.hpp"
+#include "solvers/formulations/materials/fracture_data.hpp"
 #include "src/core/input_error.hpp"
 
 namespace peristat {

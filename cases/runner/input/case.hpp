@@ -13,7 +13,7 @@
 #include "solvers/drivers/load_stepping.hpp"
 #include "solvers/fracture/crack_tip.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
-#include "solvers/study/body_specification.hpp"
+#include "solvers/formulations/specification/body_specification.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/lattice.hpp"
 #include "src/geometry/point_set.hpp"

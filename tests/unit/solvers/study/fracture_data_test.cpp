@@ -1,4 +1,4 @@
-#include "solvers/study/fracture_data.hpp"
+#include "solvers/formulations/materials/fracture_data.hpp"
 
 #include <cmath>
 #include <numbers>
