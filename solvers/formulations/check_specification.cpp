@@ -65,7 +65,7 @@ constexpr std::array<OptionOfBody, 11> options_of_body{{
 }};
 
 void check_options(const BodySpecification& of, const Points& points) {
-  const Options options = options_of(of);
+  const OptionSet options = options_of(of);
   const auto refuse = [&](Option option, const std::string& key, const std::string& value) {
     if (!options.has(option)) throw InputError(key, value, is_for(option));
   };
@@ -85,13 +85,13 @@ void check_options(const BodySpecification& of, const Points& points) {
                    "turns with its faces, which couples points in a way that operator \"fft\" does "
                    "not support; take \"bonds\", or a traction");
   }
-  require(of.is_convolved() || !formulation_of(of).capabilities().needs_convolutions,
-          "force_operator", "bonds",
+  require(of.is_convolved() || !formulation_of(of).needs_convolutions, "force_operator", "bonds",
           "does not go with model \"" + model + "\", which needs convolutions; take \"fft\"");
 }
 
 /// Refuses laws of damage that a formulation does not take.
-void check_law(const DamageSpecification& damage, const std::string& key, const Options& options) {
+void check_law(const DamageSpecification& damage, const std::string& key,
+               const OptionSet& options) {
   if (damage.law == DamageLaw::none) return;
   const Option needed = damage.law == DamageLaw::energy_density ? Option::energy_density
                         : damage.softens()                      ? Option::softening
@@ -162,15 +162,15 @@ void check_influence(const MaterialSpecification& material, const std::string& k
 /// @param formulation of the body, or one of the material's model
 /// @param options     those of the body, or all that the model takes
 void check_material_of(const MaterialSpecification& material, const std::string& key, int dimension,
-                       const Formulation& formulation, const Options& options) {
+                       const Formulation& formulation, const OptionSet& options) {
   check_influence(material, key);
-  require(dimension >= formulation.capabilities().least_dimension, key + ".model",
-          name_of(material.model), "needs dimension 2 or 3");
+  require(dimension >= formulation.least_dimension, key + ".model", name_of(material.model),
+          "needs dimension 2 or 3");
   for (const auto& [option, name, is_given] : options_of_material) {
     require_absent(is_given(material) && !options.has(option), key + "." + name, is_for(option));
   }
   check_law(material.damage, key, options);
-  formulation.check(material, key, dimension);
+  formulation.check_material(material, key, dimension);
   require_positive(material.youngs_modulus, key + ".youngs_modulus");
   require_positive(material.micromodulus, key + ".micromodulus");
   require_positive(material.c1, key + ".c1");
@@ -323,9 +323,8 @@ void check_mirrored_fibres(const BodySpecification& of, int dimension) {
 
 void check_material(const MaterialSpecification& material, const std::string& key, int dimension) {
   const Formulation& formulation = formulation_of(material);
-  const Capabilities can = formulation.capabilities();
   check_material_of(material, key, dimension, formulation,
-                    can.takes.with(can.takes_convolved.value_or(Options{})));
+                    formulation.takes.with(formulation.takes_convolved.value_or(OptionSet{})));
 }
 
 void check_specification(const BodySpecification& of, const Points& points) {
@@ -338,7 +337,7 @@ void check_specification(const BodySpecification& of, const Points& points) {
   if (of.regions.empty() || of.material.has_constants()) {
     check_material_of(of.material, "material", points.dimension, formulation, options_of(of));
   }
-  formulation.check(of, points);
+  if (formulation.check_body) formulation.check_body(of, points);
   check_regions(of, points.dimension);
   check_mirrored_fibres(of, points.dimension);
   for (std::size_t k = 0; k < of.cracks.size(); ++k)

@@ -15,7 +15,7 @@ constexpr double least_ratio_of_convolutions = 2.5;
 }  // namespace
 
 bool needs_convolutions(const BodySpecification& of) {
-  return formulation_of(of).capabilities().needs_convolutions || of.form == SolidForm::printed;
+  return formulation_of(of).needs_convolutions || of.form == SolidForm::printed;
 }
 
 ForceOperator faster_operator(const BodySpecification& from, const Points& points,
@@ -23,7 +23,7 @@ ForceOperator faster_operator(const BodySpecification& from, const Points& point
   if (needs_convolutions(from)) return ForceOperator::fft;
   // With images convolutions take twice as long.
   const bool has_images = !from.constraints.symmetries.empty() || !from.constraints.periods.empty();
-  const bool may_be = formulation_of(from).capabilities().takes_convolved && !has_images;
+  const bool may_be = formulation_of(from).takes_convolved && !has_images;
   const double ratio = from.horizon / points.spacing;
   if (!may_be || !is_explicit || ratio < least_ratio_of_convolutions) return ForceOperator::bonds;
   BodySpecification convolved = from;

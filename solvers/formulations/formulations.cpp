@@ -18,15 +18,15 @@ namespace {
 /// The one list of formulations.
 const std::vector<const Formulation*>& all_formulations() {
   static const std::vector<const Formulation*> all{
-      &bond_formulation(),       &linear_bond_formulation(), &cpd_formulation(),
-      &lps_energy_formulation(), &lps_collocation_formulation(), &green_bond_formulation(),
+      &bond_formulation(),          &linear_bond_formulation(),     &cpd_formulation(),
+      &lps_energy_formulation(),    &lps_collocation_formulation(), &green_bond_formulation(),
       &correspondence_formulation()};
   return all;
 }
 
 bool may_take(const Formulation& formulation, Option option) {
-  const Capabilities can = formulation.capabilities();
-  return can.takes.has(option) || (can.takes_convolved && can.takes_convolved->has(option));
+  return formulation.takes.has(option) ||
+         (formulation.takes_convolved && formulation.takes_convolved->has(option));
 }
 
 /// Names of those that take an option: a model, or the formulation if its model has others that do
@@ -37,13 +37,13 @@ std::vector<std::string> names_with(Option option) {
     std::vector<std::string> of_model;
     bool all_take = true;
     for (const Formulation* formulation : all_formulations()) {
-      if (formulation->model() != model) continue;
+      if (formulation->model != model) continue;
       if (!may_take(*formulation, option)) {
         all_take = false;
-      } else if (formulation->capabilities().takes.has(option)) {
-        of_model.push_back(formulation->label());
+      } else if (formulation->takes.has(option)) {
+        of_model.push_back(std::string(formulation->label));
       } else {
-        of_model.push_back(formulation->label() + " with operator \"fft\"");
+        of_model.push_back(std::string(formulation->label) + " with operator \"fft\"");
         all_take = false;
       }
     }
@@ -81,14 +81,15 @@ const Formulation& formulation_of(const BodySpecification& of) {
   return is_collocated ? lps_collocation_formulation() : formulation_of(of.material);
 }
 
-Options options_of(const BodySpecification& of) {
-  const Capabilities can = formulation_of(of).capabilities();
-  return of.is_convolved() && can.takes_convolved ? *can.takes_convolved : can.takes;
+OptionSet options_of(const BodySpecification& of) {
+  const Formulation& formulation = formulation_of(of);
+  return of.is_convolved() ? formulation.takes_convolved.value_or(formulation.takes)
+                           : formulation.takes;
 }
 
 bool takes(MaterialModel model, Option option) {
   return std::ranges::any_of(all_formulations(), [&](const Formulation* formulation) {
-    return formulation->model() == model && may_take(*formulation, option);
+    return formulation->model == model && may_take(*formulation, option);
   });
 }
 
@@ -103,7 +104,7 @@ std::string is_for(Option option) {
 
 FractureScale fracture_scale_of(const MaterialSpecification& material, const std::string& key,
                                 const BondSetting& setting, double spacing) {
-  return formulation_of(material).fracture_scale(material, key, setting, spacing).value();
+  return formulation_of(material).fracture_scale(material, key, setting, spacing);
 }
 
 namespace {
@@ -112,12 +113,13 @@ namespace {
 void find_stretches(const Formulation& formulation, MaterialSpecification& material,
                     const std::string& key, const BondSetting& setting, double spacing) {
   if (!material.damage.is_by_data()) return;
-  if (const auto energy = formulation.crack_energy_of_dilation(material, setting)) {
-    material.damage.critical = std::sqrt(*material.damage.fracture_energy / *energy);
+  if (formulation.crack_energy_of_dilation) {
+    const double energy = formulation.crack_energy_of_dilation(material, key, setting, spacing);
+    material.damage.critical = std::sqrt(*material.damage.fracture_energy / energy);
     material.damage.fracture_energy.reset();
     return;
   }
-  const FractureScale scale = formulation.fracture_scale(material, key, setting, spacing).value();
+  const FractureScale scale = formulation.fracture_scale(material, key, setting, spacing);
   material.damage = with_stretches(material.damage, key, scale);
 }
 

@@ -15,9 +15,9 @@
 #include "assembly/terms/pressure/pressure_term.hpp"
 #include "assembly/terms/springs/foundation_term.hpp"
 #include "assembly/terms/springs/inertia_term.hpp"
-#include "solvers/linear/available_memory.hpp"
 #include "solvers/formulations/check_specification.hpp"
 #include "solvers/formulations/convolved/convolved_lattice.hpp"
+#include "solvers/linear/available_memory.hpp"
 #include "solvers/ranks/sum_on_machine.hpp"
 #include "solvers/study/require_memory_for.hpp"
 #include "solvers/study/surface_sites.hpp"
@@ -68,7 +68,7 @@ void refuse_coincident_points(const Points& points, const Bonds& bonds) {
 
 /// True if points couple that have a neighbour in common.
 bool couples_second_neighbours(const BodySpecification& of) {
-  return !of.is_convolved() && formulation_of(of).capabilities().couples_second_neighbours;
+  return !of.is_convolved() && formulation_of(of).couples_second_neighbours;
 }
 
 /// Sets the counts for a model that couples points with a common neighbour: as many blocks as bonds
@@ -90,7 +90,9 @@ void note_materials(Body& body, const PointMaterials& materials, int threads) {
 /// Setting with which the bonds of a body are made.
 BondSetting setting_of_bonds(const Body& body) {
   const BodySpecification& of = body.specification;
-  BondSetting setting = formulation_of(of).setting_of_bonds(body.setting);
+  const Formulation& formulation = formulation_of(of);
+  BondSetting setting =
+      formulation.setting_of_bonds ? formulation.setting_of_bonds(body.setting) : body.setting;
   return of.is_convolved() ? setting_of_short_bonds(body.points, std::move(setting)) : setting;
 }
 
@@ -359,7 +361,7 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
       *body, of,
       [&](const BondSetting& setting) {
         return make_bonds(part, of.surface_correction, setting, ranks, threads,
-                          formulation_of(of).capabilities().part_bonds);
+                          formulation_of(of).part_bonds);
       },
       threads);
   return body;
@@ -413,8 +415,7 @@ MemoryEstimate estimate_memory(const Body& body) {
   for (const auto& term : body.model.terms()) {
     size.blocks = std::max(size.blocks, double(term->couplings().partner.size()));
   }
-  if (couples_second_neighbours(body.specification))
-    size.coupling_ratio = 2.0 * size.horizon_ratio;
+  if (couples_second_neighbours(body.specification)) size.coupling_ratio = 2.0 * size.horizon_ratio;
   if (!body.model.balances().potential) {
     // Couplings reach two horizons: 2^d as many points as one.
     const double near = 2.0 * size.bonds / std::max(size.points, 1.0) + 1.0;

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "assembly/terms/model.hpp"
+#include "solvers/formulations/formulations.hpp"
+#include "solvers/formulations/specification/body_specification.hpp"
 #include "solvers/linear/memory_estimate.hpp"
 #include "solvers/ranks/make_index_map.hpp"
-#include "solvers/formulations/specification/body_specification.hpp"
-#include "solvers/formulations/formulations.hpp"
 #include "src/conditions/conditions.hpp"
 #include "src/parallel/index_map.hpp"
 

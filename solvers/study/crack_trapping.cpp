@@ -24,7 +24,7 @@ constexpr double same_ratio = 0.1;
 
 bool is_brittle(const MaterialSpecification& material) {
   return material.damage.law == DamageLaw::critical_stretch &&
-         formulation_of(material).capabilities().has_measured_trapping;
+         formulation_of(material).has_measured_trapping;
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ Crack segment_ahead(const CrackTipSpecification& tip, const Points& points) {
 
 void refuse_what_has_no_rate(const Body& body, const CrackTipSpecification& tip,
                              const std::string& key) {
-  const Capabilities can = formulation_of(body.specification).capabilities();
+  const Formulation& can = formulation_of(body.specification);
   if (body.specification.is_convolved() && can.couples_second_neighbours) {
     throw InputError(key, number_text(tip.cut),
                      "needs bonds to cut, which this model with operator \"fft\" does not have; "

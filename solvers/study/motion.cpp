@@ -103,8 +103,7 @@ MotionSetting make_motion_setting(const Body& body) {
     setting.absorption.resize(dofs, 0.0);
     setting.absorption[dof] = rates[dof / d];
   }
-  setting.most_points =
-      formulation_of(body.specification).capabilities().most_points(body.points.dimension);
+  setting.most_points = formulation_of(body.specification).most_points(body.points.dimension);
   if (const auto* states = dynamic_cast<const StateTerm*>(body.model.bond_term().get())) {
     setting.most_points = most_points_of_states(*states, body);
   } else if (const auto* of_points = dynamic_cast<const PointTerm*>(body.model.bond_term().get())) {

@@ -10,11 +10,11 @@
 
 #include <fmt/format.h>
 
+#include "solvers/formulations/formulations.hpp"
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/iterative_solver.hpp"
 #include "solvers/linear/rigid_pieces.hpp"
-#include "solvers/formulations/formulations.hpp"
 #include "solvers/study/linear_systems.hpp"
 #include "solvers/study/require_memory_for.hpp"
 #include "solvers/study/without_equation.hpp"
@@ -57,10 +57,11 @@ Stability at_rest(LinearSolver& solver, const TangentOperator& tangent, const Fr
 /// none.
 std::pair<PointMaterials::Material, std::string> negative_material(const Body& body) {
   const Formulation& formulation = formulation_of(body.specification);
+  if (!formulation.negative_constant) return {};
   const PointMaterials materials(body.specification, body.points);
   for (const auto& material : all_materials(body.specification, materials)) {
-    const std::string negative = formulation.negative_constant(
-        *material.of, material.key, body.setting, body.points.spacing);
+    const std::string negative = formulation.negative_constant(*material.of, material.key,
+                                                               body.setting, body.points.spacing);
     if (!negative.empty()) return {material, negative};
   }
   return {};

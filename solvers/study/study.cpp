@@ -46,9 +46,10 @@ void refuse_modes_without_potential(const Body& body, const StudyOptions& option
   }
 }
 
-/// Refuses mode path for bodies whose points have states: it assumes that a body loses just what its bonds lose.
+/// Refuses mode path for bodies whose points have states: it assumes that a body loses just what
+/// its bonds lose.
 void refuse_events_of_states(const Body& body, const StudyOptions& options) {
-  const Options can = options_of(body.specification);
+  const OptionSet can = options_of(body.specification);
   const bool loses_more = can.has(Option::critical_stretch) && !can.has(Option::events);
   if (!loses_more || options.loading.mode != Mode::path) return;
   throw InputError("loading.mode", std::string(options.loading.mode.name),

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "assembly/terms/damage.hpp"
+#include "solvers/formulations/formulations.hpp"
 #include "src/materials/bond_constants.hpp"
 #include "src/materials/quadrature.hpp"
 
@@ -32,11 +33,10 @@ std::vector<double> symmetric(const std::vector<double>& tensors, std::size_t d)
 /// Ratio of the stress across a plane body to the sum of the in-plane normal stresses. Model "cpd"
 /// is purely two-dimensional: 0.
 std::vector<double> out_of_plane(const Body& body) {
-  const MaterialModel model = body.specification.material.model;
-  const bool is_plane_strain = model != MaterialModel::cpd && body.points.dimension == 2 &&
-                               body.setting.plane == PlaneState::strain;
+  const bool is_plane_strain =
+      body.points.dimension == 2 && body.setting.plane == PlaneState::strain;
   if (!is_plane_strain) return {0.0};
-  if (has_bonds(model)) return {poisson_ratio(body.setting)};
+  if (!takes(body.specification, Option::poisson_ratio)) return {poisson_ratio(body.setting)};
   const PointMaterials materials(body.specification, body.points);
   const auto& all = materials.all();
   std::vector<double> ratios;
@@ -75,10 +75,7 @@ void StressFields::show_in(StepFields& fields) const {
 }
 
 StressFields make_stress_fields(const Body& body, Assembler& assembler, const StateView& at) {
-  // St. Venant and Kirchhoff's S_zz = lambda tr E is nu tr S at any strain.
-  const auto of = body.specification.material.model == MaterialModel::correspondence
-                      ? AcrossPlane::second_stress
-                      : AcrossPlane::cauchy_stress;
+  const AcrossPlane of = formulation_of(body.specification).across_plane;
   StressFields made{find_stress(assembler, at, out_of_plane(body), of), {}, {}, {}};
   const auto d = std::size_t(body.points.dimension);
   made.strain = symmetric(made.found.strain, d);

@@ -21,7 +21,7 @@ std::string text_of_fibres(const MaterialSpecification& material, const Directed
 
 }  // namespace
 
-void check_bond_constants(const MaterialSpecification& material, const std::string& key) {
+void check_bond_constants(const MaterialSpecification& material, const std::string& key, int) {
   require(material.youngs_modulus.has_value() != material.micromodulus.has_value(), key, "",
           "needs a youngs_modulus or a micromodulus, and not both");
   require_absent(material.calibration && !material.youngs_modulus, key + ".calibration",
@@ -36,21 +36,23 @@ void require_lattice_to_calibrate_on(const BodySpecification& of, const Points& 
 }
 
 Moduli moduli_of_bonds(const MaterialSpecification& material, const std::string& key,
-                       const BondSetting& setting) {
+                       const BondSetting& setting, double) {
   const double of_continuum =
       youngs_modulus_of(micromodulus_of(material, key, setting).at(1.0), setting);
   return {material.youngs_modulus.value_or(of_continuum), poisson_ratio(setting),
           setting.dimension == 2 && setting.plane == PlaneState::stress};
 }
 
-std::vector<MaterialLine> describe_bonds(const PointMaterials::Material& material,
-                                         const BondSetting& setting) {
-  const DirectedConstant constant = micromodulus_of(*material.of, material.key, setting);
-  if (material.of->fibre) return {{"constants", text_of_fibres(*material.of, constant, setting)}};
+std::vector<MaterialLine> describe_bonds(const MaterialSpecification& material,
+                                         const std::string& key, const BondSetting& setting,
+                                         double) {
+  const DirectedConstant constant = micromodulus_of(material, key, setting);
+  if (material.fibre) return {{"constants", text_of_fibres(material, constant, setting)}};
   const double modulus = constant.at(1.0);
-  return {{"constants",
-           fmt::format("micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}",
-                       modulus, youngs_modulus_of(modulus, setting), poisson_ratio(setting))}};
+  return {
+      {"constants",
+       fmt::format("micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}",
+                   modulus, youngs_modulus_of(modulus, setting), poisson_ratio(setting))}};
 }
 
 }  // namespace peristat

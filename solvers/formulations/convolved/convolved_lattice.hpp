@@ -5,8 +5,8 @@
 
 namespace peristat {
 
-/// Setting of the bonds that a convolved body stores: short ones alone, to the next neighbours along
-/// the axes and the diagonals of planes.
+/// Setting of the bonds that a convolved body stores: short ones alone, to the next neighbours
+/// along the axes and the diagonals of planes.
 [[nodiscard]] BondSetting setting_of_short_bonds(const Points& points, BondSetting setting);
 
 /// Refuses bodies whose forces are no convolution over a lattice.
@@ -23,8 +23,7 @@ enum class OtherOperator { none, bonds };
 /// @throws InputError as require_convolutions
 [[nodiscard]] ConvolvedLattice make_convolved_lattice(const ModelSetting& setting,
                                                       const BondSetting& of_springs, double modulus,
-                                                      CutBonds& cut,
-                                                      OtherOperator other);
+                                                      CutBonds& cut, OtherOperator other);
 
 /// Removes short bonds without a weight and those that pre-cracks cut.
 void cut_short_bonds(Bonds& bonds, const ModelSetting& setting);

@@ -32,68 +32,63 @@ void require_gradients(const Correspondence& material) {
       "gradient; resolve thin parts with more points, or take another model");
 }
 
-class CorrespondenceFormulation : public Formulation {
- public:
-  [[nodiscard]] MaterialModel model() const override { return MaterialModel::correspondence; }
-  [[nodiscard]] std::string label() const override { return "\"correspondence\""; }
-  [[nodiscard]] Capabilities capabilities() const override {
-    const Options takes{Option::plane,          Option::poisson_ratio,     Option::stabilisation,
-                        Option::energy_density, Option::volume_correction, Option::interfaces,
-                        Option::convolutions,   Option::images};
-    Capabilities can{.takes = takes, .takes_convolved = takes};
-    can.needs_convolutions = true;
-    can.least_dimension = 2;
-    can.across_plane = AcrossPlane::second_stress;
-    return can;
-  }
+void check_correspondence(const MaterialSpecification& material, const std::string& key,
+                          int dimension) {
+  check_solid_constants(material, key, dimension);
+  require_positive(material.stabilisation, key + ".stabilisation");
+}
 
-  void check(const MaterialSpecification& material, const std::string& key,
-             int dimension) const override {
-    check_solid_constants(material, key, dimension);
-    require_positive(material.stabilisation, key + ".stabilisation");
-  }
+/// Its springs have the material's Young's modulus; beta is stabilisation times the micromodulus of
+/// bonds of its bulk modulus, over the horizon ([FCBM] A-12, as a material of its own unit).
+MadeModel make_correspondence(const ModelSetting& setting, Bonds bonds) {
+  cut_short_bonds(bonds, setting);
+  const Points& points = setting.points;
+  const MaterialSpecification& material = *setting.materials.all().front().of;
+  const double modulus = micromodulus(*material.youngs_modulus, setting.bonds);
+  ConvolvedCorrespondence law;
+  law.setting.volume = points.volume.front();
+  law.arms = lattice_arms(setting.bonds, points.spacing, points.angle, law.setting.volume);
+  law.setting.constants = lame_constants(material, points.dimension);
+  law.setting.own = std::size_t(points.own());
+  law.setting.stabilisation = material.stabilisation *
+                              modulus_of_bulk(law.setting.constants, setting.bonds) /
+                              setting.bonds.horizon;
+  CutBonds cut;
+  ConvolvedLattice lattice =
+      make_convolved_lattice(setting, setting.bonds, modulus, cut, OtherOperator::none);
+  require_gradients(Correspondence(lattice.box, {}, law.arms, law.setting, setting.threads));
+  return {Model(std::make_shared<ConvolvedTerm>(
+              std::make_shared<const Bonds>(std::move(bonds)), modulus,
+              bearable_energies(setting.materials, points, setting.bonds.horizon),
+              std::move(lattice), std::move(law), setting.threads)),
+          std::move(cut)};
+}
 
-  /// Its springs have the material's Young's modulus; beta is stabilisation times the micromodulus
-  /// of bonds of its bulk modulus, over the horizon ([FCBM] A-12, as a material of its own unit).
-  [[nodiscard]] MadeModel make_model(const ModelSetting& setting, Bonds bonds) const override {
-    cut_short_bonds(bonds, setting);
-    const Points& points = setting.points;
-    const MaterialSpecification& material = *setting.materials.all().front().of;
-    const double modulus = micromodulus(*material.youngs_modulus, setting.bonds);
-    ConvolvedCorrespondence law;
-    law.setting.volume = points.volume.front();
-    law.arms = lattice_arms(setting.bonds, points.spacing, points.angle, law.setting.volume);
-    law.setting.constants = lame_constants(material, points.dimension);
-    law.setting.own = std::size_t(points.own());
-    law.setting.stabilisation = material.stabilisation *
-                                modulus_of_bulk(law.setting.constants, setting.bonds) /
-                                setting.bonds.horizon;
-    CutBonds cut;
-    ConvolvedLattice lattice =
-        make_convolved_lattice(setting, setting.bonds, modulus, cut, OtherOperator::none);
-    require_gradients(Correspondence(lattice.box, {}, law.arms, law.setting, setting.threads));
-    return {Model(std::make_shared<ConvolvedTerm>(
-                std::make_shared<const Bonds>(std::move(bonds)), modulus,
-                bearable_energies(setting.materials, points, setting.bonds.horizon),
-                std::move(lattice), std::move(law), setting.threads)),
-            std::move(cut)};
-  }
-
-  [[nodiscard]] Moduli moduli(const MaterialSpecification& material, const std::string&,
-                              const BondSetting& setting, double) const override {
-    return moduli_of_solid(material, setting.dimension);
-  }
-  [[nodiscard]] std::vector<MaterialLine> describe(const PointMaterials::Material& material,
-                                                   const BondSetting& setting,
-                                                   double) const override {
-    return describe_solid(material, setting.dimension);
-  }
-};
+constexpr OptionSet options_of_correspondence{Option::plane,
+                                              Option::poisson_ratio,
+                                              Option::stabilisation,
+                                              Option::energy_density,
+                                              Option::volume_correction,
+                                              Option::interfaces,
+                                              Option::convolutions,
+                                              Option::images};
 
 }  // namespace
 
 const Formulation& correspondence_formulation() {
-  static const CorrespondenceFormulation formulation;
+  static const Formulation formulation{
+      .model = MaterialModel::correspondence,
+      .label = "\"correspondence\"",
+      .takes = options_of_correspondence,
+      .takes_convolved = options_of_correspondence,
+      .needs_convolutions = true,
+      .least_dimension = 2,
+      // St. Venant and Kirchhoff's S_zz = lambda tr E is nu tr S at any strain.
+      .across_plane = AcrossPlane::second_stress,
+      .check_material = check_correspondence,
+      .make_model = make_correspondence,
+      .moduli = moduli_of_solid,
+      .describe = describe_solid};
   return formulation;
 }
 

@@ -56,99 +56,53 @@ std::string text_of_moduli(const char* where, const CpdStiffness& stiffness,
       elasticity.axis_poisson_ratio(dimension), elasticity.anisotropy());
 }
 
-class CpdFormulation : public Formulation {
- public:
-  [[nodiscard]] MaterialModel model() const override { return MaterialModel::cpd; }
-  [[nodiscard]] std::string label() const override { return "\"cpd\""; }
-  [[nodiscard]] Capabilities capabilities() const override {
-    Capabilities can{.takes = {Option::potential, Option::poisson_ratio, Option::constants,
-                               Option::calibration, Option::thermal_expansion, Option::strength,
-                               Option::softening, Option::critical_stretch, Option::weights,
-                               Option::interfaces, Option::eigenstrains, Option::pressures,
-                               Option::images, Option::events}};
-    can.least_dimension = 2;
-    can.part_bonds = PartBonds::among_neighbours;
-    can.most_points = [](int dimension) { return dimension + 1; };
-    return can;
-  }
+void check_cpd_material(const MaterialSpecification& material, const std::string& key,
+                        int dimension) {
+  require(material.youngs_modulus.has_value() != material.c1.has_value(), key, "",
+          "needs a youngs_modulus with a poisson_ratio, or c1, and not both");
+  require(material.poisson_ratio.has_value() == material.youngs_modulus.has_value(),
+          key + ".poisson_ratio", "", "goes with youngs_modulus");
+  require(std::isfinite(material.c2), key + ".c2", number_text(material.c2), "must be finite");
+  require(std::isfinite(material.c3), key + ".c3", number_text(material.c3), "must be finite");
+  const bool has_moduli = material.youngs_modulus.has_value();
+  require_absent(has_moduli && dimension == 2 && material.c2 != 0.0, key + ".c2",
+                 "follows from youngs_modulus and poisson_ratio in 2D");
+  require_absent((has_moduli || dimension == 2) && material.c3 != 0.0, key + ".c3",
+                 has_moduli ? "follows from youngs_modulus and poisson_ratio" : "must be 0 in 2D");
+}
 
-  [[nodiscard]] double largest_horizon_ratio(int dimension) const override {
-    return largest_ratio_with_pairs(dimension);
-  }
+/// In 2D nothing exists outside the plane: the moduli are those of plane stress.
+Moduli moduli_of_cpd(const MaterialSpecification& material, const std::string& key,
+                     const BondSetting& setting, double spacing) {
+  const LameModuli of = stiffness_of(material, setting, spacing)
+                            .moduli(cpd_constants_of(material, key, setting, spacing));
+  return {youngs_modulus_of(of, setting.dimension), poisson_ratio_of(of, setting.dimension),
+          setting.dimension == 2};
+}
 
-  void check(const MaterialSpecification& material, const std::string& key,
-               int dimension) const override {
-    require(material.youngs_modulus.has_value() != material.c1.has_value(), key, "",
-            "needs a youngs_modulus with a poisson_ratio, or c1, and not both");
-    require(material.poisson_ratio.has_value() == material.youngs_modulus.has_value(),
-            key + ".poisson_ratio", "", "goes with youngs_modulus");
-    require(std::isfinite(material.c2), key + ".c2", number_text(material.c2), "must be finite");
-    require(std::isfinite(material.c3), key + ".c3", number_text(material.c3), "must be finite");
-    const bool has_moduli = material.youngs_modulus.has_value();
-    require_absent(has_moduli && dimension == 2 && material.c2 != 0.0, key + ".c2",
-                   "follows from youngs_modulus and poisson_ratio in 2D");
-    require_absent((has_moduli || dimension == 2) && material.c3 != 0.0, key + ".c3",
-                   has_moduli ? "follows from youngs_modulus and poisson_ratio" : "must be 0 in 2D");
-  }
+std::vector<MaterialLine> describe_cpd(const MaterialSpecification& material,
+                                       const std::string& key, const BondSetting& setting,
+                                       double spacing) {
+  const CpdConstants constants = cpd_constants_of(material, key, setting, spacing);
+  const int dimension = setting.dimension;
+  std::vector<MaterialLine> lines;
+  lines.push_back({"constants", fmt::format("C1 {:.6g} N/m6, C2 {:.6g} N/m10, C3 {:.6g} N/m14",
+                                            constants.c1, constants.c2, constants.c3)});
+  lines.push_back({"moduli", text_of_moduli("lattice", lattice_stiffness(setting, spacing),
+                                            constants, dimension)});
+  // Continuum moduli are not known with an influence function.
+  if (setting.influence) return lines;
+  lines.push_back({"moduli", text_of_moduli("continuum",
+                                            continuum_stiffness(dimension, setting.horizon,
+                                                                setting.cross_section),
+                                            constants, dimension)});
+  return lines;
+}
 
-  void check(const BodySpecification&, const Points& points) const override {
-    require_whole_square_cells(points);
-  }
-
-  /// Effective volumes count every neighbour.
-  [[nodiscard]] BondSetting setting_of_bonds(BondSetting setting) const override {
-    setting.influence = {};
-    return setting;
-  }
-
-  [[nodiscard]] MadeModel make_model(const ModelSetting& setting, Bonds bonds) const override {
-    MadeModel made;
-    made.model = make_cpd_model(setting, std::move(bonds), made.cut);
-    return made;
-  }
-
-  [[nodiscard]] std::optional<FractureScale> fracture_scale(const MaterialSpecification& material,
-                                                            const std::string& key,
-                                                            const BondSetting& setting,
-                                                            double spacing) const override {
-    return scale_of_cpd(material, key, setting, spacing);
-  }
-
-  [[nodiscard]] std::string negative_constant(const MaterialSpecification& material,
-                                              const std::string& key, const BondSetting& setting,
-                                              double spacing) const override {
-    return peristat::negative_constant(cpd_constants_of(material, key, setting, spacing));
-  }
-
-  /// In 2D nothing exists outside the plane: the moduli are those of plane stress.
-  [[nodiscard]] Moduli moduli(const MaterialSpecification& material, const std::string& key,
-                              const BondSetting& setting, double spacing) const override {
-    const LameModuli of = stiffness_of(material, setting, spacing)
-                              .moduli(cpd_constants_of(material, key, setting, spacing));
-    return {youngs_modulus_of(of, setting.dimension), poisson_ratio_of(of, setting.dimension),
-            setting.dimension == 2};
-  }
-
-  [[nodiscard]] std::vector<MaterialLine> describe(const PointMaterials::Material& material,
-                                                   const BondSetting& setting,
-                                                   double spacing) const override {
-    const CpdConstants constants = cpd_constants_of(*material.of, material.key, setting, spacing);
-    const int dimension = setting.dimension;
-    std::vector<MaterialLine> lines;
-    lines.push_back({"constants", fmt::format("C1 {:.6g} N/m6, C2 {:.6g} N/m10, C3 {:.6g} N/m14",
-                                              constants.c1, constants.c2, constants.c3)});
-    lines.push_back({"moduli", text_of_moduli("lattice", lattice_stiffness(setting, spacing),
-                                              constants, dimension)});
-    // Continuum moduli are not known with an influence function.
-    if (setting.influence) return lines;
-    lines.push_back(
-        {"moduli", text_of_moduli(
-                       "continuum",
-                       continuum_stiffness(dimension, setting.horizon, setting.cross_section),
-                       constants, dimension)});
-    return lines;
-  }
-};
+std::string negative_constant_of(const MaterialSpecification& material, const std::string& key,
+                                 const BondSetting& setting, double spacing) {
+  return negative_constant(cpd_constants_of(material, key, setting, spacing));
+}
 
 }  // namespace
 
@@ -165,7 +119,27 @@ void require_whole_square_cells(const Points& points) {
 }
 
 const Formulation& cpd_formulation() {
-  static const CpdFormulation formulation;
+  static const Formulation formulation{
+      .model = MaterialModel::cpd,
+      .label = "\"cpd\"",
+      .takes = {Option::potential, Option::poisson_ratio, Option::constants, Option::calibration,
+                Option::thermal_expansion, Option::strength, Option::softening,
+                Option::critical_stretch, Option::weights, Option::interfaces, Option::eigenstrains,
+                Option::pressures, Option::images, Option::events},
+      .least_dimension = 2,
+      .part_bonds = PartBonds::among_neighbours,
+      .most_points = [](int dimension) { return dimension + 1; },
+      .largest_horizon_ratio = [](int dimension) { return largest_ratio_with_pairs(dimension); },
+      .check_material = check_cpd_material,
+      .check_body = [](const BodySpecification&,
+                       const Points& points) { require_whole_square_cells(points); },
+      // Effective volumes count every neighbour.
+      .setting_of_bonds = without_influence,
+      .make_model = make_cpd_model,
+      .moduli = moduli_of_cpd,
+      .describe = describe_cpd,
+      .fracture_scale = scale_of_cpd,
+      .negative_constant = negative_constant_of};
   return formulation;
 }
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "assembly/terms/simplices/simplex_term.hpp"
-#include "solvers/ranks/agree_on_kinds.hpp"
 #include "solvers/formulations/materials/bond_potential.hpp"
+#include "solvers/ranks/agree_on_kinds.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/image_number.hpp"
@@ -197,7 +197,7 @@ CpdConstants cpd_constants_of(const MaterialSpecification& material, const std::
   }
 }
 
-Model make_cpd_model(const ModelSetting& of_model, Bonds bonds, CutBonds& cut) {
+MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds) {
   const auto& [from, materials, factors, points, setting, index_map, threads] = of_model;
   // Tables have entries for the materials of four points.
   constexpr std::size_t most = 24;
@@ -240,7 +240,7 @@ Model make_cpd_model(const ModelSetting& of_model, Bonds bonds, CutBonds& cut) {
         [&](Index, Offset bond) { return setting.influence_at(left.length(bond)) == 0.0; });
   }
   if (!index_map.is_whole()) agree_on_kinds(left, points, index_map.numbered(), index_map.ranks());
-  cut = cut_bonds(left, points, from.cracks);
+  CutBonds cut = cut_bonds(left, points, from.cracks);
   auto [potential, never_fails] = mixed.potential(left);
   Model model(std::move(left), std::move(potential), std::move(never_fails));
   std::optional<Simplices<Area>> triangles;
@@ -258,7 +258,7 @@ Model make_cpd_model(const ModelSetting& of_model, Bonds bonds, CutBonds& cut) {
         model.bond_term(), std::move(triangles), std::move(tetrahedra),
         index_map.is_whole() ? PointNumbers() : numbers_of(index_map, points)));
   }
-  return model;
+  return {std::move(model), std::move(cut)};
 }
 
 }  // namespace peristat

@@ -30,9 +30,9 @@ void refuse_damage_of_negative_constants(const MaterialSpecification& material,
                                          const std::string& key, const CpdConstants& constants,
                                          const BondSetting& setting, double spacing);
 
-/// Makes the model; `cut` receives the bonds that pre-cracks have cut. Collective for a part.
+/// Makes the model. Collective for a part.
 /// @param bonds without weights yet; of a part those among_neighbours
 /// @throws InputError for damage together with a negative constant
-[[nodiscard]] Model make_cpd_model(const ModelSetting& setting, Bonds bonds, CutBonds& cut);
+[[nodiscard]] MadeModel make_cpd_model(const ModelSetting& setting, Bonds bonds);
 
 }  // namespace peristat

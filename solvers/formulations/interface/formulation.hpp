@@ -17,38 +17,6 @@
 
 namespace peristat {
 
-/// What the program asks of a formulation in the place of its name.
-struct Capabilities {
-  Options takes;
-  /// Options with forces by convolutions; none: it has no such forces.
-  std::optional<Options> takes_convolved{};
-  bool needs_convolutions = false;
-  int least_dimension = 1;
-  const char* default_influence = ConstantInfluence::name;
-  /// True if forces are minus the derivative of an energy, so that the tangent is symmetric.
-  bool has_potential = true;
-  /// Bonds that a part of a body has.
-  PartBonds part_bonds = PartBonds::of_owned;
-  /// True if parts of a body need a lattice, whose neighbours' volumes are whole or linear.
-  bool part_needs_lattice = true;
-  /// True if lattice sites beyond the surface take part.
-  bool has_ghost_sites = false;
-  /// True if points couple that have a neighbour in common, unless forces are convolutions.
-  bool couples_second_neighbours = false;
-  /// Largest number of points of an interaction whose stiffness is known in closed form.
-  int (*most_points)(int dimension) = [](int) { return 2; };
-  /// The stress that follows from those in the plane by Poisson's ratio, in plane strain.
-  AcrossPlane across_plane = AcrossPlane::cauchy_stress;
-  /// True if `check` reports the error of its quadrature of bonds.
-  bool has_quadrature_of_bonds = false;
-  /// True if fracture energy and strength of a law are known without a search of minutes.
-  bool has_quick_fracture_scale = false;
-  /// True if it is measured when a crack of brittle bonds begins to run (see crack_trapping).
-  bool has_measured_trapping = false;
-  /// True if elastic bonds of another horizon can replace the body between damaging states.
-  bool has_elastic_stand_in = false;
-};
-
 /// What a model is made of, beside its bonds. All of it outlives the call.
 struct ModelSetting {
   const BodySpecification& of;
@@ -78,70 +46,77 @@ struct MaterialLine {
   std::string topic, text;
 };
 
-/// A kind of peridynamics: which data it takes, and how it makes its model.
-class Formulation {
- public:
-  virtual ~Formulation() = default;
+/// A setting of bonds whose weights leave the influence function to something else.
+[[nodiscard]] inline BondSetting without_influence(BondSetting setting) {
+  setting.influence = {};
+  return setting;
+}
 
-  [[nodiscard]] virtual MaterialModel model() const = 0;
-  /// For messages: "\"lps\" by collocation".
-  [[nodiscard]] virtual std::string label() const = 0;
-  [[nodiscard]] virtual Capabilities capabilities() const = 0;
-
+/// A kind of peridynamics: what the program asks of it in the place of its name, the data that it
+/// takes, and how it makes its model. Functions that are null have nothing to do.
+struct Formulation {
+  MaterialModel model;
+  const char* label;  ///< for messages: "\"lps\" by collocation"
+  OptionSet takes;
+  /// Options with forces by convolutions; none: it has no such forces.
+  std::optional<OptionSet> takes_convolved{};
+  bool needs_convolutions = false;
+  int least_dimension = 1;
+  const char* default_influence = ConstantInfluence::name;
+  /// True if forces are minus the derivative of an energy, so that the tangent is symmetric.
+  bool has_potential = true;
+  /// Bonds that a part of a body has.
+  PartBonds part_bonds = PartBonds::of_owned;
+  /// True if parts of a body need a lattice, whose neighbours' volumes are whole or linear.
+  bool part_needs_lattice = true;
+  /// True if lattice sites beyond the surface take part.
+  bool has_ghost_sites = false;
+  /// True if points couple that have a neighbour in common, unless forces are convolutions.
+  bool couples_second_neighbours = false;
+  /// Largest number of points of an interaction of a body of that dimension.
+  int (*most_points)(int dimension) = [](int) { return 2; };
   /// Largest horizon over spacing whose neighbourhood in the bulk is summed in seconds.
-  [[nodiscard]] virtual double largest_horizon_ratio(int dimension) const {
-    return dimension == 3 ? 100.0 : 1000.0;
-  }
+  double (*largest_horizon_ratio)(int dimension) = [](int d) { return d == 3 ? 100.0 : 1000.0; };
+  /// The stress that follows from those in the plane by Poisson's ratio, in plane strain.
+  AcrossPlane across_plane = AcrossPlane::cauchy_stress;
+  /// True if `check` reports the error of its quadrature of bonds.
+  bool has_quadrature_of_bonds = false;
+  /// True if fracture energy and strength of a law are known without a search of minutes.
+  bool has_quick_fracture_scale = false;
+  /// True if it is measured when a crack of brittle bonds begins to run (see crack_trapping).
+  bool has_measured_trapping = false;
+  /// True if elastic bonds of another horizon can replace the body between damaging states.
+  bool has_elastic_stand_in = false;
 
-  /// Refuses materials that are incomplete or contradict themselves, as far as Capabilities do not
-  /// say so.
+  /// Refuses materials that are incomplete or contradict themselves, beyond what `takes` says.
   /// @param key of the material
   /// @throws InputError
-  virtual void check(const MaterialSpecification& material, const std::string& key,
-                     int dimension) const = 0;
+  void (*check_material)(const MaterialSpecification&, const std::string& key, int dimension);
   /// Refuses bodies that it can't represent, likewise.
-  virtual void check(const BodySpecification&, const Points&) const {}
-
-  /// Setting with which the bonds of a body are made.
-  [[nodiscard]] virtual BondSetting setting_of_bonds(BondSetting setting) const { return setting; }
-
+  void (*check_body)(const BodySpecification&, const Points&) = nullptr;
+  /// Setting with which the bonds of a body are made; null: that of the body.
+  BondSetting (*setting_of_bonds)(BondSetting) = nullptr;
   /// Makes the model of a body. Collective for a part.
-  /// @param bonds with setting_of_bonds; with convolutions those of short_bonds
+  /// @param bonds with setting_of_bonds; with convolutions those of setting_of_short_bonds
   /// @throws InputError
-  [[nodiscard]] virtual MadeModel make_model(const ModelSetting& setting, Bonds bonds) const = 0;
+  MadeModel (*make_model)(const ModelSetting&, Bonds bonds);
 
-  /// Scale of the fracture energy and strength of a material without fibres; none: they are no
-  /// sums over bonds.
-  /// @throws InputError as FractureScale says
-  [[nodiscard]] virtual std::optional<FractureScale> fracture_scale(const MaterialSpecification&,
-                                                                    const std::string& /*key*/,
-                                                                    const BondSetting&,
-                                                                    double /*spacing*/) const {
-    return std::nullopt;
-  }
+  /// Of a material, its key for errors, the body's setting and the spacing:
+  template <class Result>
+  using OfMaterial = Result (*)(const MaterialSpecification&, const std::string& key,
+                                const BondSetting&, double spacing);
+  OfMaterial<Moduli> moduli;
+  /// Describes its constants and moduli.
+  OfMaterial<std::vector<MaterialLine>> describe;
+  /// Scale of the fracture energy and strength of a material without fibres; null: they are no sums
+  /// over bonds.
+  OfMaterial<FractureScale> fracture_scale = nullptr;
   /// Energy that a plane crack takes under a uniform dilation, per squared critical stretch [J/m2];
-  /// none: fracture_scale has it.
-  [[nodiscard]] virtual std::optional<double> crack_energy_of_dilation(
-      const MaterialSpecification&, const BondSetting&) const {
-    return std::nullopt;
-  }
-
+  /// null: fracture_scale has it.
+  OfMaterial<double> crack_energy_of_dilation = nullptr;
   /// Key of a constant below zero, whose interactions store less energy the more they deform; empty
   /// if there is none.
-  [[nodiscard]] virtual std::string negative_constant(const MaterialSpecification&,
-                                                      const std::string& /*key*/,
-                                                      const BondSetting&,
-                                                      double /*spacing*/) const {
-    return {};
-  }
-
-  [[nodiscard]] virtual Moduli moduli(const MaterialSpecification& material, const std::string& key,
-                                      const BondSetting& setting, double spacing) const = 0;
-
-  /// Describes a material's constants and moduli.
-  [[nodiscard]] virtual std::vector<MaterialLine> describe(const PointMaterials::Material& material,
-                                                           const BondSetting& setting,
-                                                           double spacing) const = 0;
+  OfMaterial<std::string> negative_constant = nullptr;
 };
 
 }  // namespace peristat

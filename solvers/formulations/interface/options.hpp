@@ -40,18 +40,18 @@ enum class Option {
 };
 
 /// A set of options.
-class Options {
+class OptionSet {
  public:
-  constexpr Options(std::initializer_list<Option> options) {
+  constexpr OptionSet(std::initializer_list<Option> options) {
     for (const Option option : options) bits_ |= bit(option);
   }
   [[nodiscard]] constexpr bool has(Option option) const { return (bits_ & bit(option)) != 0; }
 
-  [[nodiscard]] constexpr Options with(Options others) const {
+  [[nodiscard]] constexpr OptionSet with(OptionSet others) const {
     others.bits_ |= bits_;
     return others;
   }
-  [[nodiscard]] constexpr Options without(Options others) const {
+  [[nodiscard]] constexpr OptionSet without(OptionSet others) const {
     others.bits_ = bits_ & ~others.bits_;
     return others;
   }

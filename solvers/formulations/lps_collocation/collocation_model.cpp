@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "assembly/terms/collocation/collocation_term.hpp"
 #include "assembly/terms/collocation/make_collocation_network.hpp"
 #include "solvers/formulations/solid/solid_constants.hpp"
@@ -82,10 +84,20 @@ std::vector<double> normals_of_faces(const BodySpecification& from, const Points
   return normals;
 }
 
+/// Describes the weights of the quadrature.
+std::string description(const MadeCollocationNetwork& of, int degree, Index points) {
+  std::string text = fmt::format(
+      "quadrature  exact to degree {}; weights solved for in {} of {} neighbourhoods, {} weights "
+      "below 0, the lowest is {:.4g} of a cell",
+      degree, of.solves, points, of.negative, of.lowest);
+  if (of.lowered > 0)
+    text += fmt::format("; exact only to a lower degree at {} points", of.lowered);
+  return text;
+}
+
 }  // namespace
 
-Model make_collocation_model(const ModelSetting& setting, Bonds bonds, CutBonds& cut,
-                             CollocationSummary& summary) {
+MadeModel make_collocation_model(const ModelSetting& setting, Bonds bonds) {
   const BodySpecification& from = setting.of;
   const Points& points = setting.points;
   const double horizon = setting.bonds.horizon;
@@ -107,10 +119,10 @@ Model make_collocation_model(const ModelSetting& setting, Bonds bonds, CutBonds&
     refuse_idle_interfaces(from, setting.materials, bonds, setting.index_map.ranks());
     mixed.weigh(bonds);
   }
-  cut = cut_bonds(bonds, points, from.cracks);
-  MadeCollocationNetwork made = make_collocation_network(points, bonds, horizon,
-                                                         from.collocation.degree, setting.threads);
-  summary = {made.negative, made.lowered, made.solves, made.lowest};
+  CutBonds cut = cut_bonds(bonds, points, from.cracks);
+  MadeCollocationNetwork made =
+      make_collocation_network(points, bonds, horizon, from.collocation.degree, setting.threads);
+  const std::string summary = description(made, from.collocation.degree, points.count());
   refuse_thin_bodies(points, made.network, setting.index_map);
   if (from.collocation.normals == NormalSource::exact) {
     made.network.normals = normals_of_faces(from, points, horizon, made.network, cut);
@@ -119,10 +131,12 @@ Model make_collocation_model(const ModelSetting& setting, Bonds bonds, CutBonds&
   auto whole = std::make_shared<CollocationNetwork>(std::move(made.network));
   auto [potential, never_fails] = mixed.potential(bonds);
   const TractionForm form = from.collocation.traction_form;
-  return Model(std::make_shared<CollocationTerm>(
-      std::make_shared<const Bonds>(std::move(bonds)), std::move(potential), std::move(never_fails),
-      CollocationSetting{std::move(whole), constants, form},
-      CollocationSetting{std::move(local), constants, form}));
+  return {Model(std::make_shared<CollocationTerm>(
+              std::make_shared<const Bonds>(std::move(bonds)), std::move(potential),
+              std::move(never_fails), CollocationSetting{std::move(whole), constants, form},
+              CollocationSetting{std::move(local), constants, form})),
+          std::move(cut),
+          {summary}};
 }
 
 }  // namespace peristat

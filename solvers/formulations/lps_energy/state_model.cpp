@@ -16,16 +16,16 @@ BondSetting state_setting(BondSetting setting) {
   return setting;
 }
 
-Model make_state_model(const ModelSetting& setting, Bonds bonds, CutBonds& cut) {
+MadeModel make_state_model(const ModelSetting& setting, Bonds bonds) {
   const BodySpecification& from = setting.of;
   const Points& points = setting.points;
   const BondSetting of_states = state_setting(setting.bonds);
   std::vector<DirectedConstant> moduli;
   for (const auto& material : all_materials(from, setting.materials)) {
     const LamePair constants = lame_constants(*material.of, points.dimension);
-    moduli.push_back({{modulus_of_crack(crack_energy_of_dilation(constants, of_states), of_states),
-                       0.0, 0.0},
-                      {}});
+    moduli.push_back(
+        {{modulus_of_crack(crack_energy_of_dilation(constants, of_states), of_states), 0.0, 0.0},
+         {}});
   }
   StateShares shares;
   shares.constants = constants_of_points(setting);
@@ -39,12 +39,13 @@ Model make_state_model(const ModelSetting& setting, Bonds bonds, CutBonds& cut) 
     shares.kernel = kernel_of_weights(plain);
     mixed.weigh(bonds);
   }
-  cut = cut_bonds(bonds, points, from.cracks);
+  CutBonds cut = cut_bonds(bonds, points, from.cracks);
   if (from.is_uniform()) shares.kernel = kernel_of_weights(bonds);
   auto [potential, never_fails] = mixed.potential(bonds);
-  return Model(std::make_shared<StateTerm>(std::make_shared<const Bonds>(std::move(bonds)),
-                                           std::move(potential), std::move(never_fails),
-                                           std::move(shares), setting.threads));
+  return {Model(std::make_shared<StateTerm>(std::make_shared<const Bonds>(std::move(bonds)),
+                                            std::move(potential), std::move(never_fails),
+                                            std::move(shares), setting.threads)),
+          std::move(cut)};
 }
 
 }  // namespace peristat

@@ -9,8 +9,8 @@ namespace peristat {
 /// @param setting with the influence K
 [[nodiscard]] BondSetting state_setting(BondSetting setting);
 
-/// Makes the model; `cut` receives the bonds that pre-cracks have cut. Collective for a part.
+/// Makes the model. Collective for a part.
 /// @param bonds with state_setting; of a part those of_neighbours
-[[nodiscard]] Model make_state_model(const ModelSetting& setting, Bonds bonds, CutBonds& cut);
+[[nodiscard]] MadeModel make_state_model(const ModelSetting& setting, Bonds bonds);
 
 }  // namespace peristat

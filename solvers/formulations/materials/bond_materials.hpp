@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "solvers/formulations/specification/body_specification.hpp"
 #include "solvers/formulations/materials/point_materials.hpp"
+#include "solvers/formulations/specification/body_specification.hpp"
 #include "src/geometry/points.hpp"
 #include "src/materials/directed_constant.hpp"
 #include "src/neighbourhood/bonds.hpp"

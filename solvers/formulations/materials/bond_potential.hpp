@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "solvers/formulations/specification/body_specification.hpp"
 #include "solvers/formulations/materials/point_materials.hpp"
+#include "solvers/formulations/specification/body_specification.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
 #include "src/potentials/potential.hpp"

@@ -28,14 +28,16 @@ void check_solid_constants(const MaterialSpecification& material, const std::str
           "0.49999995, and at least -0.9999999");
 }
 
-std::vector<MaterialLine> describe_solid(const PointMaterials::Material& material, int dimension) {
-  const auto [lambda, mu] = lame_constants(*material.of, dimension);
+std::vector<MaterialLine> describe_solid(const MaterialSpecification& material, const std::string&,
+                                         const BondSetting& setting, double) {
+  const auto [lambda, mu] = lame_constants(material, setting.dimension);
   return {{"constants", fmt::format("lambda {:.6g} Pa, mu {:.6g} Pa", lambda, mu)}};
 }
 
-Moduli moduli_of_solid(const MaterialSpecification& material, int dimension) {
+Moduli moduli_of_solid(const MaterialSpecification& material, const std::string&,
+                       const BondSetting& setting, double) {
   return {*material.youngs_modulus, *material.poisson_ratio,
-          dimension == 2 && material.plane == PlaneState::stress};
+          setting.dimension == 2 && material.plane == PlaneState::stress};
 }
 
 double modulus_of_crack(double crack_energy, const BondSetting& setting) {

@@ -16,9 +16,11 @@ void check_solid_constants(const MaterialSpecification& material, const std::str
                            int dimension);
 
 /// Lame's constants, and the moduli that they were given by.
-[[nodiscard]] std::vector<MaterialLine> describe_solid(const PointMaterials::Material& material,
-                                                       int dimension);
-[[nodiscard]] Moduli moduli_of_solid(const MaterialSpecification& material, int dimension);
+[[nodiscard]] std::vector<MaterialLine> describe_solid(const MaterialSpecification& material,
+                                                       const std::string& key,
+                                                       const BondSetting& setting, double);
+[[nodiscard]] Moduli moduli_of_solid(const MaterialSpecification& material, const std::string& key,
+                                     const BondSetting& setting, double);
 
 /// Micromodulus of bonds that dissipate as much as a crack of the solid [N/m6].
 /// @param crack_energy under a uniform dilation, over the squared stretch [J/m2]
