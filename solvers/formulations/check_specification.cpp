@@ -64,16 +64,12 @@ constexpr std::array<OptionOfBody, 11> options_of_body{{
     {Option::convolutions, "force_operator", [](auto& of) { return of.is_convolved(); }},
 }};
 
-void check_options(const BodySpecification& of, const Points& points) {
+/// Refuses points and an operator that the formulation does not take.
+void check_points_and_operator(const BodySpecification& of, const Points& points) {
   const OptionSet options = options_of(of);
-  const auto refuse = [&](Option option, const std::string& key, const std::string& value) {
-    if (!options.has(option)) throw InputError(key, value, is_for(option));
-  };
-  for (const auto& [option, key, is_given] : options_of_body) {
-    if (is_given(of)) refuse(option, key, "");
-  }
   const std::string model = name_of(of.material.model);
-  if (!points.neighbours.empty()) refuse(Option::given_neighbours, "points.neighbours", "");
+  require_absent(!points.neighbours.empty() && !options.has(Option::given_neighbours),
+                 "points.neighbours", is_for(Option::given_neighbours));
   const bool has_images = !of.constraints.symmetries.empty() || !of.constraints.periods.empty();
   if (has_images && !options.has(Option::images)) {
     throw InputError("material.model", model,
@@ -203,7 +199,7 @@ bool is_same_pair(const InterfaceSpecification& one, const InterfaceSpecificatio
 }
 
 void check_interface(const InterfaceSpecification& interface, const std::string& key,
-                     const BodySpecification& of, int dimension) {
+                     const BodySpecification& of, int dimension, const OptionSet& options) {
   const auto& [a, b] = interface.between;
   require_absent(of.regions.empty(), key, "needs regions");
   for (const std::string& name : interface.between) {
@@ -216,7 +212,7 @@ void check_interface(const InterfaceSpecification& interface, const std::string&
   if (!interface.material) return;
   const MaterialSpecification& material = *interface.material;
   require_of_body(material, key + ".material", of);
-  check_material_of(material, key + ".material", dimension, formulation_of(of), options_of(of));
+  check_material_of(material, key + ".material", dimension, formulation_of(of), options);
   require_absent(!material.scatter.empty(), key + ".material.scatter",
                  "belongs to points, so give it in the materials of the regions");
   require_absent(material.density.has_value(), key + ".material.density",
@@ -225,7 +221,7 @@ void check_interface(const InterfaceSpecification& interface, const std::string&
                  "is a law of points that fail, so give it in the materials of the regions");
 }
 
-void check_regions(const BodySpecification& of, int dimension) {
+void check_regions(const BodySpecification& of, int dimension, const OptionSet& options) {
   require(
       of.regions.size() + of.interfaces.size() <= most_materials, "regions", "",
       "there are at most " + std::to_string(most_materials) + " regions and interfaces together");
@@ -235,11 +231,11 @@ void check_regions(const BodySpecification& of, int dimension) {
             "is the name for the points in no region; give the set another name");
     require_of_body(of.regions[k].material, key + ".material", of);
     check_material_of(of.regions[k].material, key + ".material", dimension, formulation_of(of),
-                      options_of(of));
+                      options);
   }
   for (std::size_t k = 0; k < of.interfaces.size(); ++k) {
     const std::string key = "interfaces[" + std::to_string(k) + "]";
-    check_interface(of.interfaces[k], key, of, dimension);
+    check_interface(of.interfaces[k], key, of, dimension, options);
     for (std::size_t other = 0; other < k; ++other)
       require(!is_same_pair(of.interfaces[k], of.interfaces[other]), key + ".between", "",
               "another interface has the same pair of materials");
@@ -323,23 +319,37 @@ void check_mirrored_fibres(const BodySpecification& of, int dimension) {
 
 void check_material(const MaterialSpecification& material, const std::string& key, int dimension) {
   const Formulation& formulation = formulation_of(material);
-  check_material_of(material, key, dimension, formulation,
-                    formulation.takes.with(formulation.takes_convolved.value_or(OptionSet{})));
+  check_material_of(material, key, dimension, formulation, all_options_of(formulation));
+}
+
+namespace {
+
+void check_all_materials(const BodySpecification& of, int dimension, const OptionSet& options) {
+  for (const auto& [option, key, is_given] : options_of_body) {
+    require_absent(is_given(of) && !options.has(option), key, is_for(option));
+  }
+  if (of.regions.empty() || of.material.has_constants()) {
+    check_material_of(of.material, "material", dimension, formulation_of(of), options);
+  }
+  check_regions(of, dimension, options);
+  check_mirrored_fibres(of, dimension);
+}
+
+}  // namespace
+
+void check_materials(const BodySpecification& of, int dimension) {
+  check_all_materials(of, dimension, all_options_of(formulation_of(of)));
 }
 
 void check_specification(const BodySpecification& of, const Points& points) {
-  check_options(of, points);
+  check_points_and_operator(of, points);
+  check_all_materials(of, points.dimension, options_of(of));
   check_horizon(of, points);
   check_cross_section(of, points);
   check_corrections(of, points);
   check_horizon_shape(of, points);
   const Formulation& formulation = formulation_of(of);
-  if (of.regions.empty() || of.material.has_constants()) {
-    check_material_of(of.material, "material", points.dimension, formulation, options_of(of));
-  }
   if (formulation.check_body) formulation.check_body(of, points);
-  check_regions(of, points.dimension);
-  check_mirrored_fibres(of, points.dimension);
   for (std::size_t k = 0; k < of.cracks.size(); ++k)
     check_crack(of.cracks[k], points.dimension, "cracks[" + std::to_string(k) + "]");
 }

@@ -12,6 +12,11 @@ namespace peristat {
 /// @throws InputError
 void check_material(const MaterialSpecification& material, const std::string& key, int dimension);
 
+/// Refuses materials, regions and interfaces that do not go together, and options that the
+/// formulation takes with no operator, whatever the points are.
+/// @throws InputError
+void check_materials(const BodySpecification& of, int dimension);
+
 /// Refuses a specification that contradicts itself, is incomplete or would be ignored in part, like
 /// a Poisson ratio given to bonds alone.
 /// @throws InputError ("horizon", "cross_section", "material.…", "cracks[0].…", …)

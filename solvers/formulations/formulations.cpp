@@ -24,11 +24,6 @@ const std::vector<const Formulation*>& all_formulations() {
   return all;
 }
 
-bool may_take(const Formulation& formulation, Option option) {
-  return formulation.takes.has(option) ||
-         (formulation.takes_convolved && formulation.takes_convolved->has(option));
-}
-
 /// Names of those that take an option: a model, or the formulation if its model has others that do
 /// not.
 std::vector<std::string> names_with(Option option) {
@@ -38,7 +33,7 @@ std::vector<std::string> names_with(Option option) {
     bool all_take = true;
     for (const Formulation* formulation : all_formulations()) {
       if (formulation->model != model) continue;
-      if (!may_take(*formulation, option)) {
+      if (!all_options_of(*formulation).has(option)) {
         all_take = false;
       } else if (formulation->takes.has(option)) {
         of_model.push_back(std::string(formulation->label));
@@ -81,6 +76,10 @@ const Formulation& formulation_of(const BodySpecification& of) {
   return is_collocated ? lps_collocation_formulation() : formulation_of(of.material);
 }
 
+OptionSet all_options_of(const Formulation& formulation) {
+  return formulation.takes.with(formulation.takes_convolved.value_or(OptionSet{}));
+}
+
 OptionSet options_of(const BodySpecification& of) {
   const Formulation& formulation = formulation_of(of);
   return of.is_convolved() ? formulation.takes_convolved.value_or(formulation.takes)
@@ -89,7 +88,7 @@ OptionSet options_of(const BodySpecification& of) {
 
 bool takes(MaterialModel model, Option option) {
   return std::ranges::any_of(all_formulations(), [&](const Formulation* formulation) {
-    return formulation->model == model && may_take(*formulation, option);
+    return formulation->model == model && all_options_of(*formulation).has(option);
   });
 }
 

@@ -22,6 +22,8 @@ struct ModelName {
 /// One formulation of a model: all of a model take the same constants.
 [[nodiscard]] const Formulation& formulation_of(const MaterialSpecification& material);
 
+/// Options of a formulation with any of its operators.
+[[nodiscard]] OptionSet all_options_of(const Formulation& formulation);
 /// OptionSet of a body, with convolutions if it has them.
 [[nodiscard]] OptionSet options_of(const BodySpecification& of);
 [[nodiscard]] inline bool takes(const BodySpecification& of, Option option) {

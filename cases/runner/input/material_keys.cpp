@@ -9,6 +9,7 @@
 #include "cases/runner/input/body_keys.hpp"
 #include "cases/runner/input/key_kinds.hpp"
 #include "solvers/formulations/formulations.hpp"
+#include "solvers/formulations/specification/check_damage.hpp"
 
 namespace peristat {
 
@@ -45,27 +46,12 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
   using Spec = DamageSpecification;
   using K = Key<Spec>;
   const auto is_whole = [](auto& damage, auto&) { return damage.law == DamageLaw::none; };
-  const auto is_of_points = [](auto& damage, auto&) {
-    return damage.law == DamageLaw::energy_density;
-  };
-  const std::string for_stretches = "is for the laws of stretches";
-  const auto is_sudden = [](auto& damage, auto&) { return !damage.softens(); };
-  const auto has_no_rate = [](auto& damage, auto&) { return !damage.has_rate(); };
-  const auto is_not_blended = [](auto& damage, auto&) { return damage.law != DamageLaw::blended; };
-  const auto is_sized = [](auto& damage, auto&) {
-    return damage.fracture_energy || (damage.strength && !damage.softens());
-  };
-  const auto begins_by_strength = [](auto& damage, auto&) {
-    return damage.strength && damage.law != DamageLaw::blended;
-  };
   // Reading a missing key throws the error that it is missing.
   const auto require_key = [](auto lacks) {
     return [=](const Entry& at, const Spec& damage) {
       if (lacks(damage)) static_cast<void>(at.from.number(at.key, Range()));
     };
   };
-  const std::string for_softening = "is for the laws that soften",
-                    for_blended = "is for the law \"blended\"";
   return {
       material + ".damage",
       {K("law", &Spec::law,
@@ -92,6 +78,7 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` follows "
          "from it. `cpd` takes it at horizon ratios up to 12 in 2D, 3.2 in 3D")
            .unless(is_whole, "")
+           .by_rules(damage_rules)
            .early(),
        K("strength", &Spec::strength, positive("Pa"),
          "$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the "
@@ -100,19 +87,17 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "the horizon ratios of `fracture_energy`, in 3D at smaller ones, where it does not take "
          "minutes")
            .unless(is_whole, "")
-           .unless(is_of_points, for_stretches)
+           .by_rules(damage_rules)
            .early(),
        K("critical", &Spec::critical, stretch(), "stretch $s_c$ at which a bond breaks")
            .unless(is_whole, "")
-           .unless(is_of_points, for_stretches)
-           .unless(is_sized, "follows from fracture_energy or strength; give one of them")
+           .by_rules(damage_rules)
            .then(require_key([](auto& damage) { return damage.critical == 0.0; }))
            .default_words("this or `fracture_energy` is required with a law"),
        K("onset", &Spec::onset, stretch(),
          "laws that soften: stretch $s_m$ beyond which a bond loses stiffness")
            .unless(is_whole, "")
-           .unless(is_sudden, for_softening)
-           .unless(begins_by_strength, "follows from strength; give one of them")
+           .by_rules(damage_rules)
            .then(require_key(
                [](auto& damage) { return damage.onset == 0.0 && !damage.is_by_data(); }))
            .written_if([](auto& damage, auto&) { return damage.onset != 0.0; })
@@ -121,9 +106,7 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
                           "a brittle bond of that energy, for `blended` a quarter"),
        K("peak", &Spec::peak, stretch(), "`blended`: stretch $s_p$ at which the force is largest")
            .unless(is_whole, "")
-           .unless(is_not_blended, for_blended)
-           .unless([](auto& damage, auto&) { return damage.strength.has_value(); },
-                   "follows from strength; give one of them")
+           .by_rules(damage_rules)
            .then(require_key([](auto& damage) {
              return damage.peak == 0.0 && (damage.onset != 0.0 || !damage.fracture_energy);
            }))
@@ -136,12 +119,12 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "`blended`: slope of the force between `onset` and `peak`, relative to that of the "
          "undamaged bond")
            .unless(is_whole, "")
-           .unless(is_not_blended, for_blended),
+           .by_rules(damage_rules),
        K("rate", &Spec::rate, between(0.1, 50.0, "1"),
          "tanh laws: $\\beta$, how strongly the softening is concentrated midway between the two "
          "stretches; `exponential`: how much more steeply the force falls at first")
            .unless(is_whole, "")
-           .unless(has_no_rate, "is for the tanh laws and \"exponential\""),
+           .by_rules(damage_rules),
        K("no_fail", &Spec::no_fail, known_sets(),
          "sets of points whose bonds stay elastic at any stretch, including bonds to points "
          "outside the sets")
@@ -408,19 +391,6 @@ Table<MaterialSpecification> material_of_body_keys(const std::string& name) {
     material.influence = body.influence;
     material.kinematics = body.kinematics;
   });
-  keys.do_after([of_body](const Entry& at, MaterialSpecification& material) {
-    const bool is_first = !at.so_far.material.has_constants() && at.so_far.regions.empty();
-    const MaterialSpecification& body = of_body(at.so_far);
-    if (is_first) return;
-    const auto require = [&](bool is_same, const std::string& key) {
-      if (!is_same) at.from.refuse(key, "must be the same for all materials of a body");
-    };
-    require(material.model == body.model, "model");
-    require(material.potential == body.potential, "potential");
-    require(material.plane == body.plane, "plane");
-    require(material.influence == body.influence, "influence");
-    require(material.kinematics == body.kinematics, "kinematics");
-  });
   return keys;
 }
 
@@ -431,12 +401,6 @@ Table<RegionSpecification> region_keys() {
   using K = Key<Spec>;
   return {"region",
           {K("set", &Spec::set, known_set(), "set of the points that have this material")
-               .then([](auto& at, auto& region) {
-                 if (region.set == rest_name)
-                   at.refuse(
-                       "is the name by which `between` refers to the points in no region; give the "
-                       "set another name");
-               })
                .moreover("no region shares points with another")
                .required()
                .early(),
@@ -459,7 +423,6 @@ Kind<std::array<std::string, 2>> two_materials() {
       at.refuse("there is no region of the set \"" + name + "\"" + did_you_mean(name, names) +
                 (names.empty() ? "" : "  (there: " + listed(names) + ")"));
     }
-    if (given[0] == given[1]) at.refuse("must be two materials, not one");
     return std::array{given[0], given[1]};
   };
   return {read, [](const auto& names, const Case&) { return array_text(names, toml_string); },
@@ -499,15 +462,7 @@ Table<InterfaceSpecification> interface_keys() {
          "`density` and `scatter`: constants and damage of its own")
            .written_if([](auto& interface, auto&) { return interface.material.has_value(); })
            .early()
-           .otherwise([](auto&, auto&) {}, "none: the `rule` holds")},
-      {},
-      [](auto& at, auto& interface) {
-        for (const auto& other : at.so_far.interfaces) {
-          const auto& [a, b] = interface.between;
-          if (other.between == interface.between || other.between == std::array{b, a})
-            at.refuse("another interface has the same pair of materials");
-        }
-      }};
+           .otherwise([](auto&, auto&) {}, "none: the `rule` holds")}};
 }
 
 }  // namespace peristat

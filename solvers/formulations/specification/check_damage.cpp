@@ -1,51 +1,45 @@
 #include "solvers/formulations/specification/check_damage.hpp"
 
+#include <string_view>
+
 #include "solvers/formulations/specification/require.hpp"
 
 namespace peristat {
 namespace {
 
+/// True if a datum differs from its default.
+bool is_given(const DamageSpecification& damage, std::string_view key) {
+  if (key == "fracture_energy") return damage.fracture_energy.has_value();
+  if (key == "strength") return damage.strength.has_value();
+  if (key == "critical") return damage.critical != 0.0;
+  if (key == "onset") return damage.onset != 0.0;
+  return key == "peak" && damage.peak != 0.0;
+}
+
 /// Refuses a law with too little or too much data to find its stretches.
 void check_data(const DamageSpecification& damage, const std::string& table) {
-  const auto is_given = [](double stretch) { return stretch != 0.0; };
   require_positive(damage.fracture_energy, table + "fracture_energy");
   require_positive(damage.strength, table + "strength");
   if (damage.law == DamageLaw::none) {
-    require_absent(damage.fracture_energy.has_value(), table + "fracture_energy", "needs a law");
-    require_absent(damage.strength.has_value(), table + "strength", "needs a law");
-    require_absent(is_given(damage.critical), table + "critical", "needs a law");
+    for (const std::string key : {"fracture_energy", "strength", "critical"}) {
+      require_absent(is_given(damage, key), table + key, "needs a law");
+    }
     return;
+  }
+  for (const auto& [key, is_idle, why] : damage_rules) {
+    require_absent(is_given(damage, key) && is_idle(damage), table + key, why);
   }
   if (damage.law == DamageLaw::energy_density) {
     require(damage.fracture_energy.has_value(), table + "fracture_energy", "", "is missing");
-    const std::string of_stretches =
-        "is for laws of stretches; energy_density needs fracture_energy";
-    require_absent(damage.strength.has_value(), table + "strength", of_stretches);
-    require_absent(is_given(damage.critical), table + "critical", of_stretches);
-    require_absent(is_given(damage.onset), table + "onset", of_stretches);
-    require_absent(is_given(damage.peak), table + "peak", of_stretches);
     return;
   }
-  const bool is_blended = damage.law == DamageLaw::blended;
-  const bool is_sized =
-      damage.fracture_energy || (damage.law == DamageLaw::critical_stretch && damage.strength);
-  require(is_given(damage.critical) != is_sized, table + "critical", "",
-          is_sized
-              ? "can't be given together with fracture_energy or strength: it follows from them"
-              : "is missing; give it, or fracture_energy");
-  require_absent(is_given(damage.peak) && (!is_blended || damage.strength), table + "peak",
-                 is_blended ? "can't be given together with strength: it follows from it"
-                            : "is for the law blended");
-  if (!damage.softens()) {
-    require_absent(is_given(damage.onset), table + "onset", "is for the laws that soften");
-    return;
-  }
-  require_absent(is_given(damage.onset) && damage.strength && !is_blended, table + "onset",
-                 "can't be given together with strength: it follows from it");
-  require(is_given(damage.onset) || damage.is_by_data(), table + "onset", "",
+  require(is_given(damage, "critical") || is_sized(damage), table + "critical", "",
+          "is missing; give it, or fracture_energy");
+  if (!damage.softens()) return;
+  require(is_given(damage, "onset") || damage.is_by_data(), table + "onset", "",
           "is missing; give it, or strength");
-  require(!is_blended || is_given(damage.peak) || damage.strength ||
-              (damage.fracture_energy && !is_given(damage.onset)),
+  require(damage.law != DamageLaw::blended || is_given(damage, "peak") || damage.strength ||
+              (damage.fracture_energy && !is_given(damage, "onset")),
           table + "peak", "", "is missing; give it, or strength");
 }
 

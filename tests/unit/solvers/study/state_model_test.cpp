@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "assembly/terms/states/state_term.hpp"
+#include "solvers/formulations/check_specification.hpp"
 #include "solvers/formulations/lps_energy/lps_energy.hpp"
 #include "solvers/study/body.hpp"
 #include "src/core/input_error.hpp"
