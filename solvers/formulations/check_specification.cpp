@@ -89,10 +89,19 @@ void check_points_and_operator(const BodySpecification& of, const Points& points
 void check_law(const DamageSpecification& damage, const std::string& key,
                const OptionSet& options) {
   if (damage.law == DamageLaw::none) return;
+  const std::array<std::pair<Option, std::string>, 3> kinds{
+      {{Option::softening, "a law that softens"},
+       {Option::critical_stretch, "\"critical_stretch\""},
+       {Option::energy_density, "\"energy_density\""}}};
   const Option needed = damage.law == DamageLaw::energy_density ? Option::energy_density
                         : damage.softens()                      ? Option::softening
                                                                 : Option::critical_stretch;
-  require_absent(!options.has(needed), key + ".damage.law", "this law " + is_for(needed));
+  std::string allowed;
+  for (const auto& [option, name] : kinds) {
+    if (options.has(option)) allowed += (allowed.empty() ? "" : " or ") + name;
+  }
+  require_absent(!options.has(needed), key + ".damage.law",
+                 "must be " + allowed + " with this model; the given one " + is_for(needed));
 }
 
 void check_fibre(const MaterialSpecification& material, const std::string& key, int dimension) {

@@ -24,7 +24,7 @@ struct ModelName {
 
 /// Options of a formulation with any of its operators.
 [[nodiscard]] OptionSet all_options_of(const Formulation& formulation);
-/// OptionSet of a body, with convolutions if it has them.
+/// Options of a body, with convolutions if it has them.
 [[nodiscard]] OptionSet options_of(const BodySpecification& of);
 [[nodiscard]] inline bool takes(const BodySpecification& of, Option option) {
   return options_of(of).has(option);

@@ -53,7 +53,7 @@ enum class SolidForm { collocation, energy, printed };
 /// below a single face that have lost no bond, the face's.
 enum class NormalSource { numerical, exact };
 
-/// OptionSet of model lps in the form of collocation.
+/// Options of model lps in the form of collocation.
 struct CollocationSpecification {
   int degree = 5;  ///< of the polynomials that the quadrature is exact for
   TractionForm traction_form = TractionForm::full;
