@@ -263,7 +263,7 @@ class States(Folder):
             (PLATE.replace('form = "energy"', 'form = "energy"\nsurface_correction = "volume"') + PULL, ("surface_correction",)),
             (PLATE.replace('form = "energy"', 'form = "force"') + PULL, ("quadrature.form", "energy")),
             (PULLED + '[solver]\nmode = "path"\n', ("mode", "path")),
-            (PLATE + REGION + '[[interface]]\nrule = "weaker"\n' + PULL, ("interface", "energy")),
+            (PLATE + REGION + '[[interface]]\nrule = "weaker"\n' + PULL, ("interface", '"lps" by collocation')),
             (PLATE + PULL + '[[symmetry]]\naxis = "x"\n', ("symmetry",)),
             (PLATE + PULL + '[solver]\ntangent = "matrix_free"\n', ("matrix_free",)),
             (PLATE + PULL + '[[load]]\nside = "y+"\ntraction = [0, 1]\ndepth = "surface"\n', ("depth",)),

@@ -279,7 +279,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "without eigenstrains, with `potential = \"harmonic\"` and with damage by "
          "`energy_density` alone. `lps` is always linear")
            .then(make_linear_if_lps)
-           .unless(without(Option::kinematics), is_for(Option::kinematics))
+           .written_if(
+               [](auto& material, auto&) { return takes(material.model, Option::kinematics); })
            .on_ranks(),
        K("influence", &Spec::influence, one_of(influence_names()),
          "influence function $\\omega(r/\\delta)$: [GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, "
