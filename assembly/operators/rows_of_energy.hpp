@@ -3,11 +3,12 @@
 #include <vector>
 
 #include "assembly/energy/kept_state.hpp"
+#include "assembly/energy/row_operator.hpp"
 #include "assembly/operators/unsymmetric_tangent.hpp"
 
 namespace peristat {
 
-/// Derivative of forces that have no potential: products are computed anew each time, rows on
+/// Tangent of kind TangentKind::rows: products are computed anew each time, rows on
 /// request. The energy must outlive it.
 struct RowsOfEnergy : UnsymmetricTangent {
   explicit RowsOfEnergy(Energy& energy);
@@ -21,7 +22,9 @@ struct RowsOfEnergy : UnsymmetricTangent {
   void absolute_row_sums(std::span<double> sums) const override;
 
   [[nodiscard]] SparseRows rows() const override;
-  [[nodiscard]] double bytes_of_rows() const override { return energy_->bytes_of_rows(); }
+  [[nodiscard]] double bytes_of_rows() const override {
+    return energy_->forms().rows->bytes_of_rows();
+  }
   [[nodiscard]] SparseRows local_rows() const override;
 
  private:

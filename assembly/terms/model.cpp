@@ -43,11 +43,11 @@ bool Model::has_symmetric_blocks() const {
                      [](const auto& term) { return term->has_symmetric_blocks(); });
 }
 
-bool Model::visits_rows() const { return terms_.size() == 1 && terms_.front()->visits_rows(); }
-
-bool Model::has_rows() const {
-  return std::all_of(terms_.begin(), terms_.end(),
-                     [](const auto& term) { return term->has_rows(); });
+TangentKind Model::tangent_kind() const {
+  // The rows of several terms can't be visited at once.
+  TangentKind kind = terms_.size() == 1 ? TangentKind::visited : TangentKind::stored;
+  for (const auto& term : terms_) kind = std::max(kind, term->tangent_kind());
+  return kind;
 }
 
 Balances Model::balances() const {

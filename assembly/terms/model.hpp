@@ -53,10 +53,7 @@ class Model {
   [[nodiscard]] BlockPattern pattern() const;
 
   [[nodiscard]] bool has_symmetric_blocks() const;
-  /// True if the tangent need not be stored.
-  [[nodiscard]] bool visits_rows() const;
-  /// True if the tangent has rows.
-  [[nodiscard]] bool has_rows() const;
+  [[nodiscard]] TangentKind tangent_kind() const;
   [[nodiscard]] Balances balances() const;
 
  private:

@@ -446,7 +446,7 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.bonds = double(body.model.bonds().count());
   size.bytes_per_bond = double(sizeof(Index) + body.model.bonds().kind.bytes_per_bond());
   size.has_history = body.model.has_history();
-  size.is_convolved = !body.model.has_rows();
+  size.is_convolved = body.model.tangent_kind() == TangentKind::products;
   size.has_symmetric_blocks = body.model.has_symmetric_blocks();
   size.is_constrained = !body.conditions->constraints().none();
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
@@ -457,7 +457,7 @@ MemoryEstimate estimate_memory(const Body& body) {
   for (const auto& term : body.model.terms()) {
     size.blocks = std::max(size.blocks, double(term->couplings().partner.size()));
   }
-  if (body.specification.has_states() && body.model.has_rows())
+  if (body.specification.has_states() && !size.is_convolved)
     size.coupling_ratio = 2.0 * size.horizon_ratio;
   if (!body.model.balances().potential) {
     // Couplings reach two horizons: 2^d as many points as one.

@@ -15,7 +15,7 @@ namespace peristat {
 
 /// The passes over bonds in a dimension, with their potential.
 template <int dimension>
-class BondPassesIn : public TermPasses {
+class BondPassesIn : public TermPasses, BlockTangent, RowVisits {
  public:
   BondPassesIn(const BondTerm& term, const TermSetting& setting);
 
@@ -26,7 +26,8 @@ class BondPassesIn : public TermPasses {
                            const SharedEnvironment& environment, History& history,
                            std::span<double> gradient, Write how) override;
   DamageGrowth growth(const StateView& at) override;
-  void tangent(const StateView& at, double projection, Tangent& tangent, Write how) override;
+  [[nodiscard]] TangentForms forms() override { return {.blocks = this, .visits = this}; }
+  void tangent(const StateView& at, Tangent& tangent, double projection, Write how) override;
   void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                      std::span<double> diagonal) override;
   void product(const StateView& at, std::span<const double> v, double projection,
@@ -149,7 +150,7 @@ DamageGrowth BondPassesIn<dimension>::growth(const StateView& at) {
 }
 
 template <int dimension>
-void BondPassesIn<dimension>::tangent(const StateView& at, double projection, Tangent& tangent,
+void BondPassesIn<dimension>::tangent(const StateView& at, Tangent& tangent, double projection,
                                       Write how) {
   if (how == Write::over && places_.empty()) return write_tangent(at, projection, tangent);
   if (how == Write::over) tangent.clear();

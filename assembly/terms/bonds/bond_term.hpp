@@ -50,7 +50,7 @@ class BondTerm : public Term {
 
   [[nodiscard]] Couplings couplings() const override { return *bonds_; }
   [[nodiscard]] bool has_symmetric_blocks() const override { return true; }
-  [[nodiscard]] bool visits_rows() const override { return true; }
+  [[nodiscard]] TangentKind tangent_kind() const override { return TangentKind::visited; }
   [[nodiscard]] Balances balances() const override;
   [[nodiscard]] bool can_be_damaged() const override { return can_fail(); }
   [[nodiscard]] std::vector<double> initial_history() const override;

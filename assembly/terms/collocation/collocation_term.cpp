@@ -6,14 +6,16 @@
 #include <stdexcept>
 #include <utility>
 
+#include "assembly/energy/row_operator.hpp"
 #include "assembly/terms/bonds/bond_passes.hpp"
 #include "assembly/terms/damage.hpp"
 #include "assembly/terms/workspace.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {
 
-class CollocationPasses : public TermPasses {
+class CollocationPasses : public TermPasses, RowOperator {
  public:
   CollocationPasses(const CollocationTerm& term, const TermSetting& setting)
       : term_(term),
@@ -51,9 +53,7 @@ class CollocationPasses : public TermPasses {
     return term_.can_fail() ? stretches_->growth(at) : DamageGrowth{};
   }
 
-  void tangent(const StateView&, double, Tangent&, Write) override {
-    throw std::logic_error("collocation has no symmetric tangent");
-  }
+  [[nodiscard]] TangentForms forms() override { return {.rows = this, .products = this}; }
 
   void product(const StateView& at, std::span<const double> v, double, std::span<double> product,
                Write how) override {
@@ -70,13 +70,13 @@ class CollocationPasses : public TermPasses {
   }
   [[nodiscard]] double bytes_of_rows() const override { return whole_.bytes_of_rows(); }
 
-  void outline_rows(const StateView& at, std::span<double> diagonal,
-                    std::span<double> row_sums) override {
+  void outline(const StateView& at, std::span<double> diagonal,
+               std::span<double> row_sums) override {
     update(at);
-    const std::vector<double>&blocks = whole_.diagonal(), &bounds = whole_.bounds_of_row_sums();
-    std::copy(blocks.begin(), blocks.end(), diagonal.begin());
-    std::copy(bounds.begin(), bounds.end(), row_sums.begin());
+    add_scaled(diagonal, 1.0, whole_.diagonal());
+    add_scaled(row_sums, 1.0, whole_.bounds_of_row_sums());
   }
+  [[nodiscard]] LatticeStencil stencil(const StateView&) override { return {}; }
 
   [[nodiscard]] bool shares_energy() const override { return true; }
 

@@ -26,7 +26,7 @@ class CollocationTerm : public BondTerm {
   [[nodiscard]] const CollocationSetting& local() const { return local_; }
 
   [[nodiscard]] bool has_symmetric_blocks() const override { return false; }
-  [[nodiscard]] bool visits_rows() const override { return false; }
+  [[nodiscard]] TangentKind tangent_kind() const override { return TangentKind::rows; }
   [[nodiscard]] Balances balances() const override { return {false, false, false, false}; }
   [[nodiscard]] double stored_bytes() const override;
   [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;

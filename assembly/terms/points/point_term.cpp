@@ -10,6 +10,7 @@
 
 #include "assembly/convolutions/forces_with_images.hpp"
 #include "assembly/convolutions/linear_bonds.hpp"
+#include "assembly/energy/product_operator.hpp"
 #include "assembly/terms/linear/linear_bond_sums.hpp"
 #include "assembly/terms/model.hpp"
 #include "src/parallel/collectives.hpp"
@@ -18,7 +19,7 @@
 namespace peristat {
 namespace {
 
-class PointPasses : public TermPasses {
+class PointPasses : public TermPasses, BlockTangent, RowVisits, ProductOperator {
  public:
   PointPasses(const PointTerm& term, const TermSetting& setting)
       : term_(term),
@@ -70,8 +71,13 @@ class PointPasses : public TermPasses {
     return judge();
   }
 
+  [[nodiscard]] TangentForms forms() override {
+    if (bonds_ == nullptr) return {.products = this};
+    return {.blocks = this, .visits = this};
+  }
+
   /// @param projection ignored: a term with rows is convex
-  void tangent(const StateView& at, double /*projection*/, Tangent& tangent, Write how) override {
+  void tangent(const StateView& at, Tangent& tangent, double /*projection*/, Write how) override {
     if (how == Write::over) tangent.clear();
     const std::size_t entries = dimension_ * dimension_;
     std::vector<double> diagonal(tangent.diagonal.size());
@@ -90,13 +96,12 @@ class PointPasses : public TermPasses {
 
   void visit_tangent(const StateView& at, double /*projection*/, const RowVisitor& visit,
                      std::span<double> diagonal) override {
-    if (bonds_ == nullptr) throw std::logic_error("a lattice by convolutions has no rows");
     take_integrity(at.history);
     bonds_->visit_tangent(visit, diagonal);
   }
 
-  void outline_rows(const StateView& at, std::span<double> diagonal,
-                    std::span<double> row_sums) override {
+  void outline(const StateView& at, std::span<double> diagonal,
+               std::span<double> row_sums) override {
     take_integrity(at.history);
     forces_->outline_tangent(own(at.displacement), diagonal, row_sums);
   }
@@ -104,7 +109,7 @@ class PointPasses : public TermPasses {
   LatticeStencil stencil(const StateView& at) override {
     take_integrity(at.history);
     LatticeStencil own = forces_->stencil();
-    if (!own.empty() || !term_.is_convolved()) return own;
+    if (!own.empty()) return own;
     const std::vector<double> whole(volume_.size(), 1.0);
     const auto& integrity = integrity_.empty() ? whole : integrity_;
     return lattice_stencil(term_.lattice()->box, term_.lattice()->springs, integrity,

@@ -68,8 +68,9 @@ class PointTerm : public BondTerm {
   [[nodiscard]] virtual double bound_over_blocks(int dimension) const = 0;
 
   [[nodiscard]] Couplings couplings() const override;
-  [[nodiscard]] bool visits_rows() const override { return !is_convolved(); }
-  [[nodiscard]] bool has_rows() const override { return !is_convolved(); }
+  [[nodiscard]] TangentKind tangent_kind() const override {
+    return is_convolved() ? TangentKind::products : TangentKind::visited;
+  }
   [[nodiscard]] Balances balances() const override = 0;
   [[nodiscard]] bool can_be_damaged() const override { return bearable_.has_value(); }
   [[nodiscard]] std::vector<double> initial_history() const override;

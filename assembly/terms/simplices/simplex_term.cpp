@@ -13,7 +13,7 @@ namespace {
 void clear(std::span<double> result) { std::fill(result.begin(), result.end(), 0.0); }
 
 template <int D>
-class SimplexPasses : public TermPasses {
+class SimplexPasses : public TermPasses, BlockTangent {
  public:
   SimplexPasses(const SimplexTerm& term, const TermSetting& setting)
       : term_(term),
@@ -45,7 +45,9 @@ class SimplexPasses : public TermPasses {
     return found;
   }
 
-  void tangent(const StateView& at, double projection, Tangent& tangent, Write how) override {
+  [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
+
+  void tangent(const StateView& at, Tangent& tangent, double projection, Write how) override {
     if (tangent.blocks != Tangent::Blocks::whole) {
       throw std::logic_error("the blocks of triangles and tetrahedra are not symmetric");
     }

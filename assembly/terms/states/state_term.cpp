@@ -18,7 +18,7 @@ namespace peristat {
 namespace {
 
 template <int D>
-class StatePasses : public TermPasses {
+class StatePasses : public TermPasses, BlockTangent {
  public:
   StatePasses(const StateTerm& term, const TermSetting& setting)
       : term_(term),
@@ -68,8 +68,10 @@ class StatePasses : public TermPasses {
     return term_.can_fail() ? stretches_->growth(at) : DamageGrowth{};
   }
 
+  [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
+
   /// @param projection changes nothing: Pi is convex
-  void tangent(const StateView& at, double /*projection*/, Tangent& tangent, Write how) override {
+  void tangent(const StateView& at, Tangent& tangent, double /*projection*/, Write how) override {
     if (tangent.blocks != Tangent::Blocks::whole) {
       throw std::logic_error("the blocks of states are not symmetric");
     }

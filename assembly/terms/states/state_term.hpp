@@ -48,7 +48,7 @@ class StateTerm : public BondTerm {
     return {network_.block_offset, network_.partner};
   }
   [[nodiscard]] bool has_symmetric_blocks() const override { return false; }
-  [[nodiscard]] bool visits_rows() const override { return false; }
+  [[nodiscard]] TangentKind tangent_kind() const override { return TangentKind::stored; }
   [[nodiscard]] Balances balances() const override { return {true, false, true, true}; }
   [[nodiscard]] double stored_bytes() const override;
   [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;

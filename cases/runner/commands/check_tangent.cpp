@@ -297,8 +297,9 @@ double relative_moment_sum(const Points& points, const std::vector<double>& disp
 
 std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler,
                                               const Constraints& constraints) {
-  if (!assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
-  if (!assembler.has_rows()) return make_convolved_tangent(assembler, constraints);
+  const TangentKind kind = assembler.tangent_kind();
+  if (kind == TangentKind::products) return make_convolved_tangent(assembler, constraints);
+  if (kind == TangentKind::rows) return std::make_unique<RowsOfEnergy>(assembler);
   if (constraints.none()) return std::make_unique<Tangent>(assembler);
   return std::make_unique<ConstrainedTangent>(assembler, constraints);
 }
