@@ -73,14 +73,14 @@ History Assembler::initial_history() const {
   History history;
   const auto& terms = model_.terms();
   for (std::size_t slot = 0; slot < terms.size(); ++slot) {
-    std::vector<double> of_term = terms[slot]->initial_history();
-    if (!of_term.empty()) history.replace(slot, std::move(of_term));
+    const std::shared_ptr<const FailureModel> failure = terms[slot]->failure();
+    if (failure && failure->can_fail()) history.replace(slot, failure->initial_history());
   }
   return history;
 }
 
 History Assembler::history_of(std::span<const double> bond_stretches) const {
-  const BondTerm* const bonds = model_.failing_bonds();
+  const BondFailure* const bonds = model_.failing_bonds();
   if (!bonds) return {};
   History history = initial_history();
   history.replace(model_.slot_of(*bonds), bonds->history_of(bond_stretches));

@@ -15,6 +15,7 @@
 #include "assembly/operators/block_pattern.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "assembly/terms/balances.hpp"
+#include "assembly/terms/failure/failure_model.hpp"
 #include "src/geometry/points.hpp"
 #include "src/parallel/index_map.hpp"
 
@@ -109,11 +110,8 @@ class Term {
 
   [[nodiscard]] virtual Balances balances() const = 0;
 
-  /// True if states damage the term, irreversibly.
-  [[nodiscard]] virtual bool can_be_damaged() const { return false; }
-
-  /// History before any load; empty if the term remembers nothing.
-  [[nodiscard]] virtual std::vector<double> initial_history() const { return {}; }
+  /// How states damage the body by what the term remembers; null: they don't.
+  [[nodiscard]] virtual std::shared_ptr<const FailureModel> failure() const { return nullptr; }
   /// Updates the part of its history that follows from other terms' histories.
   virtual void follow(const Model&, History&) const {}
 

@@ -478,14 +478,14 @@ MemoryEstimate estimate_memory(const Body& body) {
 std::vector<std::string> describe_interactions(const Body& body) {
   std::vector<std::string> lines;
   for (const auto& term : body.model.terms()) {
-    if (term.get() == body.model.bond_term().get()) continue;  // reported separately
+    if (term->failure()) continue;  // reported separately
     for (const InteractionCount& kind : term->counts()) {
       const auto [least, most] = std::minmax_element(kind.per_point.begin(), kind.per_point.end());
       lines.push_back(
           fmt::format("{} {}; per point {} to {}", kind.count, kind.name, *least, *most));
     }
   }
-  const auto* const points = dynamic_cast<const PointTerm*>(body.model.bond_term().get());
+  const auto* const points = body.model.find<PointTerm>();
   if (points != nullptr && points->is_convolved()) {
     lines.push_back(fmt::format("summed by convolutions over a box of {} sites",
                                 points->lattice()->box.count()));

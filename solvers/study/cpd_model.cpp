@@ -256,7 +256,7 @@ Model make_cpd_model(const BodySpecification& from, const PointMaterials& materi
   }
   if (triangles || tetrahedra) {
     model.add(std::make_shared<SimplexTerm>(
-        model.bond_term(), std::move(triangles), std::move(tetrahedra),
+        model.bond_failure(), std::move(triangles), std::move(tetrahedra),
         index_map.is_whole() ? PointNumbers() : numbers_of(index_map, points)));
   }
   return model;

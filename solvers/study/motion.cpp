@@ -105,9 +105,9 @@ MotionSetting make_motion_setting(const Body& body) {
   }
   setting.most_points =
       body.specification.material.model == MaterialModel::bond ? 2 : body.points.dimension + 1;
-  if (const auto* states = dynamic_cast<const StateTerm*>(body.model.bond_term().get())) {
+  if (const auto* states = body.model.find<StateTerm>()) {
     setting.most_points = most_points_of_states(*states, body);
-  } else if (const auto* of_points = dynamic_cast<const PointTerm*>(body.model.bond_term().get())) {
+  } else if (const auto* of_points = body.model.find<PointTerm>()) {
     setting.most_points = int(std::ceil(of_points->bound_over_blocks(body.points.dimension)));
   }
   return setting;

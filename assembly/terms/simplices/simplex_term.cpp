@@ -133,7 +133,7 @@ InteractionCount count_of(const Simplices<Measure>& kind) {
 
 }  // namespace
 
-SimplexTerm::SimplexTerm(std::shared_ptr<const BondTerm> bonds,
+SimplexTerm::SimplexTerm(std::shared_ptr<const BondFailure> bonds,
                          std::optional<Simplices<Area>> triangles,
                          std::optional<Simplices<Volume>> tetrahedra, PointNumbers numbers)
     : bonds_(std::move(bonds)),

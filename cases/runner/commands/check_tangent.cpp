@@ -189,7 +189,7 @@ void steepen(const std::vector<double>& gradient, double size, std::vector<doubl
 double keep_off_kinks(const Body& body, const std::vector<double>& displacement,
                       const std::vector<double>& gradient, std::vector<double>& direction,
                       double largest_step) {
-  const BondTerm* const failing = body.model.failing_bonds();
+  const BondFailure* const failing = body.model.failing_bonds();
   if (!failing) return largest_step;
   steepen(gradient, body.points.spacing, direction);
   const auto range_of = [&](Offset bond) {

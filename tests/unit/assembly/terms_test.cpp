@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "assembly/assembler.hpp"
+#include "assembly/terms/bonds/bond_term.hpp"
 #include "assembly/terms/model.hpp"
 #include "tests/bodies.hpp"
 
@@ -304,10 +305,9 @@ struct Composed {
   Composed(int dimension, const std::string& order) : body(box(dimension)), terms(order) {
     model = Model(body.model.bonds());
     const auto scale = std::visit([](const auto& law) { return law.modulus; }, body.potential());
-    auto bonds = std::make_shared<BondTerm>(std::make_shared<const Bonds>(body.model.bonds()),
-                                            body.potential());
+    const auto bonds = body.model.bond_failure();
     for (const char kind : order) {
-      if (kind == 'b') model.add(bonds);
+      if (kind == 'b') model.add(std::make_shared<BondTerm>(bonds));
       if (kind == 'f') model.add(std::make_shared<Foundation>(1e-7 * scale, body.points.count()));
       if (kind == 's') model.add(std::make_shared<PointState>(1e-5 * scale, body.model.bonds()));
       if (kind == 'c') model.add(std::make_shared<Chase>(1e-5 * scale, body.points.count()));

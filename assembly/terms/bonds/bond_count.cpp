@@ -1,0 +1,12 @@
+#include "assembly/terms/bonds/bond_count.hpp"
+
+#include "src/neighbourhood/neighbour_counts.hpp"
+
+namespace peristat {
+
+InteractionCount bond_count(const Bonds& bonds) {
+  return {"bonds", weighted_bonds(bonds), "neighbours", "neighbours within the horizon, #N1",
+          neighbour_counts(bonds)};
+}
+
+}  // namespace peristat
