@@ -7,7 +7,7 @@
 
 #include "assembly/energy/energy.hpp"
 #include "assembly/energy/evaluation.hpp"
-#include "assembly/energy/row_operator.hpp"
+#include "assembly/energy/tangent_forms.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "assembly/terms/damage.hpp"
 #include "assembly/terms/model.hpp"

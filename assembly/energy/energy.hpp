@@ -3,13 +3,13 @@
 #include <span>
 
 #include "assembly/energy/state.hpp"
-#include "assembly/energy/tangent_forms.hpp"
-#include "assembly/energy/tangent_kind.hpp"
 #include "src/geometry/points.hpp"
 
 namespace peristat {
 
 class BlockPattern;
+enum class TangentKind;
+struct TangentForms;
 
 /// An energy E(u) as seen by the operators that are linearised from it; see Assembler.
 class Energy {

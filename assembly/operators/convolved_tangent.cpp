@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "assembly/energy/product_operator.hpp"
+#include "assembly/energy/tangent_forms.hpp"
 
 namespace peristat {
 

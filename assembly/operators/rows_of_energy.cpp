@@ -1,7 +1,6 @@
 #include "assembly/operators/rows_of_energy.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace peristat {
 
@@ -9,11 +8,7 @@ RowsOfEnergy::RowsOfEnergy(Energy& energy)
     : UnsymmetricTangent(BlockPattern::diagonal(energy.points().count()), energy.points().dimension,
                          energy.threads()),
       energy_(&energy),
-      row_sums_(energy.points().reference.size()) {
-  if (energy.tangent_kind() != TangentKind::rows) {
-    throw std::logic_error("the tangent of this energy is not made of rows");
-  }
-}
+      row_sums_(energy.points().reference.size()) {}
 
 std::vector<double> RowsOfEnergy::positions() const {
   return at_.positions(energy_->points().reference);
@@ -30,10 +25,6 @@ void RowsOfEnergy::linearise(Energy& energy, const StateView& at, double /*proje
 
 void RowsOfEnergy::multiply(std::span<const double> v, std::span<double> result) const {
   energy_->product(at_.view(), v, result, 0.0);
-}
-
-void RowsOfEnergy::for_each_row(const RowVisitor&) const {
-  throw std::logic_error("rows of an unsymmetric tangent are no halves of a symmetric one");
 }
 
 void RowsOfEnergy::absolute_row_sums(std::span<double> sums) const {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "assembly/energy/kept_state.hpp"
-#include "assembly/energy/row_operator.hpp"
+#include "assembly/energy/tangent_forms.hpp"
 #include "assembly/operators/unsymmetric_tangent.hpp"
 
 namespace peristat {
@@ -17,7 +17,6 @@ struct RowsOfEnergy : UnsymmetricTangent {
   /// Ignores the projection: the operator is linear.
   void linearise(Energy& energy, const StateView& at, double projection) override;
   void multiply(std::span<const double> v, std::span<double> result) const override;
-  void for_each_row(const RowVisitor& visit) const override;
   /// Upper bounds.
   void absolute_row_sums(std::span<double> sums) const override;
 

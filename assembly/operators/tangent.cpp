@@ -5,7 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "assembly/energy/block_tangent.hpp"
+#include "assembly/energy/tangent_forms.hpp"
 #include "src/core/threads.hpp"
 
 namespace peristat {

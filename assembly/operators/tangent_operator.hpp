@@ -5,7 +5,7 @@
 
 #include "assembly/convolutions/lattice_stencil.hpp"
 #include "assembly/energy/energy.hpp"
-#include "assembly/energy/row_visits.hpp"
+#include "assembly/energy/tangent_forms.hpp"
 #include "assembly/operators/block_pattern.hpp"
 
 namespace peristat {

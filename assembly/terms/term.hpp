@@ -5,12 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "assembly/energy/block_tangent.hpp"
 #include "assembly/energy/evaluation.hpp"
-#include "assembly/energy/row_visits.hpp"
 #include "assembly/energy/state.hpp"
 #include "assembly/energy/tangent_forms.hpp"
-#include "assembly/energy/tangent_kind.hpp"
 #include "assembly/energy/write.hpp"
 #include "assembly/operators/block_pattern.hpp"
 #include "assembly/operators/tangent.hpp"

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "assembly/energy/row_operator.hpp"
+#include "assembly/energy/tangent_forms.hpp"
 #include "assembly/terms/bonds/bond_passes.hpp"
 #include "assembly/terms/damage.hpp"
 #include "assembly/terms/workspace.hpp"

@@ -31,6 +31,18 @@ std::vector<double> BondFailure::history_of(std::span<const double> largest_stre
   return history;
 }
 
+double BondFailure::dissipated_energy(std::span<const double> history, const Points* points) const {
+  double sum = 0.0;
+  with_damage_law([&](const auto& law) {
+    for_each_bond(bonds(), [&](Index i, Offset bond) {
+      if (points != nullptr && !counts_bond(*points, i, bonds().partner[bond])) return;
+      sum +=
+          bonds().weight(bond) * bonds().length(bond) * law.of_bond(bond).dissipated(history[bond]);
+    });
+  });
+  return sum;
+}
+
 double BondFailure::bytes() const {
   double bytes = 0.0;
   with_damage_law([&](const auto& law) { bytes = law.bytes(); });
@@ -69,16 +81,14 @@ BondLosses BondFailure::weigh(std::span<const double> history, const Points* poi
       left[point] += integrity * weight;
     }
   };
-  BondLosses lost;
+  BondLosses lost{.dissipated_energy = dissipated_energy(history, points)};
   if (!can_fail()) for_each_bond(all, [&](Index i, Offset bond) { add(i, bond, 1.0); });
-  with_damage_law([&](const auto& laws) {
+  with_damage_law([&](const auto& law) {
     for_each_bond(all, [&](Index i, Offset bond) {
-      const auto& law = laws.of_bond(bond);
-      const double largest = history[bond];
-      add(i, bond, law.integrity_after(largest));
-      if (points != nullptr && !counts_bond(*points, i, all.partner[bond])) return;
-      lost.dissipated_energy += all.weight(bond) * all.length(bond) * law.dissipated(largest);
-      lost.broken_bonds += law.is_broken(largest) && all.weight(bond) != 0.0;
+      const bool counts = points == nullptr || counts_bond(*points, i, all.partner[bond]);
+      add(i, bond, law.of_bond(bond).integrity_after(history[bond]));
+      lost.broken_bonds +=
+          counts && law.of_bond(bond).is_broken(history[bond]) && all.weight(bond) != 0.0;
     });
   });
   return lost;

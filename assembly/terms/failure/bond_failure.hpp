@@ -40,6 +40,10 @@ class BondFailure final : public FailureModel {
   /// @throws std::logic_error unless there is one for every bond
   [[nodiscard]] std::vector<double> history_of(std::span<const double> largest_stretches) const;
 
+  /// Energy that the law has dissipated [J], see weigh.
+  [[nodiscard]] double dissipated_energy(std::span<const double> history,
+                                         const Points* points) const;
+
   /// Memory of the law [bytes].
   [[nodiscard]] double bytes() const;
 

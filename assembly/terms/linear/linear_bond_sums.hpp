@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "assembly/convolutions/lattice_forces.hpp"
-#include "assembly/energy/row_visits.hpp"
+#include "assembly/energy/tangent_forms.hpp"
 #include "assembly/terms/bonds/bond_workspace.hpp"
 
 namespace peristat {

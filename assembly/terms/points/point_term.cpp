@@ -10,7 +10,7 @@
 
 #include "assembly/convolutions/forces_with_images.hpp"
 #include "assembly/convolutions/linear_bonds.hpp"
-#include "assembly/energy/product_operator.hpp"
+#include "assembly/energy/tangent_forms.hpp"
 #include "assembly/terms/bonds/bond_count.hpp"
 #include "assembly/terms/linear/linear_bond_sums.hpp"
 #include "assembly/terms/model.hpp"

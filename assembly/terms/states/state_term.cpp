@@ -136,19 +136,7 @@ class StatePasses : public TermPasses, BlockTangent {
   }
 
   [[nodiscard]] double dissipated_by_law(const History& history) const {
-    const std::span<const double> stretch = history.of(slot_);
-    const Bonds& bonds = term_.bonds();
-    double sum = 0.0;
-    failure_.with_damage_law([&](const auto& law) {
-      for (Index i = 0; i < bonds.points(); ++i) {
-        for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-          if (!counts_bond(points_, i, bonds.partner[bond])) continue;
-          sum += bonds.weight(bond) * bonds.length(bond) *
-                 law.of_bond(bond).dissipated(stretch[std::size_t(bond)]);
-        }
-      }
-    });
-    return sum;
+    return failure_.dissipated_energy(history.of(slot_), &points_);
   }
 
   const StateTerm& term_;
