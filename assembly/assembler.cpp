@@ -5,7 +5,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "assembly/operators/rows_of_blocks.hpp"
 #include "src/core/stopwatch.hpp"
+#include "src/core/vector_verbs.hpp"
 #include "src/parallel/index_map.hpp"
 
 namespace peristat {
@@ -51,15 +53,16 @@ Assembler::Assembler(const Points& points, const Model& model, int threads,
     terms_.push_back(term->passes({points_, model_, pattern_, workspace_, index_map_}));
   }
   if (index_map.is_whole()) return;
-  if (!model.has_rows()) throw std::logic_error("Assembler: convolutions have no ranks");
+  if (model.tangent_kind() == TangentKind::products) {
+    throw std::logic_error("Assembler: convolutions have no ranks");
+  }
   of_points_.resize(points.volume.size());
 }
 Assembler::~Assembler() = default;
 
 template <class Visit>
-void Assembler::for_each_term(const Visit& visit) {
+void Assembler::for_each_term(const Visit& visit, Write how) {
   const Stopwatch watch(seconds_);
-  Write how = Write::over;
   for (const auto& passes : terms_) {
     visit(*passes, how);
     how = Write::onto;
@@ -70,14 +73,14 @@ History Assembler::initial_history() const {
   History history;
   const auto& terms = model_.terms();
   for (std::size_t slot = 0; slot < terms.size(); ++slot) {
-    std::vector<double> of_term = terms[slot]->initial_history();
-    if (!of_term.empty()) history.replace(slot, std::move(of_term));
+    const std::shared_ptr<const FailureModel> failure = terms[slot]->failure();
+    if (failure && failure->can_fail()) history.replace(slot, failure->initial_history());
   }
   return history;
 }
 
 History Assembler::history_of(std::span<const double> bond_stretches) const {
-  const BondTerm* const bonds = model_.failing_bonds();
+  const BondFailure* const bonds = model_.failing_bonds();
   if (!bonds) return {};
   History history = initial_history();
   history.replace(model_.slot_of(*bonds), bonds->history_of(bond_stretches));
@@ -164,19 +167,30 @@ DamageState Assembler::assess(const History& history, std::span<const double> cu
   return {sums[0], Index(sums[1]), ranks.max(state.max_damage)};
 }
 
-void Assembler::tangent(const StateView& at, Tangent& tangent, double projection) {
+TangentForms Assembler::forms() {
+  const TangentKind kind = tangent_kind();
+  return {.blocks = kind <= TangentKind::stored ? this : nullptr,
+          .visits = kind == TangentKind::visited ? this : nullptr,
+          .rows = kind <= TangentKind::rows ? this : nullptr,
+          .products = this};
+}
+
+void Assembler::tangent(const StateView& at, Tangent& tangent, double projection, Write how) {
   tangent.reference = points_.reference;
   for (std::size_t k = 0; k < points_.reference.size(); ++k) {
     tangent.position[k] = points_.reference[k] + at.displacement[k];
   }
-  for_each_term([&](TermPasses& term, Write how) { term.tangent(at, projection, tangent, how); });
+  const auto add = [&](TermPasses& term, Write as) {
+    term.forms().blocks->tangent(at, tangent, projection, as);
+  };
+  for_each_term(add, how);
 }
 
 void Assembler::visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                               std::span<double> diagonal) {
-  if (!model_.visits_rows()) throw std::logic_error("the model's tangent must be stored");
-  for_each_term(
-      [&](TermPasses& term, Write) { term.visit_tangent(at, projection, visit, diagonal); });
+  for_each_term([&](TermPasses& term, Write) {
+    term.forms().visits->visit_tangent(at, projection, visit, diagonal);
+  });
 }
 
 void Assembler::product(const StateView& at, std::span<const double> v, std::span<double> product,
@@ -185,73 +199,63 @@ void Assembler::product(const StateView& at, std::span<const double> v, std::spa
       [&](TermPasses& term, Write how) { term.product(at, v, projection, product, how); });
 }
 
-LatticeStencil Assembler::stencil(const StateView& at) {
-  LatticeStencil found;
-  for (const auto& passes : terms_) {
-    LatticeStencil of_term = passes->stencil(at);
-    if (!of_term.empty()) found = std::move(of_term);
-  }
-  return found;
-}
-
-bool Assembler::is_outlined(std::size_t term) const {
-  const Term& of = *model_.terms()[term];
-  return !of.balances().potential || !of.has_rows();
-}
-
-std::vector<double> Assembler::blocks_of_springs(const StateView& at) {
-  bool has_springs = false;
-  for (std::size_t k = 0; k < terms_.size(); ++k) has_springs = has_springs || !is_outlined(k);
-  if (!has_springs) return {};
-  const BlockPattern alone = BlockPattern::of_rows(
-      std::vector<Offset>(std::size_t(points_.count()) + 1, 0), std::vector<Index>());
-  Tangent springs(alone, points_.dimension);
-  springs.clear();
-  for (std::size_t k = 0; k < terms_.size(); ++k) {
-    if (is_outlined(k)) continue;
-    terms_[k]->tangent(at, 0.0, springs, Write::onto);
-  }
-  return std::move(springs.diagonal);
+std::optional<Tangent> Assembler::sum_of_blocks(const StateView& at) {
+  const bool couples_points = std::ranges::any_of(model_.terms(), [](const auto& term) {
+    return term->tangent_kind() <= TangentKind::stored && !term->couplings().partner.empty();
+  });
+  std::optional<Tangent> sum;
+  for_each_term([&](TermPasses& term, Write) {
+    BlockTangent* const of_term = term.forms().blocks;
+    if (!of_term) return;
+    if (!sum) {
+      sum.emplace(couples_points ? pattern_ : BlockPattern::diagonal(points_.count()),
+                  points_.dimension);
+    }
+    of_term->tangent(at, *sum, 0.0, Write::onto);
+  });
+  return sum;
 }
 
 SparseRows Assembler::rows(const StateView& at, RowReach reach) {
-  const Stopwatch watch(seconds_);
-  SparseRows found;
-  for (std::size_t k = 0; k < terms_.size(); ++k) {
-    if (is_outlined(k)) found = terms_[k]->rows(at, reach);
-  }
-  const std::vector<double> springs = blocks_of_springs(at);
-  if (springs.empty()) return found;
-  const auto d = std::size_t(points_.dimension);
-  for (std::size_t row = 0; row + 1 < found.offset.size(); ++row) {
-    const auto first = found.column.begin() + std::ptrdiff_t(found.offset[row]);
-    const auto last = found.column.begin() + std::ptrdiff_t(found.offset[row + 1]);
-    const auto own = std::lower_bound(first, last, Index(row / d * d)) - found.column.begin();
-    for (std::size_t c = 0; c < d; ++c) {
-      found.value[std::size_t(own) + c] += springs[row * d + c];
-    }
-  }
-  return found;
+  SparseRows sum;
+  for_each_term([&](TermPasses& term, Write) {
+    if (RowOperator* const of_term = term.forms().rows) sum.add(of_term->rows(at, reach));
+  });
+  if (const std::optional<Tangent> blocks = sum_of_blocks(at)) sum.add(rows_of_blocks(*blocks));
+  return sum;
 }
 
 double Assembler::bytes_of_rows() const {
   double bytes = 0.0;
-  for (const auto& term : terms_) bytes += term->bytes_of_rows();
+  for (const auto& term : terms_) {
+    if (const RowOperator* const of_term = term->forms().rows) bytes += of_term->bytes_of_rows();
+  }
   return bytes;
 }
 
-void Assembler::outline_rows(const StateView& at, std::span<double> diagonal,
-                             std::span<double> row_sums) {
-  const Stopwatch watch(seconds_);
-  for (std::size_t k = 0; k < terms_.size(); ++k) {
-    if (is_outlined(k)) terms_[k]->outline_rows(at, diagonal, row_sums);
-  }
-  const std::vector<double> springs = blocks_of_springs(at);
-  const auto d = std::size_t(points_.dimension);
-  for (std::size_t k = 0; k < springs.size(); ++k) {
-    diagonal[k] += springs[k];
-    row_sums[k / d] += std::abs(springs[k]);
-  }
+void Assembler::outline(const StateView& at, std::span<double> diagonal,
+                        std::span<double> row_sums) {
+  for_each_term([&](TermPasses& term, Write) {
+    if (ProductOperator* const of_term = term.forms().products) {
+      of_term->outline(at, diagonal, row_sums);
+    }
+  });
+  const std::optional<Tangent> blocks = sum_of_blocks(at);
+  if (!blocks) return;
+  std::vector<double> sums(row_sums.size());
+  blocks->absolute_row_sums(sums);
+  add_scaled(row_sums, 1.0, sums);
+  add_scaled(diagonal, 1.0, blocks->diagonal);
+}
+
+LatticeStencil Assembler::stencil(const StateView& at) {
+  LatticeStencil sum;
+  for_each_term([&](TermPasses& term, Write) {
+    ProductOperator* const of_term = term.forms().products;
+    const LatticeStencil found = of_term ? of_term->stencil(at) : LatticeStencil();
+    sum.insert(sum.end(), found.begin(), found.end());
+  });
+  return sum;
 }
 
 void Assembler::point_energies(const StateView& at, std::span<double> energies) {

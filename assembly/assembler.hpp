@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "assembly/energy/energy.hpp"
 #include "assembly/energy/evaluation.hpp"
+#include "assembly/energy/tangent_forms.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "assembly/terms/damage.hpp"
 #include "assembly/terms/model.hpp"
@@ -21,7 +23,7 @@ namespace peristat {
 /// All arrays are points x dimension, row major. No call but visit_tangent and commit allocates.
 /// For a given number of threads every result is reproducible to the last bit. A model whose bonds
 /// can be damaged needs a history (initial_history), which only `commit` changes.
-class Assembler : public Energy {
+class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
  public:
   /// Points and model must outlive the assembler.
   /// @param index_map null: the body is whole. Otherwise points and model are one rank's part of
@@ -70,19 +72,18 @@ class Assembler : public Energy {
   [[nodiscard]] DamageState assess(const History& history, std::span<const double> cut_weight,
                                    std::span<double> damage) const;
 
-  void tangent(const StateView& at, Tangent& tangent, double projection = 0.0) override;
+  void tangent(const StateView& at, Tangent& tangent, double projection = 0.0,
+               Write how = Write::over) override;
   void product(const StateView& at, std::span<const double> v, std::span<double> product,
                double projection = 0.0) override;
   void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                      std::span<double> diagonal) override;
 
-  [[nodiscard]] bool has_potential() const override { return model_.balances().potential; }
-  [[nodiscard]] bool has_rows() const override { return model_.has_rows(); }
-  [[nodiscard]] LatticeStencil stencil(const StateView& at) override;
   [[nodiscard]] SparseRows rows(const StateView& at, RowReach reach) override;
   [[nodiscard]] double bytes_of_rows() const override;
-  void outline_rows(const StateView& at, std::span<double> diagonal,
-                    std::span<double> row_sums) override;
+  void outline(const StateView& at, std::span<double> diagonal,
+               std::span<double> row_sums) override;
+  [[nodiscard]] LatticeStencil stencil(const StateView& at) override;
 
   /// Energy of each point: an equal share of the energy of each of its interactions [J].
   void point_energies(const StateView& at, std::span<double> energies);
@@ -98,7 +99,9 @@ class Assembler : public Energy {
   [[nodiscard]] const BlockPattern& pattern() const override { return pattern_; }
   [[nodiscard]] int threads() const override { return workspace_.threads(); }
   [[nodiscard]] bool has_symmetric_blocks() const override { return model_.has_symmetric_blocks(); }
-  [[nodiscard]] bool visits_rows() const override { return model_.visits_rows(); }
+  [[nodiscard]] bool has_potential() const override { return model_.balances().potential; }
+  [[nodiscard]] TangentKind tangent_kind() const override { return model_.tangent_kind(); }
+  [[nodiscard]] TangentForms forms() override;
   [[nodiscard]] double seconds_spent() const { return seconds_; }  ///< wall time of all calls [s]
 
  private:
@@ -109,16 +112,12 @@ class Assembler : public Energy {
   [[nodiscard]] Evaluation of_all(const Evaluation& mine, std::span<double> gradient) const;
   [[nodiscard]] DamageGrowth of_all(const DamageGrowth& mine) const;
 
-  /// True if a term has no tangent blocks, only an outline (and possibly rows): it lacks a
-  /// potential or rows.
-  [[nodiscard]] bool is_outlined(std::size_t term) const;
-  /// Diagonal blocks of all other terms, points x dimension x dimension: beside an outlined term
-  /// they are springs attached to points.
-  [[nodiscard]] std::vector<double> blocks_of_springs(const StateView& at);
+  /// Tangent of the terms that have blocks; nothing if none has.
+  [[nodiscard]] std::optional<Tangent> sum_of_blocks(const StateView& at);
 
   /// Calls visit(passes, how) for every term: the first writes its result, the others add to it.
   template <class Visit>
-  void for_each_term(const Visit& visit);
+  void for_each_term(const Visit& visit, Write how = Write::over);
 
   const Points& points_;
   const Model& model_;

@@ -117,8 +117,7 @@ Stress find_stress(Assembler& assembler, const StateView& at,
   assembler.virials(at, virials);
   gather_image_tensors(points, virials);
   DeformationGradients gradients = deformation_gradients(points, assembler.model(), at);
-  const auto* const solid =
-      dynamic_cast<const CollocationTerm*>(assembler.model().bond_term().get());
+  const auto* const solid = assembler.model().find<CollocationTerm>();
   if (solid) use_nonlocal_gradients(assembler, *solid, at, gradients);
   const bool is_linear = solid != nullptr;
   switch (points.dimension) {

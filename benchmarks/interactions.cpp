@@ -30,9 +30,11 @@ void assembly(benchmark::State& state) {
   const double count = double(interactions.count());
   Simplices<Measure> simplices{std::move(interactions), Harmonic{1e-3}};
   if constexpr (Measure::arms == 2) {
-    model.add(std::make_shared<SimplexTerm>(model.bond_term(), std::move(simplices), std::nullopt));
+    model.add(
+        std::make_shared<SimplexTerm>(model.bond_failure(), std::move(simplices), std::nullopt));
   } else {
-    model.add(std::make_shared<SimplexTerm>(model.bond_term(), std::nullopt, std::move(simplices)));
+    model.add(
+        std::make_shared<SimplexTerm>(model.bond_failure(), std::nullopt, std::move(simplices)));
   }
   Assembler assembler(points, model, threads);
   Tangent tangent(BlockPattern(model.bonds()), 3);

@@ -31,7 +31,7 @@ Points held_box(const benchmark::State& state) {
 Model model_of(const Points& points, Law law) {
   const Model model = benchmark_bodies::model(points);
   if (law == elastic) return model;
-  const double modulus = std::get<Harmonic>(model.bond_term()->potential()).modulus;
+  const double modulus = std::get<Harmonic>(model.bond_failure()->potential()).modulus;
   return Model(model.bonds(), Degraded<TanhDegradation>{modulus, {0.016, 0.020, 3.0}});
 }
 

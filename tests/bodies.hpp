@@ -137,7 +137,7 @@ struct BoxBody {
     auto triangles = simplices<Area>(box.triangles, box, threads);
     auto tetrahedra = simplices<Volume>(box.tetrahedra, box, threads);
     if (triangles || tetrahedra) {
-      model.add(std::make_shared<SimplexTerm>(model.bond_term(), std::move(triangles),
+      model.add(std::make_shared<SimplexTerm>(model.bond_failure(), std::move(triangles),
                                               std::move(tetrahedra)));
     }
   }
@@ -162,7 +162,7 @@ struct BoxBody {
                               Harmonic{stiffness * unit * micromodulus_of_bonds}};
   }
 
-  [[nodiscard]] const BondPotential& potential() const { return model.bond_term()->potential(); }
+  [[nodiscard]] const BondPotential& potential() const { return model.bond_failure()->potential(); }
 
   /// Its triangles and tetrahedra, if it has any.
   [[nodiscard]] const SimplexTerm* simplex_term() const {
@@ -176,7 +176,7 @@ struct BoxBody {
   void replace_bonds(Bonds bonds, std::vector<char> never_fails = {}) {
     Model changed(std::move(bonds), potential(), std::move(never_fails));
     if (const SimplexTerm* const simplices = simplex_term()) {
-      changed.add(std::make_shared<SimplexTerm>(changed.bond_term(), simplices->triangles(),
+      changed.add(std::make_shared<SimplexTerm>(changed.bond_failure(), simplices->triangles(),
                                                 simplices->tetrahedra()));
     }
     model = std::move(changed);

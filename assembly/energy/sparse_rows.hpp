@@ -15,6 +15,9 @@ struct SparseRows {
   std::vector<double> value;
 
   [[nodiscard]] Index rows() const { return static_cast<Index>(offset.size()) - 1; }
+
+  /// Adds another matrix, whose entries join those here; without rows this becomes that matrix.
+  void add(SparseRows other);
 };
 
 }  // namespace peristat

@@ -39,6 +39,11 @@ class BlockPattern : public Couplings {
   /// Pattern with rows of its own, laid out as those of Couplings.
   [[nodiscard]] static BlockPattern of_rows(std::vector<Offset> offset, std::vector<Index> partner);
 
+  /// Pattern of diagonal blocks alone.
+  [[nodiscard]] static BlockPattern diagonal(Index points) {
+    return of_rows(std::vector<Offset>(std::size_t(points) + 1, 0), {});
+  }
+
   [[nodiscard]] Offset blocks() const { return static_cast<Offset>(partner.size()); }
 
   /// Positions in this pattern of the blocks of one of its terms, in the order of the couplings;

@@ -31,9 +31,8 @@ Tensor transposed(const Tensor& block) {
 
 ConstrainedProduct::ConstrainedProduct(std::unique_ptr<TangentOperator> whole, const Points& points,
                                        const Constraints& constraints, const IndexMap& index_map)
-    : TangentOperator(
-          BlockPattern::of_rows(std::vector<Offset>(std::size_t(constraints.rows()) + 1, 0), {}),
-          points.dimension, whole->threads()),
+    : TangentOperator(BlockPattern::diagonal(Index(constraints.rows())), points.dimension,
+                      whole->threads()),
       whole_(std::move(whole)),
       points_(points),
       constraints_(constraints),

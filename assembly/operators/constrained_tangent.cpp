@@ -135,7 +135,7 @@ Couplings ConstrainedTangent::in_place() const {
 }
 
 void ConstrainedTangent::linearise(Energy& energy, const StateView& at, double projection) {
-  energy.tangent(at, whole_, projection);
+  whole_.linearise(energy, at, projection);
   for (std::size_t dof = 0; dof < position.size(); ++dof) {
     position[dof] = reference_[dof] + at.displacement[dof];
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "assembly/energy/tangent_forms.hpp"
+
 namespace peristat {
 
 ConvolvedTangent::ConvolvedTangent(Energy& energy)
@@ -33,7 +35,7 @@ void ConvolvedTangent::linearise(Energy& energy, const StateView& at, double pro
   projection_ = projection;
   diagonal.assign(reference.size() * std::size_t(dimension), 0.0);
   std::vector<double> unused(energy.points().reference.size());
-  energy.outline_rows(at, diagonal, unused);
+  energy.forms().products->outline(at, diagonal, unused);
 }
 
 void ConvolvedTangent::multiply(std::span<const double> v, std::span<double> result) const {
@@ -47,11 +49,13 @@ void ConvolvedTangent::for_each_row(const RowVisitor&) const {
 void ConvolvedTangent::absolute_row_sums(std::span<double> sums) const {
   std::vector<double> unused(diagonal.size());
   std::fill(sums.begin(), sums.end(), 0.0);
-  energy_->outline_rows(at_.view(), unused, sums);
+  energy_->forms().products->outline(at_.view(), unused, sums);
 }
 
 bool ConvolvedTangent::is_symmetric() const { return energy_->has_potential(); }
 
-LatticeStencil ConvolvedTangent::stencil() const { return energy_->stencil(at_.view()); }
+LatticeStencil ConvolvedTangent::stencil() const {
+  return energy_->forms().products->stencil(at_.view());
+}
 
 }  // namespace peristat

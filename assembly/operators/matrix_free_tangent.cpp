@@ -7,7 +7,9 @@ namespace peristat {
 MatrixFreeTangent::MatrixFreeTangent(Energy& energy)
     : TangentOperator(energy.pattern(), energy.points().dimension, energy.threads()),
       energy_(&energy) {
-  if (!energy.visits_rows()) throw std::logic_error("the tangent of this energy must be stored");
+  if (energy.tangent_kind() != TangentKind::visited) {
+    throw std::logic_error("the tangent of this energy must be stored");
+  }
 }
 
 std::vector<double> MatrixFreeTangent::positions() const {
@@ -19,7 +21,7 @@ void MatrixFreeTangent::linearise(Energy& energy, const StateView& at, double pr
   reference = energy.points().reference;
   at_.keep(at);
   projection_ = projection;
-  energy.visit_tangent(
+  energy.forms().visits->visit_tangent(
       at, projection, [](int, Index, std::span<const double>) {}, diagonal);
 }
 
@@ -28,7 +30,7 @@ void MatrixFreeTangent::multiply(std::span<const double> v, std::span<double> re
 }
 
 void MatrixFreeTangent::for_each_row(const RowVisitor& visit) const {
-  energy_->visit_tangent(at_.view(), projection_, visit, {});
+  energy_->forms().visits->visit_tangent(at_.view(), projection_, visit, {});
 }
 
 }  // namespace peristat

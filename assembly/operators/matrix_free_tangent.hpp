@@ -8,7 +8,7 @@ namespace peristat {
 /// Tangent of which only the diagonal blocks are stored: products and rows are computed anew from
 /// the energy each time. The energy outlives it.
 struct MatrixFreeTangent : TangentOperator {
-  /// @throws std::logic_error unless the energy visits_rows
+  /// @throws std::logic_error unless the energy's rows can be visited
   explicit MatrixFreeTangent(Energy& energy);
 
   [[nodiscard]] std::vector<double> positions() const override;

@@ -1,25 +1,14 @@
 #include "assembly/operators/rows_of_energy.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace peristat {
-namespace {
-
-BlockPattern no_blocks(Index points) {
-  return BlockPattern::of_rows(std::vector<Offset>(std::size_t(points) + 1, 0),
-                               std::vector<Index>());
-}
-
-}  // namespace
 
 RowsOfEnergy::RowsOfEnergy(Energy& energy)
-    : UnsymmetricTangent(no_blocks(energy.points().count()), energy.points().dimension,
+    : UnsymmetricTangent(BlockPattern::diagonal(energy.points().count()), energy.points().dimension,
                          energy.threads()),
       energy_(&energy),
-      row_sums_(energy.points().reference.size()) {
-  if (energy.has_potential()) throw std::logic_error("an energy has a symmetric tangent");
-}
+      row_sums_(energy.points().reference.size()) {}
 
 std::vector<double> RowsOfEnergy::positions() const {
   return at_.positions(energy_->points().reference);
@@ -29,23 +18,25 @@ void RowsOfEnergy::linearise(Energy& energy, const StateView& at, double /*proje
   energy_ = &energy;
   reference = energy.points().reference;
   at_.keep(at);
-  energy.outline_rows(at, diagonal, row_sums_);
+  std::ranges::fill(diagonal, 0.0);
+  std::ranges::fill(row_sums_, 0.0);
+  energy.forms().rows->outline(at, diagonal, row_sums_);
 }
 
 void RowsOfEnergy::multiply(std::span<const double> v, std::span<double> result) const {
   energy_->product(at_.view(), v, result, 0.0);
 }
 
-void RowsOfEnergy::for_each_row(const RowVisitor&) const {
-  throw std::logic_error("rows of an unsymmetric tangent are no halves of a symmetric one");
-}
-
 void RowsOfEnergy::absolute_row_sums(std::span<double> sums) const {
   std::copy(row_sums_.begin(), row_sums_.end(), sums.begin());
 }
 
-SparseRows RowsOfEnergy::rows() const { return energy_->rows(at_.view(), RowReach::whole); }
+SparseRows RowsOfEnergy::rows() const {
+  return energy_->forms().rows->rows(at_.view(), RowReach::whole);
+}
 
-SparseRows RowsOfEnergy::local_rows() const { return energy_->rows(at_.view(), RowReach::local); }
+SparseRows RowsOfEnergy::local_rows() const {
+  return energy_->forms().rows->rows(at_.view(), RowReach::local);
+}
 
 }  // namespace peristat

@@ -3,11 +3,12 @@
 #include <vector>
 
 #include "assembly/energy/kept_state.hpp"
+#include "assembly/energy/tangent_forms.hpp"
 #include "assembly/operators/unsymmetric_tangent.hpp"
 
 namespace peristat {
 
-/// Derivative of forces that have no potential: products are computed anew each time, rows on
+/// Tangent of kind TangentKind::rows: products are computed anew each time, rows on
 /// request. The energy must outlive it.
 struct RowsOfEnergy : UnsymmetricTangent {
   explicit RowsOfEnergy(Energy& energy);
@@ -16,12 +17,13 @@ struct RowsOfEnergy : UnsymmetricTangent {
   /// Ignores the projection: the operator is linear.
   void linearise(Energy& energy, const StateView& at, double projection) override;
   void multiply(std::span<const double> v, std::span<double> result) const override;
-  void for_each_row(const RowVisitor& visit) const override;
   /// Upper bounds.
   void absolute_row_sums(std::span<double> sums) const override;
 
   [[nodiscard]] SparseRows rows() const override;
-  [[nodiscard]] double bytes_of_rows() const override { return energy_->bytes_of_rows(); }
+  [[nodiscard]] double bytes_of_rows() const override {
+    return energy_->forms().rows->bytes_of_rows();
+  }
   [[nodiscard]] SparseRows local_rows() const override;
 
  private:

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "assembly/energy/tangent_forms.hpp"
 #include "src/core/threads.hpp"
 
 namespace peristat {
@@ -135,7 +136,7 @@ void Tangent::add_to_block(Offset block, std::span<const double> entries) {
 }
 
 void Tangent::linearise(Energy& energy, const StateView& at, double projection) {
-  energy.tangent(at, *this, projection);
+  energy.forms().blocks->tangent(at, *this, projection, Write::over);
 }
 
 void Tangent::multiply(std::span<const double> v, std::span<double> result) const {

@@ -15,7 +15,7 @@ struct Tangent : TangentOperator {
 
   Tangent(const BlockPattern& of, int dimension_of_points, int threads = 1,
           Blocks stored_as = Blocks::whole);
-  /// Tangent for an energy, with blocks stored as the energy needs them.
+  /// Tangent for an energy that has blocks, stored as the energy needs them.
   explicit Tangent(const Energy& energy);
 
   Blocks blocks;

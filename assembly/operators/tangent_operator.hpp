@@ -5,10 +5,12 @@
 
 #include "assembly/convolutions/lattice_stencil.hpp"
 #include "assembly/energy/energy.hpp"
+#include "assembly/energy/tangent_forms.hpp"
 #include "assembly/operators/block_pattern.hpp"
 
 namespace peristat {
 
+struct Tangent;
 struct UnsymmetricTangent;
 
 /// Tangent K = d2E/dx2 [N/m] of the stored energy over all degrees of freedom, as solvers see it:
@@ -32,7 +34,7 @@ struct TangentOperator {
   [[nodiscard]] virtual std::vector<double> positions() const = 0;
 
   /// Linearises at a state.
-  /// @param projection see Energy::tangent
+  /// @param projection see BlockTangent::tangent
   virtual void linearise(Energy& energy, const StateView& at, double projection) = 0;
 
   /// result = K v; both have one entry per degree of freedom. They may be one array if

@@ -10,7 +10,7 @@
 
 namespace peristat {
 
-/// Damage that follows from the history of a body's bonds.
+/// Damage that follows from a history.
 struct DamageState {
   double dissipated_energy = 0.0;  ///< by degraded and broken bonds [J]
   Index broken_bonds = 0;

@@ -3,32 +3,31 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "assembly/terms/bonds/bond_term.hpp"
+
 namespace peristat {
 
 Model::Model(Bonds network, BondPotential potential, std::vector<char> never_fails)
-    : Model(std::move(network)) {
-  auto term = std::make_shared<BondTerm>(bonds_, std::move(potential), std::move(never_fails));
-  bond_term_ = term;
-  add(std::move(term));
-}
+    : Model(std::make_shared<BondTerm>(
+          std::make_shared<BondFailure>(std::make_shared<const Bonds>(std::move(network)),
+                                        std::move(potential), std::move(never_fails)))) {}
 
-Model::Model(std::shared_ptr<BondTerm> bonds) : bonds_(bonds->shared_bonds()), bond_term_(bonds) {
-  add(std::move(bonds));
-}
-
-const BondTerm* Model::failing_bonds() const {
-  return bond_term_ && bond_term_->can_fail() ? bond_term_.get() : nullptr;
-}
-
-bool Model::has_history() const {
-  return std::any_of(terms_.begin(), terms_.end(),
-                     [](const auto& term) { return term->can_be_damaged(); });
+void Model::add(std::shared_ptr<Term> term) {
+  const auto has_failure = [](const auto& of) { return of->failure() != nullptr; };
+  if (has_failure(term) && std::ranges::none_of(terms_, has_failure)) failure_ = term->failure();
+  terms_.push_back(std::move(term));
 }
 
 std::size_t Model::slot_of(const Term& term) const {
-  const auto found = std::find_if(terms_.begin(), terms_.end(),
-                                  [&](const auto& own) { return own.get() == &term; });
+  const auto found = std::ranges::find(terms_, &term, &std::shared_ptr<Term>::get);
   if (found == terms_.end()) throw std::logic_error("the model has no such term");
+  return std::size_t(found - terms_.begin());
+}
+
+std::size_t Model::slot_of(const FailureModel& failure) const {
+  const auto found = std::ranges::find_if(
+      terms_, [&](const auto& term) { return term->failure().get() == &failure; });
+  if (found == terms_.end()) throw std::logic_error("the model has no such failure");
   return std::size_t(found - terms_.begin());
 }
 
@@ -43,11 +42,11 @@ bool Model::has_symmetric_blocks() const {
                      [](const auto& term) { return term->has_symmetric_blocks(); });
 }
 
-bool Model::visits_rows() const { return terms_.size() == 1 && terms_.front()->visits_rows(); }
-
-bool Model::has_rows() const {
-  return std::all_of(terms_.begin(), terms_.end(),
-                     [](const auto& term) { return term->has_rows(); });
+TangentKind Model::tangent_kind() const {
+  // The rows of several terms can't be visited at once.
+  TangentKind kind = terms_.size() == 1 ? TangentKind::visited : TangentKind::stored;
+  for (const auto& term : terms_) kind = std::max(kind, term->tangent_kind());
+  return kind;
 }
 
 Balances Model::balances() const {

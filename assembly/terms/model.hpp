@@ -3,65 +3,82 @@
 #include <memory>
 #include <vector>
 
-#include "assembly/terms/bonds/bond_term.hpp"
+#include "assembly/terms/failure/bond_failure.hpp"
 #include "assembly/terms/term.hpp"
 
 namespace peristat {
 
-/// The discrete energy of a body: a sum of terms on a network of bonds, which defines connectivity,
-/// what a crack cuts and what is damaged. Copies share their terms.
+/// The discrete energy of a body: a sum of terms on a network of bonds, which defines connectivity
+/// and what a crack cuts, and the failure model of the first term that has one. Copies share their
+/// terms.
 class Model {
  public:
   Model() : Model(Bonds{{0}, {}, {}}) {}
 
   /// Network of bonds without an energy, for terms to be added.
-  explicit Model(Bonds network) : bonds_(std::make_shared<const Bonds>(std::move(network))) {}
+  explicit Model(Bonds network)
+      : failure_(std::make_shared<BondFailure>(std::make_shared<const Bonds>(std::move(network)),
+                                               Harmonic{})) {}
 
   /// Bonds with the energy sum_b w psi(l; L).
   /// @param never_fails per bond, 1: no damage whatever the stretch; empty: none
   Model(Bonds network, BondPotential potential, std::vector<char> never_fails = {});
 
-  /// With a bond term that is more than a sum over bonds.
-  explicit Model(std::shared_ptr<BondTerm> bonds);
+  /// A term with its failure model, and the network of that.
+  explicit Model(std::shared_ptr<Term> term) { add(std::move(term)); }
 
-  /// Number of bonds: of the bond term, otherwise of the network.
-  [[nodiscard]] Offset count_of_bonds() const {
-    return bond_term_ ? bond_term_->count() : bonds_->count();
+  void add(std::shared_ptr<Term> term);
+
+  [[nodiscard]] const Bonds& bonds() const { return failure_->bonds(); }
+  [[nodiscard]] const std::shared_ptr<const Bonds>& shared_bonds() const {
+    return failure_->shared_bonds();
   }
-
-  void add(std::shared_ptr<Term> term) { terms_.push_back(std::move(term)); }
-
-  [[nodiscard]] const Bonds& bonds() const { return *bonds_; }
-  [[nodiscard]] const std::shared_ptr<const Bonds>& shared_bonds() const { return bonds_; }
   [[nodiscard]] const std::vector<std::shared_ptr<Term>>& terms() const { return terms_; }
 
-  /// The energy of the bonds, or null.
-  [[nodiscard]] const std::shared_ptr<const BondTerm>& bond_term() const { return bond_term_; }
-  /// The same if they can be damaged, otherwise null.
-  [[nodiscard]] const BondTerm* failing_bonds() const;
+  /// The first term of a kind, or null.
+  template <class Kind>
+  [[nodiscard]] const Kind* find() const {
+    for (const auto& term : terms_) {
+      if (const auto* const found = dynamic_cast<const Kind*>(term.get())) return found;
+    }
+    return nullptr;
+  }
 
-  [[nodiscard]] bool has_history() const;
+  [[nodiscard]] const FailureModel& failure() const { return *failure_; }
+  /// Its array of a history; empty if nothing can fail.
+  [[nodiscard]] std::span<const double> failure_history(const History& history) const {
+    return has_history() ? history.of(slot_of(*failure_)) : std::span<const double>();
+  }
+  /// The same if bonds fail by their stretch, whether or not they can; otherwise null.
+  [[nodiscard]] std::shared_ptr<const BondFailure> bond_failure() const {
+    return {failure_, failure_->as_bond_failure()};
+  }
+  /// The same if they can fail, otherwise null.
+  [[nodiscard]] const BondFailure* failing_bonds() const {
+    return has_history() ? failure_->as_bond_failure() : nullptr;
+  }
+
+  [[nodiscard]] bool has_history() const { return failure_->can_fail(); }
   /// True if points fail instead of bonds: there is no bond strength that a load could be scaled
   /// to, and all points that exceed what they bear fail together under the same load.
-  [[nodiscard]] bool fails_in_avalanches() const { return has_history() && !failing_bonds(); }
+  [[nodiscard]] bool fails_in_avalanches() const {
+    return has_history() && failure_->parts() == FailingParts::points;
+  }
 
-  /// Position of a term's array in a History.
+  /// Position of a term's array in a History, and of that of the term that fails by a model.
   /// @throws std::logic_error if it is none of the terms
   [[nodiscard]] std::size_t slot_of(const Term& term) const;
+  [[nodiscard]] std::size_t slot_of(const FailureModel& failure) const;
 
   /// Union of the blocks of all terms.
   [[nodiscard]] BlockPattern pattern() const;
 
   [[nodiscard]] bool has_symmetric_blocks() const;
-  /// True if the tangent need not be stored.
-  [[nodiscard]] bool visits_rows() const;
-  /// True if the tangent has rows.
-  [[nodiscard]] bool has_rows() const;
+  [[nodiscard]] TangentKind tangent_kind() const;
   [[nodiscard]] Balances balances() const;
 
  private:
-  std::shared_ptr<const Bonds> bonds_;
-  std::shared_ptr<const BondTerm> bond_term_;
+  std::shared_ptr<const FailureModel> failure_;
   std::vector<std::shared_ptr<Term>> terms_;
 };
 

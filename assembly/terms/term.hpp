@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "assembly/energy/energy.hpp"
 #include "assembly/energy/evaluation.hpp"
 #include "assembly/energy/state.hpp"
+#include "assembly/energy/tangent_forms.hpp"
+#include "assembly/energy/write.hpp"
 #include "assembly/operators/block_pattern.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "assembly/terms/balances.hpp"
+#include "assembly/terms/failure/failure_model.hpp"
 #include "src/geometry/points.hpp"
 #include "src/parallel/index_map.hpp"
 
@@ -18,9 +20,6 @@ namespace peristat {
 
 class Model;
 struct Workspace;
-
-/// Whether a pass overwrites what its result held or adds to it.
-enum class Write { over, onto };
 
 /// The passes over a term's interactions, with the buffers that they need. Arrays are points x
 /// dimension, row major; `history` is that of all terms.
@@ -53,26 +52,13 @@ class TermPasses {
   /// Damage that committing the state would cause.
   virtual DamageGrowth growth(const StateView&) { return {}; }
 
-  /// d2E/dx2 [N/m], in the blocks of the pattern.
-  /// @param projection see Assembler::tangent
-  virtual void tangent(const StateView& at, double projection, Tangent& tangent, Write how) = 0;
+  /// Its tangent, in the form of Term::tangent_kind; rows also as products. Blocks that can be
+  /// visited can also be stored.
+  [[nodiscard]] virtual TangentForms forms() = 0;
 
   /// d2E/dx2 v [N]
   virtual void product(const StateView& at, std::span<const double> v, double projection,
                        std::span<double> product, Write how) = 0;
-
-  /// Visits the rows of the tangent without storing it; only for a term that visits_rows.
-  /// @param diagonal overwritten; empty: not wanted
-  virtual void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
-                             std::span<double> diagonal);
-
-  /// For a term without a potential or without rows, see Energy::rows, Energy::outline_rows and
-  /// Energy::stencil. Other terms beside it may have diagonal blocks only.
-  [[nodiscard]] virtual SparseRows rows(const StateView& at, RowReach reach);
-  [[nodiscard]] virtual double bytes_of_rows() const { return 0.0; }
-  [[nodiscard]] virtual LatticeStencil stencil(const StateView&) { return {}; }
-  virtual void outline_rows(const StateView& at, std::span<double> diagonal,
-                            std::span<double> row_sums);
 
   /// An equal share of its interactions' energy for each of their points [J].
   virtual void point_energies(const StateView& at, std::span<double> energies, Write how) = 0;
@@ -117,20 +103,12 @@ class Term {
   [[nodiscard]] virtual Couplings couplings() const = 0;
   /// Whether each of its off-diagonal blocks is symmetric.
   [[nodiscard]] virtual bool has_symmetric_blocks() const { return false; }
-  /// True if the tangent need not be stored: its rows can be computed one by one, and product and v
-  /// may be one array.
-  [[nodiscard]] virtual bool visits_rows() const { return false; }
-
-  /// True if the tangent has rows, see Energy::has_rows.
-  [[nodiscard]] virtual bool has_rows() const { return true; }
+  [[nodiscard]] virtual TangentKind tangent_kind() const { return TangentKind::stored; }
 
   [[nodiscard]] virtual Balances balances() const = 0;
 
-  /// True if states damage the term, irreversibly.
-  [[nodiscard]] virtual bool can_be_damaged() const { return false; }
-
-  /// History before any load; empty if the term remembers nothing.
-  [[nodiscard]] virtual std::vector<double> initial_history() const { return {}; }
+  /// How states damage the body by what the term remembers; null: they don't.
+  [[nodiscard]] virtual std::shared_ptr<const FailureModel> failure() const { return nullptr; }
   /// Updates the part of its history that follows from other terms' histories.
   virtual void follow(const Model&, History&) const {}
 

@@ -114,7 +114,7 @@ void cut(Model& model, const Points& points, const BodyShape& shape) {
         shape.has_hole ? std::abs(at - 0.5 * length) < 0.2 * length : at < 2.0 / 3.0 * length;
     return (a[across] - plane) * (b[across] - plane) < 0.0 && is_cut;
   });
-  model = Model(std::move(bonds), model.bond_term()->potential());
+  model = Model(std::move(bonds), model.bond_failure()->potential());
 }
 
 Points points_of(const BodyShape& shape) {

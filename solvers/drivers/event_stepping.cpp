@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "assembly/terms/bonds/bond_term.hpp"
 #include "assembly/terms/damage.hpp"
+#include "assembly/terms/failure/bond_failure.hpp"
 #include "solvers/drivers/implicit_stepping.hpp"
 #include "solvers/drivers/increment.hpp"
 #include "src/core/input_error.hpp"
@@ -48,7 +48,7 @@ double segment_begin(double stage) { return LoadingProgramme::next_entry(stage) 
 /// True if bonds have softened along a law that this mode replaces by a saw-tooth.
 bool has_softened_smoothly(Path& path) {
   const PathState& state = path.state();
-  const BondTerm* const bonds = path.damaged().model().failing_bonds();
+  const BondFailure* const bonds = path.damaged().model().failing_bonds();
   if (state.events.count > 0 || !bonds || toothed_strength(bonds->potential()).teeth == 0) {
     return false;
   }

@@ -1,3 +1,5 @@
+#include "solvers/motion/stable_step.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +9,7 @@
 #include "src/core/counter_random.hpp"
 #include "src/core/vector_verbs.hpp"
 #include "src/parallel/index_map.hpp"
+#include "src/parallel/sums.hpp"
 
 namespace peristat {
 namespace {
@@ -229,7 +232,9 @@ double Stiffness::stable_step() const {
   return eigenvalue > 0.0 ? 2.0 / std::sqrt(eigenvalue) : std::numeric_limits<double>::infinity();
 }
 
-double projection_for_stiffness(const Energy& energy) { return energy.has_rows() ? 1.0 : 0.0; }
+double projection_for_stiffness(const Energy& energy) {
+  return energy.tangent_kind() == TangentKind::products ? 0.0 : 1.0;
+}
 
 Stiffness bound_stiffness(const TangentOperator& tangent, const FreeDofs& free,
                           std::span<const double> mass, int most_points,

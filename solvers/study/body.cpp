@@ -404,7 +404,7 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.bonds = double(body.model.bonds().count());
   size.bytes_per_bond = double(sizeof(Index) + body.model.bonds().kind.bytes_per_bond());
   size.has_history = body.model.has_history();
-  size.is_convolved = !body.model.has_rows();
+  size.is_convolved = body.model.tangent_kind() == TangentKind::products;
   size.has_symmetric_blocks = body.model.has_symmetric_blocks();
   size.is_constrained = !body.conditions->constraints().none();
   size.free_dofs = double(std::count(prescribed.begin(), prescribed.end(), 0));
@@ -435,14 +435,14 @@ MemoryEstimate estimate_memory(const Body& body) {
 std::vector<std::string> describe_interactions(const Body& body) {
   std::vector<std::string> lines;
   for (const auto& term : body.model.terms()) {
-    if (term.get() == body.model.bond_term().get()) continue;  // reported separately
+    if (term->failure()) continue;  // reported separately
     for (const InteractionCount& kind : term->counts()) {
       const auto [least, most] = std::minmax_element(kind.per_point.begin(), kind.per_point.end());
       lines.push_back(
           fmt::format("{} {}; per point {} to {}", kind.count, kind.name, *least, *most));
     }
   }
-  const auto* const points = dynamic_cast<const PointTerm*>(body.model.bond_term().get());
+  const auto* const points = body.model.find<PointTerm>();
   if (points != nullptr && points->is_convolved()) {
     lines.push_back(fmt::format("summed by convolutions over a box of {} sites",
                                 points->lattice()->box.count()));

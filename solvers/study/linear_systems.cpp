@@ -101,6 +101,9 @@ bool has_rows_of_part(const Body& body) {
   return constraints.rollers.empty() && constraints.linear.empty();
 }
 
+/// True if a model's tangent has products alone, as by convolutions.
+bool has_products_only(const Model& model) { return model.tangent_kind() == TangentKind::products; }
+
 /// True if a preconditioner uses only the diagonal blocks of a tangent.
 bool is_of_points(PreconditionerKind kind) {
   return kind == PreconditionerKind::block_jacobi || kind == PreconditionerKind::jacobi;
@@ -114,7 +117,8 @@ LinearSystems systems_of_motion(const Body& body) {
   systems.chosen.is_direct = false;
   systems.chosen.reason = "explicit time steps solve no equations";
   const bool is_followed = !body.conditions->constraints().none();
-  systems.is_stored = body.model.has_rows() && (!body.model.visits_rows() || is_followed);
+  const TangentKind kind = body.model.tangent_kind();
+  systems.is_stored = kind == TangentKind::visited ? is_followed : kind != TangentKind::products;
   systems.has_rows = has_rows_of_part(body);
   systems.bytes = estimate.body_bytes + (systems.is_stored ? estimate.tangent_bytes : 0.0) +
                   8.0 * vectors_of_motion * estimate.size.points * estimate.size.dimension;
@@ -151,11 +155,11 @@ void refuse_solvers_without_ranks(const StudyOptions& options, const Body& body)
   if (finds_loads(options, *body.conditions)) {
     refuse("loading.mode", "given loads: loads that are found need pivots");
   }
-  if (!body.model.has_rows()) refuse("force_operator", "\"bonds\"");
+  if (has_products_only(body.model)) refuse("force_operator", "\"bonds\"");
 }
 
 void refuse_products_with_constraints(const StudyOptions& options, const Body& body) {
-  const bool follows = !body.conditions->constraints().none() && body.model.has_rows();
+  const bool follows = !body.conditions->constraints().none() && !has_products_only(body.model);
   if (!follows || options.tangent != TangentStorage::matrix_free) return;
   throw InputError("tangent", "matrix_free",
                    "is for bodies without rigid sets, rollers, linear constraints, planes of "
@@ -165,7 +169,7 @@ void refuse_products_with_constraints(const StudyOptions& options, const Body& b
 /// Refuses modes that solve equations for convolutions without a potential: these have neither rows
 /// to solve with nor an energy to minimise.
 void refuse_to_solve_for(const Body& body, const LoadSteppingOptions& loading) {
-  if (body.model.has_rows() || body.model.balances().potential) return;
+  if (!has_products_only(body.model) || body.model.balances().potential) return;
   const std::string why =
       "is for models with an energy; form \"printed\" takes only mode dynamics with scheme "
       "\"verlet\", form \"energy\" takes all modes";
@@ -184,8 +188,9 @@ std::shared_ptr<const LatticeBox> box_for_choice(const StudyOptions& options, co
   const bool is_free = options.linear.method == LinearMethod::automatic &&
                        options.linear.preconditioner == PreconditionerKind::automatic;
   const bool is_whole = !body.model.has_history() && body.cut_bonds.empty();
-  if (!is_free || !is_whole || !of.is_uniform() || of.has_inertia || !body.model.visits_rows() ||
-      !body.conditions->constraints().none() || body.points.angle != 0.0) {
+  if (!is_free || !is_whole || !of.is_uniform() || of.has_inertia ||
+      body.model.tangent_kind() != TangentKind::visited || !body.conditions->constraints().none() ||
+      body.points.angle != 0.0) {
     return nullptr;
   }
   std::string why_not;
@@ -226,7 +231,7 @@ bool flows(const StudyOptions& options, const Model& model) {
 }  // namespace
 
 std::shared_ptr<const LatticeBox> box_for_sines(const StudyOptions& options, const Body& body) {
-  if (!body.model.has_rows()) return box_of_convolutions(options, body);
+  if (has_products_only(body.model)) return box_of_convolutions(options, body);
   if (options.linear.preconditioner != PreconditionerKind::sines)
     return box_for_choice(options, body);
   const auto refuse = [](const std::string& why) {
@@ -253,15 +258,18 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
                                     const MemoryEstimate& estimate,
                                     std::shared_ptr<const LatticeBox> box,
                                     SolverLadder::Reporter tell, const IndexMap& index_map) {
-  LinearSolverOptions linear =
-      model.has_rows() ? options.linear : options_of_convolutions(options, box != nullptr);
+  const TangentKind kind = model.tangent_kind();
+  LinearSolverOptions linear = kind == TangentKind::products
+                                   ? options_of_convolutions(options, box != nullptr)
+                                   : options.linear;
   const bool is_symmetric = model.balances().potential;
   require_agreement(linear, is_symmetric);
   // A named preconditioner must be used.
   if (is_symmetric && linear.method == LinearMethod::automatic &&
       linear.preconditioner != PreconditionerKind::automatic)
     linear.method = LinearMethod::conjugate_gradients;
-  if (options.tangent == TangentStorage::matrix_free && !model.visits_rows() && model.has_rows())
+  if (options.tangent == TangentStorage::matrix_free &&
+      (kind == TangentKind::stored || kind == TangentKind::rows))
     throw InputError("tangent", "matrix_free",
                      "is for bonds alone: other models need the stored tangent");
   LinearProblem problem;
@@ -279,13 +287,14 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   const bool goes_by_events = options.loading.mode == Mode::path;
   problem.solves_often = flows(options, model) || goes_by_events;
   problem.box = std::move(box);
-  problem.is_stored = model.has_rows() && options.tangent != TangentStorage::matrix_free;
+  problem.is_stored =
+      kind != TangentKind::products && options.tangent != TangentStorage::matrix_free;
   LinearSystems systems;
   systems.chosen = make_linear_solver(linear, problem, tell);
   // Matrix-free products take less memory; in 3D they are faster than stored ones, in 2D a sixth
   // slower.
   if (options.tangent == TangentStorage::automatic && !systems.chosen.is_direct &&
-      model.visits_rows() && can_be_matrix_free(linear)) {
+      kind == TangentKind::visited && can_be_matrix_free(linear)) {
     problem.is_stored = false;
     systems.chosen = make_linear_solver(linear, problem, std::move(tell));
   }
@@ -324,7 +333,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
     return systems;
   }
   StudyOptions chosen = options;
-  if (!body.model.has_rows()) {
+  if (has_products_only(body.model)) {
     const ConstraintSpecification& of = body.specification.constraints;
     if (!of.rigid_sets.empty() || !of.rollers.empty() || !of.linear.empty()) {
       throw InputError("constraints", "",
@@ -336,7 +345,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
                        "has no pivots, which a control and mode arc_length need; take \"bonds\"");
     }
   }
-  if (!body.conditions->constraints().none() && body.model.has_rows()) {
+  if (!body.conditions->constraints().none() && !has_products_only(body.model)) {
     chosen.tangent = TangentStorage::stored;
   }
   if (finds_loads(options, *body.conditions)) {
@@ -361,12 +370,10 @@ std::unique_ptr<TangentOperator> make_plain(Assembler& assembler) {
 
 std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assembler,
                                                              const Constraints& constraints) const {
-  const bool is_convolved = !assembler.has_rows();
+  const TangentKind kind = assembler.tangent_kind();
+  if (kind == TangentKind::products) return make_convolved_tangent(assembler, constraints);
+  if (kind == TangentKind::rows) return make_plain<RowsOfEnergy>(assembler);
   const IndexMap& index_map = assembler.index_map();
-  if (!is_convolved && !assembler.has_potential()) {
-    return make_plain<RowsOfEnergy>(assembler);
-  }
-  if (is_convolved) return make_convolved_tangent(assembler, constraints);
   if (!constraints.none() && (index_map.is_whole() || (is_stored && has_rows))) {
     return std::make_unique<ConstrainedTangent>(assembler, constraints, index_map);
   }

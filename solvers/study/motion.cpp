@@ -104,9 +104,9 @@ MotionSetting make_motion_setting(const Body& body) {
     setting.absorption[dof] = rates[dof / d];
   }
   setting.most_points = formulation_of(body.specification).most_points(body.points.dimension);
-  if (const auto* states = dynamic_cast<const StateTerm*>(body.model.bond_term().get())) {
+  if (const auto* states = body.model.find<StateTerm>()) {
     setting.most_points = most_points_of_states(*states, body);
-  } else if (const auto* of_points = dynamic_cast<const PointTerm*>(body.model.bond_term().get())) {
+  } else if (const auto* of_points = body.model.find<PointTerm>()) {
     setting.most_points = int(std::ceil(of_points->bound_over_blocks(body.points.dimension)));
   }
   return setting;

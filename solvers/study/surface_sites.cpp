@@ -32,7 +32,7 @@ std::vector<SurfaceSite> surface_sites(const Points& points, const Model& model,
                                        const BodyBoundary* boundary,
                                        const std::vector<std::string>& names, double horizon,
                                        int threads) {
-  const auto* term = dynamic_cast<const CollocationTerm*>(model.bond_term().get());
+  const auto* term = model.find<CollocationTerm>();
   if (!term) throw std::logic_error("surface sites are of bodies of model lps");
   std::vector<SurfaceSite> sites;
   if (!boundary) return sites;

@@ -28,6 +28,7 @@ ROOMS = [
     "assembly/convolutions",
     "assembly/energy",
     "assembly/operators",
+    "assembly/terms/failure",
     "assembly/terms",
     "assembly",
     "solvers/linear",

@@ -7,17 +7,17 @@
 
 #include "assembly/terms/bonds/bond_kernels.hpp"
 #include "assembly/terms/bonds/bond_passes.hpp"
-#include "assembly/terms/bonds/bond_term.hpp"
 #include "assembly/terms/bonds/bond_workspace.hpp"
+#include "assembly/terms/failure/bond_failure.hpp"
 #include "assembly/terms/model.hpp"
 
 namespace peristat {
 
 /// The passes over bonds in a dimension, with their potential.
 template <int dimension>
-class BondPassesIn : public TermPasses {
+class BondPassesIn : public TermPasses, BlockTangent, RowVisits {
  public:
-  BondPassesIn(const BondTerm& term, const TermSetting& setting);
+  BondPassesIn(const BondFailure& failure, const TermSetting& setting);
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override;
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
@@ -26,7 +26,8 @@ class BondPassesIn : public TermPasses {
                            const SharedEnvironment& environment, History& history,
                            std::span<double> gradient, Write how) override;
   DamageGrowth growth(const StateView& at) override;
-  void tangent(const StateView& at, double projection, Tangent& tangent, Write how) override;
+  [[nodiscard]] TangentForms forms() override { return {.blocks = this, .visits = this}; }
+  void tangent(const StateView& at, Tangent& tangent, double projection, Write how) override;
   void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                      std::span<double> diagonal) override;
   void product(const StateView& at, std::span<const double> v, double projection,
@@ -50,7 +51,7 @@ class BondPassesIn : public TermPasses {
   /// Writes straight into the tangent, whose off-diagonal blocks are those of the bonds.
   void write_tangent(const StateView& at, double projection, Tangent& tangent);
 
-  const BondTerm& term_;
+  const BondFailure& failure_;
   std::size_t slot_;
   const BlockPattern& pattern_;
   std::vector<Offset> places_;  // positions of bonds' blocks in the pattern; empty: its order
@@ -58,12 +59,12 @@ class BondPassesIn : public TermPasses {
 };
 
 template <int dimension>
-BondPassesIn<dimension>::BondPassesIn(const BondTerm& term, const TermSetting& setting)
-    : term_(term),
-      slot_(setting.model.slot_of(term)),
+BondPassesIn<dimension>::BondPassesIn(const BondFailure& failure, const TermSetting& setting)
+    : failure_(failure),
+      slot_(setting.model.slot_of(failure)),
       pattern_(setting.pattern),
-      places_(setting.pattern.places_of(term.couplings())),
-      workspace_(setting.points, term.bonds(), setting.workspace) {}
+      places_(setting.pattern.places_of(failure.bonds())),
+      workspace_(setting.points, failure.bonds(), setting.workspace) {}
 
 template <int dimension>
 template <class Body>
@@ -77,7 +78,7 @@ auto BondPassesIn<dimension>::dispatch(const StateView& at, const Body& body) co
       [&]<class P>(const P& potential) {
         if constexpr (PotentialWithHistory<P>) {
           const std::span<const double> history = at.history.of(slot_);
-          if (history.size() != std::size_t(term_.bonds().count()) + lane_count) {
+          if (history.size() != std::size_t(failure_.bonds().count()) + lane_count) {
             throw std::logic_error("bonds that can be damaged are evaluated after their history");
           }
           P law = potential;
@@ -87,7 +88,7 @@ auto BondPassesIn<dimension>::dispatch(const StateView& at, const Body& body) co
           return with_law(potential, nullptr);
         }
       },
-      term_.potential());
+      failure_.potential());
 }
 
 template <int dimension>
@@ -120,7 +121,7 @@ template <bool with_energy>
 Evaluation BondPassesIn<dimension>::commit(std::span<const double> displacement,
                                            const SharedEnvironment& environment, History& history,
                                            std::span<double> gradient, Write how) {
-  const bool can_fail = term_.can_fail();
+  const bool can_fail = failure_.can_fail();
   const StateView at{displacement, history, Damage::grows, environment};
   double* const to_change = can_fail ? history.change(slot_).data() : nullptr;
   return dispatch(
@@ -137,7 +138,7 @@ Evaluation BondPassesIn<dimension>::commit(std::span<const double> displacement,
 
 template <int dimension>
 DamageGrowth BondPassesIn<dimension>::growth(const StateView& at) {
-  if (!term_.can_fail()) return {};
+  if (!failure_.can_fail()) return {};
   return dispatch(
       at, [&]<class P>(const P& law, const double* largest_stretch, const auto& eigenstretch) {
         if constexpr (PotentialWithHistory<P>) {
@@ -149,7 +150,7 @@ DamageGrowth BondPassesIn<dimension>::growth(const StateView& at) {
 }
 
 template <int dimension>
-void BondPassesIn<dimension>::tangent(const StateView& at, double projection, Tangent& tangent,
+void BondPassesIn<dimension>::tangent(const StateView& at, Tangent& tangent, double projection,
                                       Write how) {
   if (how == Write::over && places_.empty()) return write_tangent(at, projection, tangent);
   if (how == Write::over) tangent.clear();
@@ -157,7 +158,7 @@ void BondPassesIn<dimension>::tangent(const StateView& at, double projection, Ta
   visit_tangent(
       at, projection,
       [&](int, Index i, std::span<const double> blocks) {
-        Offset bond = term_.bonds().offset[i];
+        Offset bond = failure_.bonds().offset[i];
         const std::size_t entries = std::size_t(tangent.dimension * tangent.dimension);
         for (std::size_t k = 0; k < blocks.size(); k += entries, ++bond) {
           tangent.add_to_block(places_.empty() ? bond : places_[std::size_t(bond)],
@@ -171,7 +172,7 @@ void BondPassesIn<dimension>::tangent(const StateView& at, double projection, Ta
 template <int dimension>
 void BondPassesIn<dimension>::visit_tangent(const StateView& at, double projection,
                                             const RowVisitor& visit, std::span<double> diagonal) {
-  const std::vector<Offset>& offset = term_.bonds().offset;
+  const std::vector<Offset>& offset = failure_.bonds().offset;
   Offset longest = 0;
   for (std::size_t i = 1; i < offset.size(); ++i) {
     longest = std::max(longest, offset[i] - offset[i - 1]);
@@ -238,8 +239,9 @@ void BondPassesIn<dimension>::write_tangent(const StateView& at, double projecti
 }
 
 template <int dimension>
-std::unique_ptr<TermPasses> make_bond_passes_in(const BondTerm& term, const TermSetting& setting) {
-  return std::make_unique<BondPassesIn<dimension>>(term, setting);
+std::unique_ptr<TermPasses> make_bond_passes_in(const BondFailure& failure,
+                                                const TermSetting& setting) {
+  return std::make_unique<BondPassesIn<dimension>>(failure, setting);
 }
 
 }  // namespace peristat

@@ -2,6 +2,6 @@
 
 namespace peristat {
 
-template std::unique_ptr<TermPasses> make_bond_passes_in<2>(const BondTerm&, const TermSetting&);
+template std::unique_ptr<TermPasses> make_bond_passes_in<2>(const BondFailure&, const TermSetting&);
 
 }  // namespace peristat

@@ -18,7 +18,7 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 /// Calls visit(law) if the bonds can be damaged; law.of_bond(bond) is that of one of them.
 template <class Visit>
 void with_law(const Model& model, const Visit& visit) {
-  if (const BondTerm* const bonds = model.failing_bonds()) bonds->with_damage_law(visit);
+  if (const BondFailure* const bonds = model.failing_bonds()) bonds->with_damage_law(visit);
 }
 
 /// Stretch that a law bears after a strength is exceeded.

@@ -6,19 +6,21 @@
 #include <stdexcept>
 #include <utility>
 
+#include "assembly/energy/tangent_forms.hpp"
 #include "assembly/terms/bonds/bond_passes.hpp"
 #include "assembly/terms/damage.hpp"
 #include "assembly/terms/workspace.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {
 
-class CollocationPasses : public TermPasses {
+class CollocationPasses : public TermPasses, RowOperator {
  public:
   CollocationPasses(const CollocationTerm& term, const TermSetting& setting)
       : term_(term),
         setting_(setting),
-        stretches_(make_bond_passes(term, setting)),
+        stretches_(make_bond_passes(term.bond_failure(), setting)),
         whole_(setting.points, term.whole(), setting.workspace.threads()) {}
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
@@ -48,12 +50,10 @@ class CollocationPasses : public TermPasses {
   }
 
   DamageGrowth growth(const StateView& at) override {
-    return term_.can_fail() ? stretches_->growth(at) : DamageGrowth{};
+    return term_.bond_failure().can_fail() ? stretches_->growth(at) : DamageGrowth{};
   }
 
-  void tangent(const StateView&, double, Tangent&, Write) override {
-    throw std::logic_error("collocation has no symmetric tangent");
-  }
+  [[nodiscard]] TangentForms forms() override { return {.rows = this, .products = this}; }
 
   void product(const StateView& at, std::span<const double> v, double, std::span<double> product,
                Write how) override {
@@ -70,13 +70,13 @@ class CollocationPasses : public TermPasses {
   }
   [[nodiscard]] double bytes_of_rows() const override { return whole_.bytes_of_rows(); }
 
-  void outline_rows(const StateView& at, std::span<double> diagonal,
-                    std::span<double> row_sums) override {
+  void outline(const StateView& at, std::span<double> diagonal,
+               std::span<double> row_sums) override {
     update(at);
-    const std::vector<double>&blocks = whole_.diagonal(), &bounds = whole_.bounds_of_row_sums();
-    std::copy(blocks.begin(), blocks.end(), diagonal.begin());
-    std::copy(bounds.begin(), bounds.end(), row_sums.begin());
+    add_scaled(diagonal, 1.0, whole_.diagonal());
+    add_scaled(row_sums, 1.0, whole_.bounds_of_row_sums());
   }
+  [[nodiscard]] LatticeStencil stencil(const StateView&) override { return {}; }
 
   [[nodiscard]] bool shares_energy() const override { return true; }
 
@@ -146,7 +146,7 @@ class CollocationPasses : public TermPasses {
 
   DamageGrowth break_bonds(std::span<const double> displacement,
                            const SharedEnvironment& environment, History& history) {
-    if (!term_.can_fail()) return {};
+    if (!term_.bond_failure().can_fail()) return {};
     buffer_.resize(displacement.size());
     return stretches_->commit_forces(displacement, environment, history, buffer_, Write::over)
         .growth;
@@ -171,7 +171,8 @@ class CollocationPasses : public TermPasses {
 CollocationTerm::CollocationTerm(std::shared_ptr<const Bonds> bonds, BondPotential potential,
                                  std::vector<char> never_fails, CollocationSetting whole,
                                  CollocationSetting local)
-    : BondTerm(std::move(bonds), std::move(potential), std::move(never_fails)),
+    : failure_(std::make_shared<BondFailure>(std::move(bonds), std::move(potential),
+                                             std::move(never_fails))),
       whole_(std::move(whole)),
       local_(std::move(local)) {}
 
@@ -181,7 +182,7 @@ double CollocationTerm::stored_bytes() const {
   const double d = whole.dimension, third = third_moment_entries(whole.dimension);
   // Per entry: neighbour, bond, share (twice once bonds break), dilatation coefficient. Per point:
   // missing moments at the start and now, shape, normal, dilatation, constants.
-  return BondTerm::stored_bytes() +
+  return failure_->bytes() +
          entries * (double(sizeof(Index) + sizeof(Offset)) + (2.0 + d) * sizeof(double)) +
          8.0 * double(whole.points()) * (4.0 * d + 3.0 * third + d * d + 4.0);
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "assembly/convolutions/lattice_forces.hpp"
-#include "assembly/energy/energy.hpp"
+#include "assembly/energy/tangent_forms.hpp"
 #include "assembly/terms/bonds/bond_workspace.hpp"
 
 namespace peristat {
@@ -34,7 +34,7 @@ class LinearBondSums : public LatticeForces {
                        std::span<double> row_sums) override;
   void add_virials(std::span<const double> displacement, std::span<double> virials) override;
 
-  /// Visits the rows of the tangent, see Energy::visit_tangent.
+  /// Visits the rows of the tangent, see RowVisits::visit_tangent.
   void visit_tangent(const RowVisitor& visit, std::span<double> diagonal);
 
  private:

@@ -27,7 +27,7 @@ std::unique_ptr<LatticeForces> ConvolvedTerm::forces(const Points& /*points*/,
 }
 
 Balances ConvolvedTerm::balances() const {
-  const bool turns_freely = correspondence() == nullptr || !can_be_damaged();
+  const bool turns_freely = correspondence() == nullptr || !point_failure().can_fail();
   return {true, turns_freely, true, true, false};
 }
 

@@ -10,6 +10,8 @@
 
 #include "assembly/convolutions/forces_with_images.hpp"
 #include "assembly/convolutions/linear_bonds.hpp"
+#include "assembly/energy/tangent_forms.hpp"
+#include "assembly/terms/bonds/bond_count.hpp"
 #include "assembly/terms/linear/linear_bond_sums.hpp"
 #include "assembly/terms/model.hpp"
 #include "src/parallel/collectives.hpp"
@@ -18,10 +20,11 @@
 namespace peristat {
 namespace {
 
-class PointPasses : public TermPasses {
+class PointPasses : public TermPasses, BlockTangent, RowVisits, ProductOperator {
  public:
   PointPasses(const PointTerm& term, const TermSetting& setting)
       : term_(term),
+        failure_(term.point_failure()),
         slot_(setting.model.slot_of(term)),
         workspace_(setting.workspace),
         places_(setting.pattern.places_of(term.couplings())),
@@ -51,7 +54,7 @@ class PointPasses : public TermPasses {
   Evaluation commit_forces(std::span<const double> displacement,
                            const SharedEnvironment& environment, History& history,
                            std::span<double> gradient, Write how) override {
-    if (term_.can_be_damaged() || term_.is_convolved()) {
+    if (failure_.can_fail() || term_.is_convolved()) {
       return commit(displacement, environment, history, gradient, how, Failing::until_none_does);
     }
     forces_->find_forces(own(displacement), force_);
@@ -64,14 +67,19 @@ class PointPasses : public TermPasses {
   [[nodiscard]] bool shares_energy() const override { return true; }
 
   DamageGrowth growth(const StateView& at) override {
-    if (!term_.can_be_damaged()) return {};
+    if (!failure_.can_fail()) return {};
     take_integrity(at.history);
     find_energies(at.displacement);
     return judge();
   }
 
+  [[nodiscard]] TangentForms forms() override {
+    if (bonds_ == nullptr) return {.products = this};
+    return {.blocks = this, .visits = this};
+  }
+
   /// @param projection ignored: a term with rows is convex
-  void tangent(const StateView& at, double /*projection*/, Tangent& tangent, Write how) override {
+  void tangent(const StateView& at, Tangent& tangent, double /*projection*/, Write how) override {
     if (how == Write::over) tangent.clear();
     const std::size_t entries = dimension_ * dimension_;
     std::vector<double> diagonal(tangent.diagonal.size());
@@ -90,13 +98,12 @@ class PointPasses : public TermPasses {
 
   void visit_tangent(const StateView& at, double /*projection*/, const RowVisitor& visit,
                      std::span<double> diagonal) override {
-    if (bonds_ == nullptr) throw std::logic_error("a lattice by convolutions has no rows");
     take_integrity(at.history);
     bonds_->visit_tangent(visit, diagonal);
   }
 
-  void outline_rows(const StateView& at, std::span<double> diagonal,
-                    std::span<double> row_sums) override {
+  void outline(const StateView& at, std::span<double> diagonal,
+               std::span<double> row_sums) override {
     take_integrity(at.history);
     forces_->outline_tangent(own(at.displacement), diagonal, row_sums);
   }
@@ -104,7 +111,7 @@ class PointPasses : public TermPasses {
   LatticeStencil stencil(const StateView& at) override {
     take_integrity(at.history);
     LatticeStencil own = forces_->stencil();
-    if (!own.empty() || !term_.is_convolved()) return own;
+    if (!own.empty()) return own;
     const std::vector<double> whole(volume_.size(), 1.0);
     const auto& integrity = integrity_.empty() ? whole : integrity_;
     return lattice_stencil(term_.lattice()->box, term_.lattice()->springs, integrity,
@@ -142,7 +149,7 @@ class PointPasses : public TermPasses {
 
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
                     History& history, std::span<double> gradient, Write how, Failing failing) {
-    if (!term_.can_be_damaged()) {
+    if (!failure_.can_fail()) {
       return gradient_at({displacement, history, Damage::grows, environment}, gradient, how);
     }
     take_integrity(history);
@@ -203,7 +210,7 @@ class PointPasses : public TermPasses {
   }
 
   void take_integrity(const History& history) {
-    if (!term_.can_be_damaged()) return;
+    if (!failure_.can_fail()) return;
     const std::span<const double> remembered = history.of(slot_);
     if (remembered.size() != volume_.size() + 1) {
       throw std::logic_error("points that can be damaged are evaluated after their history");
@@ -298,7 +305,7 @@ class PointPasses : public TermPasses {
   }
 
   [[nodiscard]] bool fails(std::size_t point, std::span<const double> energy) const {
-    return energy[point] > (*term_.bearable())[point] && integrity_[point] > 0.0;
+    return energy[point] > (*failure_.bearable())[point] && integrity_[point] > 0.0;
   }
 
   /// Utilisation is the root of an energy ratio: energies go with the square of a load, as long as
@@ -308,7 +315,7 @@ class PointPasses : public TermPasses {
     const std::span<const double> energy = whole_energies();
     for (std::size_t i = 0; i < judged(); ++i) {
       if (integrity_[i] == 0.0) continue;
-      found.utilisation = std::max(found.utilisation, energy[i] / (*term_.bearable())[i]);
+      found.utilisation = std::max(found.utilisation, energy[i] / (*failure_.bearable())[i]);
       if (fails(i, energy)) ++found.degrading;
     }
     found.breaking = found.degrading;
@@ -317,6 +324,7 @@ class PointPasses : public TermPasses {
   }
 
   const PointTerm& term_;
+  const PointFailure& failure_;
   std::size_t slot_;
   const Workspace& workspace_;
   std::vector<Offset> places_;
@@ -341,49 +349,27 @@ std::unique_ptr<LatticeForces> with_images(
 PointTerm::PointTerm(std::shared_ptr<const Bonds> bonds, double micromodulus,
                      BearableEnergies bearable, std::optional<ConvolvedLattice> lattice,
                      int threads)
-    : BondTerm(std::move(bonds), Harmonic{micromodulus}),
-      micromodulus_(micromodulus),
-      bearable_(std::move(bearable)),
-      lattice_(std::move(lattice)),
-      threads_(threads) {
-  const auto points = std::size_t(this->bonds().points());
-  if (bearable_ && bearable_->size() != points) {
-    throw std::logic_error("every point bears an energy of its own");
-  }
-  if (lattice_) no_couplings_.assign(points + 1, 0);
-  NeighbourSums whole = neighbours(std::vector<double>(points, 1.0));
-  whole_weight_ = std::move(whole.weight);
-  for (const double count : whole.count) neighbours_.push_back(std::int32_t(std::lround(count)));
-  count_ = std::accumulate(neighbours_.begin(), neighbours_.end(), Offset(0)) / 2;
-}
-
-NeighbourSums PointTerm::neighbours(std::span<const double> integrity) const {
-  if (!lattice_) return neighbour_sums(bonds(), integrity);
-  return neighbour_sums(lattice_->box, lattice_->springs, micromodulus_, integrity, lattice_->own,
-                        threads_);
+    : micromodulus_(micromodulus),
+      failure_(std::make_shared<PointFailure>(std::move(bonds), micromodulus, std::move(bearable),
+                                              std::move(lattice), threads)) {
+  if (is_convolved()) no_couplings_.assign(std::size_t(this->bonds().points()) + 1, 0);
 }
 
 std::vector<InteractionCount> PointTerm::counts() const {
-  if (!lattice_) return BondTerm::counts();
-  return {{"bonds", count_, "neighbours", "neighbours within the horizon, #N1", neighbours_}};
+  if (!is_convolved()) return {bond_count(bonds())};
+  return {{"bonds", failure_->count_of_bonds(), "neighbours", "neighbours within the horizon, #N1",
+           failure_->neighbours()}};
 }
 
 Couplings PointTerm::couplings() const {
-  if (!lattice_) return bonds();
+  if (!is_convolved()) return bonds();
   return {no_couplings_, std::span<const Index>()};
-}
-
-std::vector<double> PointTerm::initial_history() const {
-  if (!can_be_damaged()) return {};
-  std::vector<double> history(bearable_->size() + 1, 1.0);
-  history.back() = 0.0;
-  return history;
 }
 
 double PointTerm::stored_bytes() const {
   const double points = double(bonds().points());
-  const double own = 8.0 * points * double(4 + (can_be_damaged() ? 3 : 0));
-  return own + (lattice_ ? bytes_of_forces() : 0.0);
+  const double own = 8.0 * points * double(4 + (failure_->can_fail() ? 3 : 0));
+  return own + (is_convolved() ? bytes_of_forces() : 0.0);
 }
 
 std::unique_ptr<TermPasses> PointTerm::passes(const TermSetting& setting) const {

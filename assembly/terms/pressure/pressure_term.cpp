@@ -164,7 +164,7 @@ double folded_entry(const Block& a, const Block& b, const Block& c, std::size_t 
 
 bool acts(const StateView& at) { return at.environment && !at.environment->pressure.empty(); }
 
-class PressurePasses : public TermPasses {
+class PressurePasses : public TermPasses, BlockTangent {
  public:
   PressurePasses(const PressureTerm& term, const TermSetting& setting)
       : term_(term), places_(setting.pattern.places_of(term.couplings())) {}
@@ -179,8 +179,10 @@ class PressurePasses : public TermPasses {
     add_pulls(at, -1.0, force);
   }
 
+  [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
+
   /// Projection removes the load stiffness, which has no definite part of its own.
-  void tangent(const StateView& at, double projection, Tangent& tangent, Write how) override {
+  void tangent(const StateView& at, Tangent& tangent, double projection, Write how) override {
     if (how == Write::over) tangent.clear();
     if (!acts(at)) return;
     const auto d = std::size_t(tangent.dimension);

@@ -13,7 +13,7 @@ namespace {
 void clear(std::span<double> result) { std::fill(result.begin(), result.end(), 0.0); }
 
 template <int D>
-class SimplexPasses : public TermPasses {
+class SimplexPasses : public TermPasses, BlockTangent {
  public:
   SimplexPasses(const SimplexTerm& term, const TermSetting& setting)
       : term_(term),
@@ -45,7 +45,9 @@ class SimplexPasses : public TermPasses {
     return found;
   }
 
-  void tangent(const StateView& at, double projection, Tangent& tangent, Write how) override {
+  [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
+
+  void tangent(const StateView& at, Tangent& tangent, double projection, Write how) override {
     if (tangent.blocks != Tangent::Blocks::whole) {
       throw std::logic_error("the blocks of triangles and tetrahedra are not symmetric");
     }
@@ -131,7 +133,7 @@ InteractionCount count_of(const Simplices<Measure>& kind) {
 
 }  // namespace
 
-SimplexTerm::SimplexTerm(std::shared_ptr<const BondTerm> bonds,
+SimplexTerm::SimplexTerm(std::shared_ptr<const BondFailure> bonds,
                          std::optional<Simplices<Area>> triangles,
                          std::optional<Simplices<Volume>> tetrahedra, PointNumbers numbers)
     : bonds_(std::move(bonds)),

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "assembly/terms/bonds/bond_term.hpp"
+#include "assembly/terms/failure/bond_failure.hpp"
 #include "assembly/terms/term.hpp"
 #include "src/neighbourhood/interactions.hpp"
 #include "src/potentials/potential.hpp"
@@ -36,10 +36,9 @@ class SimplexTerm : public Term {
   /// @param numbers from which projected tangents choose the same origin of arms on all ranks
   /// @throws std::logic_error for a negative constant if the bonds can be damaged: their loss would
   ///         then raise the energy without any supply
-  SimplexTerm(std::shared_ptr<const BondTerm> bonds, std::optional<Simplices<Area>> triangles,
+  SimplexTerm(std::shared_ptr<const BondFailure> bonds, std::optional<Simplices<Area>> triangles,
               std::optional<Simplices<Volume>> tetrahedra, PointNumbers numbers = {});
 
-  [[nodiscard]] const BondTerm& bond_term() const { return *bonds_; }
   [[nodiscard]] const Bonds& bonds() const { return bonds_->bonds(); }
   [[nodiscard]] const std::optional<Simplices<Area>>& triangles() const { return triangles_; }
   [[nodiscard]] const std::optional<Simplices<Volume>>& tetrahedra() const { return tetrahedra_; }
@@ -63,7 +62,7 @@ class SimplexTerm : public Term {
   [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
 
  private:
-  std::shared_ptr<const BondTerm> bonds_;
+  std::shared_ptr<const BondFailure> bonds_;
   std::optional<Simplices<Area>> triangles_;
   std::optional<Simplices<Volume>> tetrahedra_;
   PointNumbers numbers_;

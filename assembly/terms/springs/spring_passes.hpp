@@ -11,7 +11,7 @@ namespace peristat {
 /// convex: projection changes nothing.
 /// @tparam Springs has for_each(displacement, environment, visit), which calls visit(dof, k, u - g)
 template <class Springs>
-class SpringPasses : public TermPasses {
+class SpringPasses : public TermPasses, BlockTangent {
  public:
   SpringPasses(const Springs& springs, int dimension)
       : springs_(springs), dimension_(std::size_t(dimension)) {}
@@ -27,7 +27,9 @@ class SpringPasses : public TermPasses {
     return found;
   }
 
-  void tangent(const StateView& at, double, Tangent& tangent, Write how) override {
+  [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
+
+  void tangent(const StateView& at, Tangent& tangent, double, Write how) override {
     if (how == Write::over) tangent.clear();
     springs_.for_each(at.displacement, at.environment,
                       [&](std::size_t dof, double stiffness, double) {

@@ -18,12 +18,13 @@ namespace peristat {
 namespace {
 
 template <int D>
-class StatePasses : public TermPasses {
+class StatePasses : public TermPasses, BlockTangent {
  public:
   StatePasses(const StateTerm& term, const TermSetting& setting)
       : term_(term),
+        failure_(term.bond_failure()),
         slot_(setting.model.slot_of(term)),
-        stretches_(make_bond_passes(term, setting)),
+        stretches_(make_bond_passes(term.bond_failure(), setting)),
         points_(setting.points),
         index_map_(setting.index_map),
         pattern_(setting.pattern),
@@ -44,7 +45,7 @@ class StatePasses : public TermPasses {
                     History& history, std::span<double> gradient, Write how) override {
     const StateView now{displacement, history, Damage::grows, environment};
     // On all ranks: a bond that is damaged here may be counted by another rank.
-    if (!term_.can_fail() || !any_of_all(index_map_.ranks(), growth(now).degrading > 0)) {
+    if (!failure_.can_fail() || !any_of_all(index_map_.ranks(), growth(now).degrading > 0)) {
       return this->gradient(now, gradient, how);
     }
     const History before = history;
@@ -65,11 +66,13 @@ class StatePasses : public TermPasses {
   }
 
   DamageGrowth growth(const StateView& at) override {
-    return term_.can_fail() ? stretches_->growth(at) : DamageGrowth{};
+    return failure_.can_fail() ? stretches_->growth(at) : DamageGrowth{};
   }
 
+  [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
+
   /// @param projection changes nothing: Pi is convex
-  void tangent(const StateView& at, double /*projection*/, Tangent& tangent, Write how) override {
+  void tangent(const StateView& at, Tangent& tangent, double /*projection*/, Write how) override {
     if (tangent.blocks != Tangent::Blocks::whole) {
       throw std::logic_error("the blocks of states are not symmetric");
     }
@@ -102,12 +105,12 @@ class StatePasses : public TermPasses {
 
  private:
   void take_integrities(const StateView& at) {
-    if (!term_.can_fail()) return;
+    if (!failure_.can_fail()) return;
     const std::span<const double> stretch = at.history.of(slot_);
     if (stretch.size() < std::size_t(term_.bonds().count())) {
       throw std::logic_error("bonds that can be damaged are evaluated after their history");
     }
-    term_.with_damage_law([&](const auto& law) {
+    failure_.with_damage_law([&](const auto& law) {
       kernels_.scale([&](Offset bond) {
         return law.of_bond(bond).integrity_after(stretch[std::size_t(bond)]);
       });
@@ -122,7 +125,7 @@ class StatePasses : public TermPasses {
                                      const History& before) const {
     const std::span<const double> history = before.of(slot_);
     double sum = 0.0;
-    term_.with_damage_law([&](const auto& law) {
+    failure_.with_damage_law([&](const auto& law) {
       sum = kernels_.losses(displacement, remembered, [&](Index i, Offset bond, double stretch) {
         if (!counts_bond(points_, i, term_.bonds().partner[bond])) return 0.0;
         const double ratio = law.of_bond(bond).borne(history[std::size_t(bond)]) / stretch;
@@ -133,22 +136,11 @@ class StatePasses : public TermPasses {
   }
 
   [[nodiscard]] double dissipated_by_law(const History& history) const {
-    const std::span<const double> stretch = history.of(slot_);
-    const Bonds& bonds = term_.bonds();
-    double sum = 0.0;
-    term_.with_damage_law([&](const auto& law) {
-      for (Index i = 0; i < bonds.points(); ++i) {
-        for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-          if (!counts_bond(points_, i, bonds.partner[bond])) continue;
-          sum += bonds.weight(bond) * bonds.length(bond) *
-                 law.of_bond(bond).dissipated(stretch[std::size_t(bond)]);
-        }
-      }
-    });
-    return sum;
+    return failure_.dissipated_energy(history.of(slot_), &points_);
   }
 
   const StateTerm& term_;
+  const BondFailure& failure_;
   std::size_t slot_;
   std::unique_ptr<TermPasses> stretches_;  // damage of its bonds; their forces are unused
   const Points& points_;
@@ -161,7 +153,8 @@ class StatePasses : public TermPasses {
 
 StateTerm::StateTerm(std::shared_ptr<const Bonds> bonds, BondPotential potential,
                      std::vector<char> never_fails, StateShares shares, int threads)
-    : BondTerm(std::move(bonds), std::move(potential), std::move(never_fails)),
+    : failure_(std::make_shared<BondFailure>(std::move(bonds), std::move(potential),
+                                             std::move(never_fails))),
       shares_(std::move(shares)),
       network_(this->bonds(),
                std::ranges::any_of(shares_.constants,
@@ -192,7 +185,7 @@ double StateTerm::bound_over_blocks(int dimension) const {
 double StateTerm::stored_bytes() const {
   const double bonds = double(shares_.kernel.size()), points = double(shares_.moment.size());
   // Per bond kernel shares, twice once bonds can fail; per point moment, constants and results.
-  return BondTerm::stored_bytes() + network_.bytes() + 8.0 * bonds * (can_fail() ? 2.0 : 1.0) +
+  return failure_->bytes() + network_.bytes() + 8.0 * bonds * (failure_->can_fail() ? 2.0 : 1.0) +
          8.0 * points * (1.0 + 2.0 + 4.0);
 }
 

@@ -4,8 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "assembly/terms/bonds/bond_term.hpp"
+#include "assembly/terms/bonds/bond_count.hpp"
+#include "assembly/terms/failure/bond_failure.hpp"
 #include "assembly/terms/states/state_network.hpp"
+#include "assembly/terms/term.hpp"
 
 namespace peristat {
 
@@ -27,17 +29,19 @@ namespace peristat {
 /// and so do their moments about places in the reference, not in the present one.
 ///
 /// Bonds break as those of brittle bond models do, by their stretch in the deformed configuration,
-/// which the term remembers as a term of bonds. The energy that a commit removes at fixed
+/// see BondFailure. The energy that a commit removes at fixed
 /// displacements counts as dissipated, with what each bond held when it passed the stretch that it
 /// bears. The part that the bonds' law dissipates, with the network's modulus, is reported as
 /// dissipated by the law; the difference, of either sign, as released energy.
-class StateTerm : public BondTerm {
+class StateTerm : public Term {
  public:
   /// @param bonds uncut bonds, with the weights that dissipation by the law is computed with
   /// @throws std::logic_error for shares of other bonds or points
   StateTerm(std::shared_ptr<const Bonds> bonds, BondPotential potential,
             std::vector<char> never_fails, StateShares shares, int threads);
 
+  [[nodiscard]] const BondFailure& bond_failure() const { return *failure_; }
+  [[nodiscard]] const Bonds& bonds() const { return failure_->bonds(); }
   [[nodiscard]] const StateShares& shares() const { return shares_; }
   [[nodiscard]] const StateNetwork& network() const { return network_; }
 
@@ -47,13 +51,16 @@ class StateTerm : public BondTerm {
   [[nodiscard]] Couplings couplings() const override {
     return {network_.block_offset, network_.partner};
   }
-  [[nodiscard]] bool has_symmetric_blocks() const override { return false; }
-  [[nodiscard]] bool visits_rows() const override { return false; }
   [[nodiscard]] Balances balances() const override { return {true, false, true, true}; }
+  [[nodiscard]] std::shared_ptr<const FailureModel> failure() const override { return failure_; }
+  [[nodiscard]] std::vector<InteractionCount> counts() const override {
+    return {bond_count(bonds())};
+  }
   [[nodiscard]] double stored_bytes() const override;
   [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
 
  private:
+  std::shared_ptr<const BondFailure> failure_;
   StateShares shares_;
   StateNetwork network_;
 };

@@ -173,7 +173,7 @@ void print_constants(const Case& from, const Body& body, int threads) {
     print_fracture(formulation, material, from.regions.empty() ? "" : material.name, body.setting,
                    spacing);
   }
-  const BondTerm* const bonds = body.model.failing_bonds();
+  const BondFailure* const bonds = body.model.failing_bonds();
   const ToothedStrength teeth = bonds ? toothed_strength(bonds->potential()) : ToothedStrength();
   if (teeth.teeth > 0) fmt::print("saw-tooth   {}\n", description(teeth));
   if (const auto trapping = crack_trapping(of, body.points.dimension, body.points.spacing)) {
@@ -242,7 +242,7 @@ void print_pressures(const Body& body) {
 }
 
 const PointTerm* convolved(const Body& body) {
-  const auto* const term = dynamic_cast<const PointTerm*>(body.model.bond_term().get());
+  const auto* const term = body.model.find<PointTerm>();
   return term != nullptr && term->is_convolved() ? term : nullptr;
 }
 
@@ -271,8 +271,8 @@ void print_motion(const Case& from, const Body& body, const StudyOptions& option
 }
 
 Offset count_of_bonds(const Body& body) {
-  const PointTerm* const term = convolved(body);
-  return term ? term->count() : weighted_bonds(body.model.bonds());
+  return convolved(body) ? body.model.failure().count_of_bonds()
+                         : weighted_bonds(body.model.bonds());
 }
 
 NeighbourCounts neighbours_of(const Body& body) {
@@ -281,7 +281,7 @@ NeighbourCounts neighbours_of(const Body& body) {
   const std::vector<std::int32_t> of_point = term->counts().front().per_point;
   const auto [least, most] = std::ranges::minmax(of_point);
   return {least, most, Index(std::ranges::count(of_point, 0)),
-          2.0 * double(term->count()) / double(of_point.size())};
+          2.0 * double(count_of_bonds(body)) / double(of_point.size())};
 }
 
 }  // namespace

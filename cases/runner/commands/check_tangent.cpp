@@ -189,7 +189,7 @@ void steepen(const std::vector<double>& gradient, double size, std::vector<doubl
 double keep_off_kinks(const Body& body, const std::vector<double>& displacement,
                       const std::vector<double>& gradient, std::vector<double>& direction,
                       double largest_step) {
-  const BondTerm* const failing = body.model.failing_bonds();
+  const BondFailure* const failing = body.model.failing_bonds();
   if (!failing) return largest_step;
   steepen(gradient, body.points.spacing, direction);
   const auto range_of = [&](Offset bond) {
@@ -297,8 +297,9 @@ double relative_moment_sum(const Points& points, const std::vector<double>& disp
 
 std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler,
                                               const Constraints& constraints) {
-  if (!assembler.has_potential()) return std::make_unique<RowsOfEnergy>(assembler);
-  if (!assembler.has_rows()) return make_convolved_tangent(assembler, constraints);
+  const TangentKind kind = assembler.tangent_kind();
+  if (kind == TangentKind::products) return make_convolved_tangent(assembler, constraints);
+  if (kind == TangentKind::rows) return std::make_unique<RowsOfEnergy>(assembler);
   if (constraints.none()) return std::make_unique<Tangent>(assembler);
   return std::make_unique<ConstrainedTangent>(assembler, constraints);
 }

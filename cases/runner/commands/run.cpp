@@ -180,7 +180,7 @@ class CaseRun {
 
   void tell_size() {
     const std::int64_t bonds =
-        numbering_ ? summary_.counted("bonds") : body_->model.count_of_bonds();
+        numbering_ ? summary_.counted("bonds") : body_->model.failure().count_of_bonds();
     const std::string of_ranks =
         numbering_ ? fmt::format("{} ranks with {} threads each", ranks_.count(), options_.threads)
                    : fmt::format("{} threads", options_.threads);
@@ -255,7 +255,7 @@ class CaseRun {
       progress_.say(fmt::format("linear solver: {}{} ({})", equations.solver().describe(),
                                 equations.systems().is_stored ? "" : ", tangent matrix-free",
                                 equations.systems().chosen.reason));
-    if (const BondTerm* bonds = body_->model.failing_bonds()) {
+    if (const BondFailure* bonds = body_->model.failing_bonds()) {
       const ToothedStrength teeth = toothed_strength(bonds->potential());
       if (teeth.teeth > 0) progress_.say("damage law: a saw-tooth of " + description(teeth));
     }

@@ -61,12 +61,12 @@ std::vector<Preflight::Division> divisions_of(const Lattice& lattice) {
 
 /// All bonds of a body; null if a convolved body has too many to find them for this.
 std::shared_ptr<const Bonds> network_of(const Body& body) {
-  const auto* const term = dynamic_cast<const PointTerm*>(body.model.bond_term().get());
+  const auto* const term = body.model.find<PointTerm>();
   if (term == nullptr || !term->is_convolved()) {
     return {std::shared_ptr<const Bonds>(), &body.model.bonds()};
   }
   constexpr Offset most = 5'000'000;  // some seconds
-  return term->count() > most ? nullptr : whole_network(body.model);
+  return body.model.failure().count_of_bonds() > most ? nullptr : whole_network(body.model);
 }
 
 /// Number of bonds that bridge a narrow shape: the part of a bond in the shape is at least as long

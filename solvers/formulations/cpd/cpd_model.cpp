@@ -255,7 +255,7 @@ MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds) {
   }
   if (triangles || tetrahedra) {
     model.add(std::make_shared<SimplexTerm>(
-        model.bond_term(), std::move(triangles), std::move(tetrahedra),
+        model.bond_failure(), std::move(triangles), std::move(tetrahedra),
         index_map.is_whole() ? PointNumbers() : numbers_of(index_map, points)));
   }
   return {std::move(model), std::move(cut)};

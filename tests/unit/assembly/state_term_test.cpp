@@ -65,7 +65,7 @@ struct StateBody {
     }
     term = std::make_shared<StateTerm>(std::make_shared<const Bonds>(std::move(bonds)), potential,
                                        std::vector<char>(), std::move(shares), threads);
-    model = Model(std::shared_ptr<BondTerm>(term));
+    model = Model(term);
   }
 
   [[nodiscard]] std::size_t dofs() const { return points.reference.size(); }
@@ -296,7 +296,7 @@ TEST(States, OfCollocationsSharesAreItsOperatorInsideALattice) {
     constants->mu.push_back(0.9);
     shares.constants.push_back({1.7, 0.9});
   }
-  const Model model(std::shared_ptr<BondTerm>(
+  const Model model(std::shared_ptr<Term>(
       std::make_shared<StateTerm>(std::make_shared<const Bonds>(bonds), Harmonic{1.0},
                                   std::vector<char>(), std::move(shares), 1)));
   Assembler states(body.points, model, 1);
@@ -429,7 +429,7 @@ TEST(States, WithBrokenBondsAreThoseOfACutBody) {
   }
   ASSERT_LT(kernel.size(), stretches.size());
   shares.kernel = kernel;
-  const Model cut(std::shared_ptr<BondTerm>(
+  const Model cut(std::shared_ptr<Term>(
       std::make_shared<StateTerm>(std::make_shared<const Bonds>(std::move(left)), Harmonic{1.0},
                                   std::vector<char>(), std::move(shares), 1)));
   Assembler of_cut(body.points, cut, 1);

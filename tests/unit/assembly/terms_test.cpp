@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "assembly/assembler.hpp"
+#include "assembly/terms/bonds/bond_term.hpp"
 #include "assembly/terms/model.hpp"
 #include "tests/bodies.hpp"
 
@@ -38,7 +39,7 @@ class Foundation : public Term {
   std::vector<Offset> no_rows_;
 };
 
-class FoundationPasses : public TermPasses {
+class FoundationPasses : public TermPasses, BlockTangent {
  public:
   FoundationPasses(double stiffness, int dimension) : k_(stiffness), d_(dimension) {}
 
@@ -51,7 +52,8 @@ class FoundationPasses : public TermPasses {
     }
     return found;
   }
-  void tangent(const StateView&, double, Tangent& tangent, Write how) override {
+  [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
+  void tangent(const StateView&, Tangent& tangent, double, Write how) override {
     if (how == Write::over) tangent.clear();
     const auto d = std::size_t(d_);
     for (std::size_t k = 0; k < tangent.diagonal.size(); ++k) {
@@ -119,7 +121,7 @@ class PointState : public Term {
   std::vector<Index> partner_;
 };
 
-class PointStatePasses : public TermPasses {
+class PointStatePasses : public TermPasses, BlockTangent {
  public:
   PointStatePasses(const PointState& term, const TermSetting& setting)
       : term_(term),
@@ -145,7 +147,8 @@ class PointStatePasses : public TermPasses {
     return found;
   }
 
-  void tangent(const StateView& at, double, Tangent& tangent, Write how) override {
+  [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
+  void tangent(const StateView& at, Tangent& tangent, double, Write how) override {
     if (how == Write::over) tangent.clear();
     for_each_entry(at, [&](std::size_t row, std::size_t column, double value) {
       const std::size_t a = row / d_, b = column / d_, r = row % d_, c = column % d_;
@@ -225,6 +228,74 @@ std::unique_ptr<TermPasses> PointState::passes(const TermSetting& setting) const
   return std::make_unique<PointStatePasses>(*this, setting);
 }
 
+/// Forces without a potential: every point pulls the one before it, dE/dx_i = k (u_i - u_(i+1)) for
+/// energies that there are not. Couples nothing in blocks.
+class Chase : public Term {
+ public:
+  Chase(double stiffness, Index points) : stiffness_(stiffness), no_rows_(points + 1, 0) {}
+
+  [[nodiscard]] Couplings couplings() const override { return {no_rows_, {}}; }
+  [[nodiscard]] TangentKind tangent_kind() const override { return TangentKind::rows; }
+  [[nodiscard]] Balances balances() const override { return {.potential = false}; }
+  [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
+
+ private:
+  double stiffness_;
+  std::vector<Offset> no_rows_;
+};
+
+class ChasePasses : public TermPasses, RowOperator {
+ public:
+  ChasePasses(double stiffness, const Points& points)
+      : k_(stiffness), d_(std::size_t(points.dimension)), dofs_(points.reference.size()) {}
+
+  Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
+    product(at, at.displacement, 0.0, gradient, how);
+    return {};
+  }
+  [[nodiscard]] TangentForms forms() override { return {.rows = this, .products = this}; }
+  void product(const StateView&, std::span<const double> v, double, std::span<double> product,
+               Write how) override {
+    begin(how, product);
+    for (std::size_t row = 0; row < product.size(); ++row) {
+      product[row] += k_ * (v[row] - v[next(row)]);
+    }
+  }
+  [[nodiscard]] SparseRows rows(const StateView&, RowReach) override {
+    SparseRows made{{0}, {}, {}};
+    for (std::size_t row = 0; row < dofs_; ++row) {
+      const bool is_last = next(row) < row;
+      for (const bool is_own : {!is_last, is_last}) {
+        made.column.push_back(Index(is_own ? row : next(row)));
+        made.value.push_back(is_own ? k_ : -k_);
+      }
+      made.offset.push_back(Offset(made.column.size()));
+    }
+    return made;
+  }
+  [[nodiscard]] double bytes_of_rows() const override { return 1.0; }
+  void outline(const StateView&, std::span<double> diagonal, std::span<double> sums) override {
+    for (std::size_t row = 0; row < dofs_; ++row) {
+      diagonal[row * d_ + row % d_] += k_;
+      sums[row] += 2.0 * k_;
+    }
+  }
+  [[nodiscard]] LatticeStencil stencil(const StateView&) override { return {}; }
+  void point_energies(const StateView&, std::span<double> energies, Write how) override {
+    begin(how, energies);
+  }
+
+ private:
+  [[nodiscard]] std::size_t next(std::size_t row) const { return (row + d_) % dofs_; }
+
+  double k_;
+  std::size_t d_, dofs_;
+};
+
+std::unique_ptr<TermPasses> Chase::passes(const TermSetting& setting) const {
+  return std::make_unique<ChasePasses>(stiffness_, setting.points);
+}
+
 /// A body with triangles whose energy comes from terms of several kinds, in different orders.
 struct Composed {
   BoxBody body;
@@ -234,12 +305,12 @@ struct Composed {
   Composed(int dimension, const std::string& order) : body(box(dimension)), terms(order) {
     model = Model(body.model.bonds());
     const auto scale = std::visit([](const auto& law) { return law.modulus; }, body.potential());
-    auto bonds = std::make_shared<BondTerm>(std::make_shared<const Bonds>(body.model.bonds()),
-                                            body.potential());
+    const auto bonds = body.model.bond_failure();
     for (const char kind : order) {
-      if (kind == 'b') model.add(bonds);
+      if (kind == 'b') model.add(std::make_shared<BondTerm>(bonds));
       if (kind == 'f') model.add(std::make_shared<Foundation>(1e-7 * scale, body.points.count()));
       if (kind == 's') model.add(std::make_shared<PointState>(1e-5 * scale, body.model.bonds()));
+      if (kind == 'c') model.add(std::make_shared<Chase>(1e-5 * scale, body.points.count()));
       if (kind == 't') {
         model.add(std::make_shared<SimplexTerm>(bonds, body.simplex_term()->triangles(),
                                                 body.simplex_term()->tetrahedra()));
@@ -314,6 +385,41 @@ INSTANTIATE_TEST_SUITE_P(Orders, Terms,
                                   std::get<1>(tested.param);
                          });
 
+class Rows : public ::testing::TestWithParam<std::string> {};
+
+// Rows of all terms are added, whether these have rows, blocks or diagonal blocks alone.
+TEST_P(Rows, AreThoseOfAllTerms) {
+  const Composed composed(2, GetParam());
+  const BoxBody& body = composed.body;
+  const std::vector<double> state = body.random_state(3);
+  const std::vector<double> v = tests::Random(4).vector(body.dofs());
+  Assembler assembler(body.points, composed.model, 2);
+  const SparseRows rows = assembler.rows(state, RowReach::whole);
+  std::vector<double> diagonal(2 * body.dofs()), sums(body.dofs()), product(body.dofs());
+  assembler.outline(state, diagonal, sums);
+  assembler.product(state, v, product);
+  ASSERT_EQ(std::size_t(rows.rows()), body.dofs());
+  std::vector<double> found(body.dofs());
+  for (std::size_t row = 0; row < found.size(); ++row) {
+    double sum = 0.0;
+    for (auto k = std::size_t(rows.offset[row]); k < std::size_t(rows.offset[row + 1]); ++k) {
+      const auto column = std::size_t(rows.column[k]);
+      if (k > std::size_t(rows.offset[row])) {
+        EXPECT_GT(rows.column[k], rows.column[k - 1]);
+      }
+      found[row] += rows.value[k] * v[column];
+      sum += std::abs(rows.value[k]);
+      if (column / 2 != row / 2) continue;
+      EXPECT_NEAR(rows.value[k], diagonal[2 * row + column % 2], 1e-13 * sums[row]);
+    }
+    EXPECT_LE(sum, sums[row] * (1.0 + 1e-13));
+  }
+  EXPECT_LE(distance(product, found), 1e-13 * norm(product));
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, Rows, ::testing::Values("c", "cf", "fc", "cc", "cb", "bsc", "b"),
+                         [](const auto& tested) { return tested.param; });
+
 TEST(ModelOfTerms, HasThePatternOfAllOfThem) {
   const Composed bonds(2, "b"), both(2, "bt"), wide(2, "bs"), none(2, "f");
   const Couplings rows = bonds.model.bonds();
@@ -340,8 +446,9 @@ TEST(ModelOfTerms, OwesWhatEachOfThemDoes) {
   EXPECT_TRUE(Composed(2, "bt").model.balances().moment_sum);
   EXPECT_FALSE(Composed(2, "bs").model.balances().moment_sum);
   EXPECT_FALSE(Composed(2, "bf").model.balances().force_sum);
-  EXPECT_TRUE(Composed(2, "b").model.visits_rows());
-  EXPECT_FALSE(Composed(2, "bf").model.visits_rows());
+  EXPECT_EQ(Composed(2, "b").model.tangent_kind(), TangentKind::visited);
+  EXPECT_EQ(Composed(2, "bf").model.tangent_kind(), TangentKind::stored);
+  EXPECT_EQ(Composed(2, "cb").model.tangent_kind(), TangentKind::rows);
   EXPECT_TRUE(Composed(2, "bf").model.has_symmetric_blocks());
   EXPECT_FALSE(Composed(2, "bt").model.has_symmetric_blocks());
 }

@@ -97,7 +97,7 @@ TEST(LinearSolid, IsTheEnergyOfStatesWithMomentsOfTheNeighboursThatAreThere) {
     shares.moment = moments_of(body.points, *bonds, shares.kernel);
     const LinearSolid::Setting setting = setting_of(body);
     shares.constants.assign(body.count(), setting.constants);
-    const Model model(std::shared_ptr<BondTerm>(std::make_shared<StateTerm>(
+    const Model model(std::shared_ptr<Term>(std::make_shared<StateTerm>(
         bonds, BondPotential(Harmonic{1.0}), std::vector<char>(), shares, 1)));
     Assembler assembler(body.points, model, 1);
     LinearSolid solid = solid_of(body);

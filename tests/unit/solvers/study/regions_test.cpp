@@ -48,8 +48,8 @@ TEST(Regions, OfOneMaterialAreThatBodyToTheLastBit) {
   parts.regions = {{"low", of.material}, {"high", of.material}};
   const auto joined = make_body(bar(), parts, 1);
   ASSERT_EQ(whole->model.bonds().count(), joined->model.bonds().count());
-  EXPECT_EQ(whole->model.bond_term()->potential().index(),
-            joined->model.bond_term()->potential().index());
+  EXPECT_EQ(whole->model.bond_failure()->potential().index(),
+            joined->model.bond_failure()->potential().index());
   for (Offset bond = 0; bond < whole->model.bonds().count(); ++bond) {
     EXPECT_EQ(whole->model.bonds().weight(bond), joined->model.bonds().weight(bond));
   }
@@ -103,7 +103,7 @@ TEST(Regions, BondsWithoutALawDoNotFail) {
   BodySpecification of = of_two(2.0, 6.0);
   of.regions[1].material.damage = {DamageLaw::critical_stretch, 0.0, 0.02};
   const auto body = make_body(bar(), of, 1);
-  const std::vector<double> history = body->model.bond_term()->initial_history();
+  const std::vector<double> history = body->model.bond_failure()->initial_history();
   const Bonds& bonds = body->model.bonds();
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
@@ -123,7 +123,7 @@ TEST(Regions, BlendedLawsOfTwoFractureEnergiesAreAlike) {
     of.regions[1].material.damage.fracture_energy = energy;
     const auto body = make_body(bar(), of, 1);
     const auto& law =
-        *std::get<DegradedByBond<Harmonic>>(body->model.bond_term()->potential()).laws;
+        *std::get<DegradedByBond<Harmonic>>(body->model.bond_failure()->potential()).laws;
     const Bonds& bonds = body->model.bonds();
     double low = 0.0, high = 0.0, between = 0.0;
     for (Index i = 0; i < bonds.points(); ++i) {

@@ -40,9 +40,7 @@ Points points_of(const tests::BoxSetting& box) {
   return points;
 }
 
-const StateTerm& states_of(const Body& body) {
-  return dynamic_cast<const StateTerm&>(*body.model.bond_term());
-}
+const StateTerm& states_of(const Body& body) { return *body.model.find<StateTerm>(); }
 
 TEST(StateModel, MemoryCountsTheBlocksOfItsTangent) {
   const auto body = make_body(points_of(plate()), solid(), 1);

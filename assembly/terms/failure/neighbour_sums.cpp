@@ -1,4 +1,4 @@
-#include "assembly/terms/points/neighbour_sums.hpp"
+#include "assembly/terms/failure/neighbour_sums.hpp"
 
 #include <algorithm>
 #include <array>
