@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "cases/runner/setup/find_boundary.hpp"
-#include "cases/runner/setup/probe_places.hpp"
+#include "solvers/observe/probe_places.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/ranks/agree_on_kinds.hpp"
 #include "solvers/study/bond_materials.hpp"
@@ -93,7 +93,7 @@ Points make_points_of(const Case& from) {
       const std::string table = "set[" + std::to_string(k) + "]";
       errors_in_table(table, [&] { add_set(points, rule); });
     }
-    require_places_of_probes(from, RecordedPoints(points));
+    require_places_of_probes(from.probes, RecordedPoints(points));
     return points;
   });
 }

@@ -1,11 +1,10 @@
-#include "cases/runner/results/line_probe.hpp"
+#include "solvers/observe/line_probe.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <utility>
 
-#include "cases/runner/results/probe.hpp"
-#include "solvers/observe/point_fields.hpp"
+#include "solvers/observe/probe.hpp"
 #include "src/parallel/collectives.hpp"
 
 namespace peristat {
@@ -28,26 +27,7 @@ LineProbe::LineProbe(const ProbeSpecification& probe, const RecordedPoints& poin
       points_(points),
       places_(points_on_line(points.points(), *probe.from, *probe.to, points.count())) {}
 
-LineTable LineProbe::table() const {
-  using Kind = Column::Kind;
-  LineTable table{
-      probe_.name,
-      {{Kind::integer, "step", "1", "number of the accepted step"},
-       {Kind::number, "load_factor", "1", "load factor of the step"},
-       {Kind::integer, "point", "1", "number of the point"},
-       {Kind::number, "distance", "m", "distance of the point from the start, along the line"}}};
-  for (int c = 0; c < points_.dimension(); ++c) {
-    table.columns.push_back({Kind::number, {"xyz"[c]}, "m", "reference position of the point"});
-  }
-  const PointField& field = *point_field(probe_.field);
-  for (const std::string& component : chosen_components(probe_, points_.dimension())) {
-    const std::string name = component.empty() ? field.name : field.name + "_" + component;
-    table.columns.push_back({Kind::number, name, field.unit, name + " of the point"});
-  }
-  return table;
-}
-
-std::vector<Row> LineProbe::rows(const StepRecord& record, const StepFields& fields) const {
+std::vector<LineValues> LineProbe::values(const PointValues& fields) const {
   const auto d = std::size_t(points_.dimension());
   const std::size_t width = 2 + d + chosen_components(probe_, points_.dimension()).size();
   std::vector<double> mine;  // distance, number, position, values
@@ -59,14 +39,15 @@ std::vector<Row> LineProbe::rows(const StepRecord& record, const StepFields& fie
     mine.insert(mine.end(), values.begin(), values.end());
   }
   const std::vector<double> all = concatenated(points_.ranks(), mine);
-  std::vector<Row> rows;
+  std::vector<LineValues> line;
   for (const std::size_t first : in_order(all, width)) {
     const auto of_point = all.begin() + std::ptrdiff_t(first);
-    Row row{std::int64_t{record.step}, record.load_factor, std::int64_t(of_point[1]), of_point[0]};
-    row.insert(row.end(), of_point + 2, of_point + std::ptrdiff_t(width));
-    rows.push_back(std::move(row));
+    const auto values = of_point + 2 + std::ptrdiff_t(d);
+    line.push_back(
+        {std::int64_t(of_point[1]), of_point[0], {}, {values, of_point + std::ptrdiff_t(width)}});
+    std::copy(of_point + 2, values, line.back().reference.begin());
   }
-  return rows;
+  return line;
 }
 
 }  // namespace peristat
