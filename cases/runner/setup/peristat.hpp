@@ -4,6 +4,7 @@
 
 #include "cases/runner/setup/body.hpp"
 #include "cases/runner/setup/solver_options.hpp"
+#include "solvers/observe/internal_force.hpp"
 #include "solvers/observe/line_probe.hpp"
 #include "solvers/observe/probe.hpp"
 #include "solvers/observe/separated_bonds.hpp"
