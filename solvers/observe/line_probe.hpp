@@ -6,7 +6,6 @@
 #include "solvers/observe/point_fields.hpp"
 #include "solvers/observe/probe_specification.hpp"
 #include "solvers/observe/recorded_points.hpp"
-#include "src/geometry/points_on_line.hpp"
 
 namespace peristat {
 
@@ -18,20 +17,10 @@ struct LineValues {
   std::vector<double> values;  ///< one per chosen component
 };
 
-/// Points of a body along a probe's line, in their order. Probe and points must outlive it.
-class LineProbe {
- public:
-  LineProbe(const ProbeSpecification& probe, const RecordedPoints& points);
-
-  [[nodiscard]] const ProbeSpecification& probe() const { return probe_; }
-  /// The points of all ranks. Collective.
-  /// @param fields of the points that are recorded here: the probe's
-  [[nodiscard]] std::vector<LineValues> values(const PointValues& fields) const;
-
- private:
-  const ProbeSpecification& probe_;
-  const RecordedPoints& points_;
-  std::vector<PointOnLine> places_;  // of this rank
-};
+/// Values of a probe at all points along its line, of all ranks, in their order. Collective.
+/// @param fields of the points that are recorded here: the probe's
+[[nodiscard]] std::vector<LineValues> line_values(const ProbeSpecification& probe,
+                                                  const RecordedPoints& points,
+                                                  const PointValues& fields);
 
 }  // namespace peristat

@@ -16,12 +16,12 @@
 
 namespace peristat {
 
-/// What fields depend on besides the displacement and the history of a state.
+/// What fields depend on besides the displacement and the history of a state. Views must outlive
+/// the observation.
 struct ObservedExtras {
   std::vector<double> force{};            ///< see internal_force; may have more points [N]
   std::span<const std::int32_t> piece{};  ///< per point, see Fragments; empty: none floats
   std::span<const double> velocity{};     ///< of a body in motion, per degree of freedom [m/s]
-  std::span<const double> density{};      ///< densities_of the body, if known [kg/m3]
   bool count_cracks = false;              ///< bonds that a pre-crack has cut count as damage
 };
 
@@ -32,8 +32,8 @@ class Observation {
  public:
   /// All arguments but the extras must outlive this object.
   Observation(const Body& body, Assembler& assembler, const StateView& at, ObservedExtras extras);
-  /// Observes a state of a body at rest, such as StudyResult::state. The body must outlive this
-  /// object.
+  /// Observes a state of a body at rest, such as StudyResult::state; pieces that float are not
+  /// searched. The body must outlive this object.
   /// @param threads 0: as many as OpenMP takes by itself
   Observation(const Body& body, const State& state, int threads = 0);
   ~Observation();
@@ -46,7 +46,7 @@ class Observation {
   [[nodiscard]] const std::vector<double>& values(const std::string& field);
   /// All values that have been computed.
   [[nodiscard]] const PointValues& computed() const { return values_; }
-  /// Moves them out.
+  /// Moves them out; no values can be asked for afterwards.
   [[nodiscard]] PointValues release() { return std::move(values_); }
 
   [[nodiscard]] const Body& body() const { return body_; }
@@ -66,7 +66,7 @@ class Observation {
 
  private:
   struct Owned;  // of a state without an assembler
-  explicit Observation(const Body& body, std::unique_ptr<Owned> owned);
+  Observation(const Body& body, std::unique_ptr<Owned> owned);
 
   std::unique_ptr<Owned> owned_;
   const Body& body_;

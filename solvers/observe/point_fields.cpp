@@ -93,9 +93,7 @@ std::vector<double> lacking(Observation& in) {
 std::vector<double> kinetic_energy_density(Observation& in) {
   const auto d = std::size_t(in.points().dimension());
   const std::vector<double>& velocity = in.values("velocity");
-  std::vector<double> own;
-  if (in.extras().density.empty()) own = densities_of(in.body());
-  const std::span<const double> density = own.empty() ? in.extras().density : own;
+  const std::vector<double> density = densities_of(in.body());
   std::vector<double> energy(std::size_t(in.points().count()));
   for (std::size_t k = 0; k < velocity.size(); ++k) {
     energy[k / d] += 0.5 * density[k / d] * velocity[k] * velocity[k];

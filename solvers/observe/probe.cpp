@@ -168,27 +168,29 @@ std::vector<double> at_place(const ProbeSpecification& probe, const RecordedPoin
 
 /// Refuses what a case file's keys refuse (output_keys.cpp).
 void require_answer(const ProbeSpecification& probe, const RecordedPoints& points) {
+  const auto require = [](bool holds, const char* key, const std::string& value,
+                          const char* allowed) {
+    if (!holds) throw InputError(key, value, allowed);
+  };
+  const auto is_set = [&](const std::string& name) { return points.points().sets.contains(name); };
   const PointField* const field = point_field(probe.field);
-  if (field == nullptr &&
-      std::ranges::find(fields_of_whole_sets(), probe.field) == fields_of_whole_sets().end()) {
-    throw InputError("field", '"' + probe.field + '"', "no field of this name");
-  }
-  if (!probe.at && !points.points().sets.contains(probe.set)) {
-    throw InputError("set", '"' + probe.set + '"', "no set of this name");
-  }
-  if (probe.axis < 0 || probe.axis >= points.dimension()) {
-    throw InputError("axis", std::to_string(probe.axis), "must be an axis of the body");
-  }
+  const int d = points.dimension();
+  require(field != nullptr || std::ranges::count(fields_of_whole_sets(), probe.field) > 0, "field",
+          '"' + probe.field + '"', "no field of this name");
+  require((probe.at && field != nullptr) || is_set(probe.set), "set", '"' + probe.set + '"',
+          "no set of this name");
+  require(probe.field != "opening" || is_set(probe.other), "other", '"' + probe.other + '"',
+          "no set of this name");
+  require(probe.axis >= 0 && probe.axis < d, "axis", std::to_string(probe.axis),
+          "must be an axis of the body");
+  require(probe.field != "crack_angle" || d == 2, "field", probe.field, "is for dimension 2");
   require_places_of_probes({&probe, 1}, points);
   if (field == nullptr) return;
-  const std::vector<std::string> names = field->components(points.dimension());
-  if (!probe.component.empty() && std::ranges::find(names, probe.component) == names.end()) {
-    throw InputError("component", '"' + probe.component + '"', "is none of the field's");
-  }
-  if (is_of_error(probe.statistic) &&
-      probe.expected.size() != chosen_components(probe, points.dimension()).size()) {
-    throw InputError("expected", "", "needs as many expressions as there are components");
-  }
+  require(probe.component.empty() || std::ranges::count(field->components(d), probe.component) > 0,
+          "component", '"' + probe.component + '"', "is none of the field's");
+  require(
+      !is_of_error(probe.statistic) || probe.expected.size() == chosen_components(probe, d).size(),
+      "expected", "", "needs as many expressions as there are components");
 }
 
 }  // namespace

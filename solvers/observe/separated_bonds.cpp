@@ -30,8 +30,6 @@ std::span<const BondEnds> SeparatedBonds::add_broken(const History& history) {
   return std::span(ends_).subspan(before);
 }
 
-CrackState SeparatedBonds::cracks() const { return {ends_, cut_, 0.0, 0.0, {}, points_.ranks()}; }
-
 CrackState SeparatedBonds::cracks(const StepRecord& record, const CrackGrowth& before) const {
   return {ends_,
           cut_,

@@ -21,10 +21,10 @@ class SeparatedBonds {
   std::span<const BondEnds> add_broken(const History& history);
 
   /// State of the cracks, for crack measures.
-  [[nodiscard]] CrackState cracks() const;
-  /// The same with the energies of an accepted step.
+  /// @param record of the state, whose energies work_of_fracture and crack_resistance need
   /// @param before when the area through the probe's set last grew, for crack_resistance
-  [[nodiscard]] CrackState cracks(const StepRecord& record, const CrackGrowth& before = {}) const;
+  [[nodiscard]] CrackState cracks(const StepRecord& record = {},
+                                  const CrackGrowth& before = {}) const;
 
  private:
   const Body& body_;

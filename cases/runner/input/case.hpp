@@ -133,9 +133,6 @@ struct Case : BodySpecification {
   std::map<std::string, CaseLocation> locations;
 };
 
-/// True if the probe needs strain or stress.
-[[nodiscard]] bool needs_stress(const ProbeSpecification& probe);
-
 /// True if the results or a probe of the case contain strain or stress.
 [[nodiscard]] bool tells_stress(const Case& from);
 

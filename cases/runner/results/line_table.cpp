@@ -24,10 +24,10 @@ LineTable line_table(const ProbeSpecification& probe, int dimension) {
   return table;
 }
 
-std::vector<Row> line_rows(const LineProbe& line, int dimension, const StepRecord& record,
-                           const PointValues& fields) {
+std::vector<Row> line_rows(const std::vector<LineValues>& line, int dimension,
+                           const StepRecord& record) {
   std::vector<Row> rows;
-  for (const LineValues& at : line.values(fields)) {
+  for (const LineValues& at : line) {
     Row row{std::int64_t{record.step}, record.load_factor, at.point, at.distance};
     row.insert(row.end(), at.reference.begin(), at.reference.begin() + dimension);
     row.insert(row.end(), at.values.begin(), at.values.end());

@@ -17,8 +17,8 @@ struct LineTable {
 
 /// step, load_factor, point, distance from the begin of the line, x, y, z, and the values.
 [[nodiscard]] LineTable line_table(const ProbeSpecification& probe, int dimension);
-/// A row per point, of all ranks. Collective.
-[[nodiscard]] std::vector<Row> line_rows(const LineProbe& line, int dimension,
-                                         const StepRecord& record, const PointValues& fields);
+/// A row per point.
+[[nodiscard]] std::vector<Row> line_rows(const std::vector<LineValues>& line, int dimension,
+                                         const StepRecord& record);
 
 }  // namespace peristat

@@ -34,7 +34,6 @@ void Recorder::iteration(const IterationRecord& record) {
 }
 
 Recorder::Fields Recorder::fields(const StateView& at, ObservedExtras extras) const {
-  extras.density = density_;
   extras.count_cracks = case_.output.count_cracks;
   Observation observed(body_, assembler_, at, std::move(extras));
   Fields made;
@@ -84,9 +83,10 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   add_motion_values(record, points_.dimension, record.probes);
   const bool is_at_rest =
       record.step == 0 && !record.motion && !moves(made.values.at("displacement"));
-  for (const LineProbe& line : lines_) {
-    if (is_at_rest) continue;
-    results_.add_line(line.probe().name, line_rows(line, points_.dimension, record, made.values));
+  for (const ProbeSpecification& probe : case_.probes) {
+    if (is_at_rest || !probe.from) continue;
+    const std::vector<LineValues> line = line_values(probe, recorded_, made.values);
+    results_.add_line(probe.name, line_rows(line, points_.dimension, record));
   }
   const bool write_fields = record.step % case_.output.every == 0 && !is_at_rest;
   const StepFields none;

@@ -11,12 +11,9 @@
 #include "cases/runner/results/results.hpp"
 #include "cases/runner/setup/body.hpp"
 #include "solvers/drivers/load_stepping.hpp"
-#include "solvers/observe/line_probe.hpp"
 #include "solvers/observe/probe.hpp"
-#include "solvers/observe/recorded_points.hpp"
 #include "solvers/observe/separated_bonds.hpp"
 #include "solvers/study/crack_tips.hpp"
-#include "solvers/study/motion.hpp"
 
 namespace peristat {
 
@@ -34,12 +31,7 @@ class Recorder {
         progress_(progress),
         body_(body),
         crack_tips_(crack_tips),
-        separated_(body) {
-    if (from.dynamics.is_asked_for) density_ = densities_of(body);
-    for (const ProbeSpecification& probe : from.probes) {
-      if (probe.from) lines_.emplace_back(probe, recorded_);
-    }
-  }
+        separated_(body) {}
 
   /// Restores its state at the time of the checkpoint.
   void go_on(const Checkpoint& checkpoint, const EarlierResults& earlier,
@@ -89,8 +81,6 @@ class Recorder {
   const std::vector<CrackTip>& crack_tips_;
   std::optional<StepFields> unwritten_;  // of the last step, if it only entered the history
   DamageHistories written_histories_;    // in the last state that was written with fields
-  std::vector<double> density_;          // per point, of a body in motion [kg/m3]
-  std::vector<LineProbe> lines_;
   SeparatedBonds separated_;
   std::map<std::string, CrackGrowth> growth_;  // per probe of crack_resistance
   double relative_residual_ = 0.0;

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "cases/runner/setup/find_boundary.hpp"
-#include "solvers/observe/probe_places.hpp"
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/observe/probe_places.hpp"
 #include "solvers/ranks/agree_on_kinds.hpp"
 #include "solvers/study/bond_materials.hpp"
 #include "solvers/study/linear_model.hpp"

@@ -85,8 +85,7 @@ TEST_F(UniformStrain, IsReadAtPlacesAndAlongLines) {
   probe.at.reset();
   probe.from = Coordinates{-0.8, 0.05, 0.0};
   probe.to = Coordinates{0.8, 0.05, 0.0};
-  const std::vector<LineValues> line =
-      LineProbe(probe, observed.points()).values(observed.computed());
+  const std::vector<LineValues> line = line_values(probe, observed.points(), observed.computed());
   ASSERT_EQ(line.size(), 16u);
   for (const LineValues& point : line) {
     EXPECT_NEAR(point.reference[0], point.distance - 0.8, 1e-12);
@@ -143,6 +142,8 @@ TEST_F(UniformStrain, RefusesProbesThatItCannotAnswer) {
   EXPECT_EQ(refused_key([](auto& probe) { probe.field = "stres"; }), "field");
   EXPECT_EQ(refused_key([](auto& probe) { probe.field = "velocity"; }), "field");
   EXPECT_EQ(refused_key([](auto& probe) { probe.set = "midle"; }), "set");
+  EXPECT_EQ(refused_key([](auto& probe) { probe.set = "", probe.field = "crack_length"; }), "set");
+  EXPECT_EQ(refused_key([](auto& probe) { probe.field = "opening"; }), "other");
   EXPECT_EQ(refused_key([](auto& probe) { probe.component = "z"; }), "component");
   EXPECT_EQ(refused_key([](auto& probe) { probe.axis = 2; }), "axis");
   EXPECT_EQ(refused_key([](auto& probe) { probe.at = Coordinates{5.0, 0.0, 0.0}; }), "probe[0].at");
