@@ -3,6 +3,8 @@
 #include <array>
 
 #include "assembly/terms/damage.hpp"
+#include "solvers/formulations/formulations.hpp"
+#include "solvers/formulations/materials/point_materials.hpp"
 #include "src/materials/bond_constants.hpp"
 #include "src/materials/quadrature.hpp"
 
@@ -19,11 +21,10 @@ std::vector<std::array<std::size_t, 2>> upper_half(std::size_t dimension) {
 /// Ratio of the stress across a plane body to the sum of the in-plane normal stresses. Model "cpd"
 /// is purely two-dimensional: 0.
 std::vector<double> out_of_plane(const Body& body) {
-  const MaterialModel model = body.specification.material.model;
-  const bool is_plane_strain = model != MaterialModel::cpd && body.points.dimension == 2 &&
-                               body.setting.plane == PlaneState::strain;
+  const bool is_plane_strain =
+      body.points.dimension == 2 && body.setting.plane == PlaneState::strain;
   if (!is_plane_strain) return {0.0};
-  if (has_bonds(model)) return {poisson_ratio(body.setting)};
+  if (!takes(body.specification, Option::poisson_ratio)) return {poisson_ratio(body.setting)};
   const PointMaterials materials(body.specification, body.points);
   const auto& all = materials.all();
   std::vector<double> ratios;
@@ -36,11 +37,8 @@ std::vector<double> out_of_plane(const Body& body) {
 }  // namespace
 
 Stress stress_of(const Body& body, Assembler& assembler, const StateView& at) {
-  // St. Venant and Kirchhoff's S_zz = lambda tr E is nu tr S at any strain.
-  const auto of = body.specification.material.model == MaterialModel::correspondence
-                      ? AcrossPlane::second_stress
-                      : AcrossPlane::cauchy_stress;
-  return find_stress(assembler, at, out_of_plane(body), of);
+  return find_stress(assembler, at, out_of_plane(body),
+                     formulation_of(body.specification).across_plane);
 }
 
 std::vector<double> symmetric_parts(const std::vector<double>& tensors, std::size_t d) {

@@ -32,6 +32,19 @@ ROOMS = [
     "assembly",
     "solvers/linear",
     "solvers/ranks",
+    "solvers/formulations/specification",
+    "solvers/formulations/materials",
+    "solvers/formulations/interface",
+    "solvers/formulations/convolved",
+    "solvers/formulations/solid",
+    "solvers/formulations/bond",
+    "solvers/formulations/linear_bond",
+    "solvers/formulations/green_bond",
+    "solvers/formulations/cpd",
+    "solvers/formulations/lps_energy",
+    "solvers/formulations/lps_collocation",
+    "solvers/formulations/correspondence",
+    "solvers/formulations",
     "solvers/problem",
     "solvers/fracture",
     "solvers/search",
@@ -161,7 +174,11 @@ class Architecture(unittest.TestCase):
 
     def test_few_places_know_the_models(self):
         """A new model has to be added to each of them."""
-        asking = lines_with(r"MaterialModel::\w|\bis_(convolved|collocated|polynomial|cpd|lps)\(|\bhas_states\(")
+        asking = [
+            line
+            for line in lines_with(r"MaterialModel::\w|\bis_(convolved|collocated|polynomial|cpd|lps)\(|\bhas_states\(")
+            if not line.startswith("solvers/formulations/")
+        ]
         self.assertLessEqual(len(asking), MODEL_BRANCHES, asking)
 
     def test_the_code_is_formatted(self):

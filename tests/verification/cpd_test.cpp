@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "solvers/formulations/cpd/cpd_model.hpp"
 #include "solvers/observe/probe.hpp"
-#include "solvers/study/cpd_model.hpp"
 #include "src/core/number_text.hpp"
 #include "tests/verification/solved_case.hpp"
 
