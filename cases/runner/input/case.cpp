@@ -176,13 +176,12 @@ InputError located(const Case& from, const InputError& error) {
   return InputError(key, value, error.allowed(), location_of(from, key).text(from.file));
 }
 
-bool needs_stress(const ProbeSpecification& probe) {
-  const PointField* const field = point_field(probe.field);
-  return field != nullptr && field->needs == FieldNeeds::stress;
-}
-
 bool tells_stress(const Case& from) {
-  return from.output.stress || std::ranges::any_of(from.probes, needs_stress);
+  return from.output.stress ||
+         std::ranges::any_of(from.probes, [](const ProbeSpecification& probe) {
+           const PointField* const field = point_field(probe.field);
+           return field != nullptr && field->needs == FieldNeeds::stress;
+         });
 }
 
 }  // namespace peristat

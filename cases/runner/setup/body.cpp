@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 
 #include "cases/runner/setup/find_boundary.hpp"
-#include "cases/runner/setup/probe_places.hpp"
 #include "solvers/formulations/check_specification.hpp"
 #include "solvers/formulations/faster_operator.hpp"
 #include "solvers/formulations/materials/bond_materials.hpp"
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/observe/probe_places.hpp"
 #include "solvers/ranks/agree_on_kinds.hpp"
 #include "src/connectivity/free_motion.hpp"
 #include "src/core/input_error.hpp"
@@ -94,7 +94,7 @@ Points make_points_of(const Case& from) {
       const std::string table = "set[" + std::to_string(k) + "]";
       errors_in_table(table, [&] { add_set(points, rule); });
     }
-    require_places_of_probes(from, RecordedPoints(points));
+    require_places_of_probes(from.probes, RecordedPoints(points));
     return points;
   });
 }

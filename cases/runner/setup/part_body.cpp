@@ -9,9 +9,9 @@
 #include "cases/runner/input/case_keys.hpp"
 #include "cases/runner/setup/body.hpp"
 #include "cases/runner/setup/find_boundary.hpp"
-#include "cases/runner/setup/probe_places.hpp"
 #include "solvers/formulations/faster_operator.hpp"
 #include "solvers/formulations/formulations.hpp"
+#include "solvers/observe/probe_places.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 #include "src/conditions/pressed_boundary.hpp"
@@ -159,7 +159,7 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
     find_boundary(from, part.points, ranks, of);
     if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
     std::unique_ptr<const Body> body = make_body(std::move(part), of, ranks, threads);
-    require_places_of_probes(from, {body->points, *body->index_map});
+    require_places_of_probes(from.probes, {body->points, *body->index_map});
     return body;
   });
 }

@@ -1,4 +1,4 @@
-#include "cases/runner/setup/recorded_points.hpp"
+#include "solvers/observe/recorded_points.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "cases/runner/setup/probe_places.hpp"
+#include "solvers/observe/probe_places.hpp"
 
 #include <cstdint>
 #include <string>
@@ -8,10 +8,11 @@
 
 namespace peristat {
 
-void require_places_of_probes(const Case& from, const RecordedPoints& recorded) {
+void require_places_of_probes(std::span<const ProbeSpecification> probes,
+                              const RecordedPoints& recorded) {
   const Points& points = recorded.points();
-  for (std::size_t k = 0; k < from.probes.size(); ++k) {
-    const ProbeSpecification& probe = from.probes[k];
+  for (std::size_t k = 0; k < probes.size(); ++k) {
+    const ProbeSpecification& probe = probes[k];
     const std::string table = "probe[" + std::to_string(k) + "]";
     const auto require = [&](const std::string& key, const std::string& set) {
       if (set.empty() || points.sets.contains(set)) return;

@@ -1,9 +1,10 @@
-#include "cases/runner/results/stress_fields.hpp"
+#include "solvers/observe/stress_fields.hpp"
 
 #include <array>
 
 #include "assembly/terms/damage.hpp"
 #include "solvers/formulations/formulations.hpp"
+#include "solvers/formulations/materials/point_materials.hpp"
 #include "src/materials/bond_constants.hpp"
 #include "src/materials/quadrature.hpp"
 
@@ -15,19 +16,6 @@ std::vector<std::array<std::size_t, 2>> upper_half(std::size_t dimension) {
   if (dimension == 1) return {{0, 0}};
   if (dimension == 2) return {{0, 0}, {1, 1}, {0, 1}};
   return {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
-}
-
-/// Upper halves of the tensors' symmetric parts.
-std::vector<double> symmetric(const std::vector<double>& tensors, std::size_t d) {
-  const auto entries = upper_half(d);
-  std::vector<double> halves;
-  halves.reserve(tensors.size() / (d * d) * entries.size());
-  for (std::size_t at = 0; at < tensors.size(); at += d * d) {
-    for (const auto& [r, c] : entries) {
-      halves.push_back(0.5 * (tensors[at + r * d + c] + tensors[at + c * d + r]));
-    }
-  }
-  return halves;
 }
 
 /// Ratio of the stress across a plane body to the sum of the in-plane normal stresses. Model "cpd"
@@ -46,6 +34,25 @@ std::vector<double> out_of_plane(const Body& body) {
   return ratios;
 }
 
+}  // namespace
+
+Stress stress_of(const Body& body, Assembler& assembler, const StateView& at) {
+  return find_stress(assembler, at, out_of_plane(body),
+                     formulation_of(body.specification).across_plane);
+}
+
+std::vector<double> symmetric_parts(const std::vector<double>& tensors, std::size_t d) {
+  const auto entries = upper_half(d);
+  std::vector<double> halves;
+  halves.reserve(tensors.size() / (d * d) * entries.size());
+  for (std::size_t at = 0; at < tensors.size(); at += d * d) {
+    for (const auto& [r, c] : entries) {
+      halves.push_back(0.5 * (tensors[at + r * d + c] + tensors[at + c * d + r]));
+    }
+  }
+  return halves;
+}
+
 std::vector<double> missing_neighbourhood(const Body& body, const StateView& at,
                                           const std::vector<char>& is_determined) {
   const double whole = body.setting.lattice_moment(0, body.points.spacing);
@@ -57,31 +64,6 @@ std::vector<double> missing_neighbourhood(const Body& body, const StateView& at,
     missing[i] = is_determined[i] ? 1.0 - missing[i] / whole : 1.0;
   }
   return missing;
-}
-
-}  // namespace
-
-void StressFields::show_in(StepFields& fields) const {
-  fields.deformation_gradient = &found.deformation_gradient;
-  fields.green_lagrange_strain = &found.strain;
-  fields.first_piola_stress = &found.first_piola;
-  fields.cauchy_stress = &found.cauchy;
-  fields.strain = &strain;
-  fields.stress = &stress;
-  fields.von_mises = &found.von_mises;
-  fields.principal_stress = &found.principal;
-  fields.principal_direction = &found.principal_direction;
-  fields.missing_neighbourhood = &missing_neighbourhood;
-}
-
-StressFields make_stress_fields(const Body& body, Assembler& assembler, const StateView& at) {
-  const AcrossPlane of = formulation_of(body.specification).across_plane;
-  StressFields made{find_stress(assembler, at, out_of_plane(body), of), {}, {}, {}};
-  const auto d = std::size_t(body.points.dimension);
-  made.strain = symmetric(made.found.strain, d);
-  made.stress = symmetric(made.found.cauchy, d);
-  made.missing_neighbourhood = missing_neighbourhood(body, at, made.found.is_determined);
-  return made;
 }
 
 }  // namespace peristat

@@ -1,4 +1,4 @@
-#include "cases/runner/results/crack_measures.hpp"
+#include "solvers/observe/crack_measures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "src/core/input_error.hpp"
 #include "src/geometry/lattice_frame.hpp"
 
 namespace peristat {
@@ -69,7 +70,7 @@ class CellFaces {
   explicit CellFaces(const Points& points)
       : points_(points),
         frame_(points.dimension, {}, 0.0, points.spacing, points.angle),
-        origin_(frame_.spacings_to(points.lattice.value().origin)) {}
+        origin_(frame_.spacings_to(origin_of(points))) {}
 
   /// Area of the face between next neighbours [m2], otherwise 0; half across a period, where it
   /// occurs twice.
@@ -92,6 +93,11 @@ class CellFaces {
   }
 
  private:
+  static const Coordinates& origin_of(const Points& points) {
+    if (points.lattice) return points.lattice->origin;
+    throw InputError("points.lattice", "",
+                     "areas and angles of cracks are for points on a lattice");
+  }
   [[nodiscard]] Cell cell_of(Index point) const {
     const Coordinates at = frame_.spacings_to(points_.position(point));
     Cell cell{};
@@ -154,7 +160,9 @@ double angle(const Points& points, Members set, int axis, const CrackState& crac
   return 90.0 / std::numbers::pi * std::atan2(2.0 * xy, xx - yy);
 }
 
-const std::vector<CrackMeasure>& measures() {
+}  // namespace
+
+const std::vector<CrackMeasure>& crack_measures() {
   static const std::vector<CrackMeasure> all{
       {"crack_length", "m", true,
        [](const Points& points, Members set, int axis, const CrackState& crack) {
@@ -187,16 +195,13 @@ const std::vector<CrackMeasure>& measures() {
   return all;
 }
 
-}  // namespace
-
 double grown_area(const Points& points, Members set, const CrackState& crack) {
   return area(points, set, crack.cut, crack);
 }
 
 const CrackMeasure* crack_measure(const std::string& name) {
-  const auto found = std::ranges::find_if(
-      measures(), [&](const CrackMeasure& measure) { return measure.name == name; });
-  return found == measures().end() ? nullptr : &*found;
+  const auto found = std::ranges::find(crack_measures(), name, &CrackMeasure::name);
+  return found == crack_measures().end() ? nullptr : &*found;
 }
 
 }  // namespace peristat

@@ -1,4 +1,4 @@
-#include "cases/runner/results/probe.hpp"
+#include "solvers/observe/probe.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,10 @@
 #include <string>
 #include <utility>
 
-#include "cases/runner/results/crack_measures.hpp"
 #include "solvers/observe/point_fields.hpp"
+#include "solvers/observe/probe_places.hpp"
 #include "src/core/expression.hpp"
+#include "src/core/input_error.hpp"
 #include "src/dense/least_squares.hpp"
 #include "src/parallel/collectives.hpp"
 #include "src/parallel/communicator.hpp"
@@ -121,7 +122,7 @@ std::vector<double> opening_of(const ProbeSpecification& probe, const RecordedPo
 
 /// Root mean square, or the largest, of the lengths of a set's differences from expected values.
 double error_over_set(const ProbeSpecification& probe, const RecordedPoints& points,
-                      const StepFields& fields, const LoadValues& loads) {
+                      const PointValues& fields, const LoadValues& loads) {
   std::vector<Expression> expected;
   for (const std::string& text : probe.expected) {
     expected.emplace_back(text, points.dimension(), points.points().spacing, loads.names);
@@ -142,7 +143,7 @@ double error_over_set(const ProbeSpecification& probe, const RecordedPoints& poi
 }
 
 std::vector<double> over_set(const ProbeSpecification& probe, const RecordedPoints& points,
-                             const StepFields& fields) {
+                             const PointValues& fields) {
   const std::size_t columns = chosen_components(probe, points.dimension()).size();
   const double sign = probe.statistic == Statistic::min ? -1.0 : 1.0;
   const auto values = [&](Index point) {
@@ -158,14 +159,50 @@ std::vector<double> over_set(const ProbeSpecification& probe, const RecordedPoin
 
 /// Values at the point nearest to a place, which its rank sends to all others.
 std::vector<double> at_place(const ProbeSpecification& probe, const RecordedPoints& points,
-                             const StepFields& fields) {
+                             const PointValues& fields) {
   const std::optional<Index> nearest = nearest_recorded(points, *probe.at).here;
   std::vector<double> values;
   if (nearest) values = values_at(probe, points.dimension(), fields, *nearest);
   return concatenated(points.ranks(), values);
 }
 
+/// Refuses what a case file's keys refuse (output_keys.cpp).
+void require_answer(const ProbeSpecification& probe, const RecordedPoints& points) {
+  const auto require = [](bool holds, const char* key, const std::string& value,
+                          const char* allowed) {
+    if (!holds) throw InputError(key, value, allowed);
+  };
+  const auto is_set = [&](const std::string& name) { return points.points().sets.contains(name); };
+  const PointField* const field = point_field(probe.field);
+  const int d = points.dimension();
+  require(field != nullptr || std::ranges::count(fields_of_whole_sets(), probe.field) > 0, "field",
+          '"' + probe.field + '"', "no field of this name");
+  require((probe.at && field != nullptr) || is_set(probe.set), "set", '"' + probe.set + '"',
+          "no set of this name");
+  require(probe.field != "opening" || is_set(probe.other), "other", '"' + probe.other + '"',
+          "no set of this name");
+  require(probe.axis >= 0 && probe.axis < d, "axis", std::to_string(probe.axis),
+          "must be an axis of the body");
+  require(probe.field != "crack_angle" || d == 2, "field", probe.field, "is for dimension 2");
+  require_places_of_probes({&probe, 1}, points);
+  if (field == nullptr) return;
+  require(probe.component.empty() || std::ranges::count(field->components(d), probe.component) > 0,
+          "component", '"' + probe.component + '"', "is none of the field's");
+  require(
+      !is_of_error(probe.statistic) || probe.expected.size() == chosen_components(probe, d).size(),
+      "expected", "", "needs as many expressions as there are components");
+}
+
 }  // namespace
+
+const std::vector<std::string>& fields_of_whole_sets() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all{"poisson_ratio", "opening"};
+    for (const CrackMeasure& measure : crack_measures()) all.push_back(measure.name);
+    return all;
+  }();
+  return names;
+}
 
 std::vector<std::string> chosen_components(const ProbeSpecification& probe, int dimension) {
   const auto components = point_field(probe.field)->components(dimension);
@@ -174,39 +211,36 @@ std::vector<std::string> chosen_components(const ProbeSpecification& probe, int 
 }
 
 std::vector<double> values_at(const ProbeSpecification& probe, int dimension,
-                              const StepFields& fields, Index point) {
+                              const PointValues& fields, Index point) {
   const PointField& field = *point_field(probe.field);
-  const std::vector<double> values = field.at(fields, dimension, point);
+  const std::vector<double> values = field.at(fields.at(probe.field), dimension, point);
   if (probe.component.empty()) return values;
   const auto components = field.components(dimension);
   return {values[std::size_t(std::ranges::find(components, probe.component) - components.begin())]};
 }
 
-ProbeColumns columns_of(const ProbeSpecification& probe, int dimension) {
-  if (probe.field == "poisson_ratio") return {probe.name, 1, "1"};
-  if (const CrackMeasure* measure = crack_measure(probe.field)) {
-    return {probe.name, 1, measure->unit};
-  }
-  if (probe.field == "opening") return {probe.name, dimension, "m"};
-  if (is_of_error(probe.statistic)) return {probe.name, 1, point_field(probe.field)->unit};
-  return {probe.name, int(chosen_components(probe, dimension).size()),
-          point_field(probe.field)->unit};
-}
-
 std::vector<double> probe_values(const ProbeSpecification& probe, const RecordedPoints& points,
-                                 const StepFields& fields, const CrackState& crack,
+                                 const PointValues& fields, const CrackState& crack,
                                  const LoadValues& loads) {
   if (probe.field == "poisson_ratio") {
-    return {fitted_poisson_ratio(probe, points, *fields.displacement)};
+    return {fitted_poisson_ratio(probe, points, fields.at("displacement"))};
   }
   if (const CrackMeasure* measure = crack_measure(probe.field)) {
     const Points& all = points.points();
     return {measure->value(all, all.sets.at(probe.set), probe.axis, crack)};
   }
   if (probe.at) return at_place(probe, points, fields);
-  if (probe.field == "opening") return opening_of(probe, points, *fields.displacement);
+  if (probe.field == "opening") return opening_of(probe, points, fields.at("displacement"));
   if (is_of_error(probe.statistic)) return {error_over_set(probe, points, fields, loads)};
   return over_set(probe, points, fields);
+}
+
+std::vector<double> probe_values(const ProbeSpecification& probe, Observation& in,
+                                 const CrackState& crack, const LoadValues& loads) {
+  require_answer(probe, in.points());
+  const bool is_of_points = point_field(probe.field) != nullptr;
+  static_cast<void>(in.values(is_of_points ? probe.field : "displacement"));
+  return probe_values(probe, in.points(), in.computed(), crack, loads);
 }
 
 }  // namespace peristat

@@ -65,6 +65,9 @@ struct CrackMeasure {
 [[nodiscard]] double grown_area(const Points& points, std::span<const Index> set,
                                 const CrackState& crack);
 
+/// Every measure.
+[[nodiscard]] const std::vector<CrackMeasure>& crack_measures();
+
 /// Measure of a name, or null.
 [[nodiscard]] const CrackMeasure* crack_measure(const std::string& name);
 

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "cases/runner/input/case.hpp"
-#include "cases/runner/results/crack_measures.hpp"
-#include "cases/runner/results/results.hpp"
-#include "cases/runner/setup/recorded_points.hpp"
+#include "solvers/observe/crack_measures.hpp"
+#include "solvers/observe/observation.hpp"
+#include "solvers/observe/probe_specification.hpp"
+#include "solvers/observe/recorded_points.hpp"
 
 namespace peristat {
 
@@ -16,16 +16,17 @@ struct LoadValues {
   std::vector<double> values{};
 };
 
+/// Quantities of a whole set, which single points don't have: poisson_ratio, opening and the crack
+/// measures.
+[[nodiscard]] const std::vector<std::string>& fields_of_whole_sets();
+
 /// Components that a probe evaluates; for a scalar one without a name.
 [[nodiscard]] std::vector<std::string> chosen_components(const ProbeSpecification& probe,
                                                          int dimension);
 
 /// Values of these components at a point.
 [[nodiscard]] std::vector<double> values_at(const ProbeSpecification& probe, int dimension,
-                                            const StepFields& fields, Index point);
-
-/// Columns that a probe of a set or a point adds to the history.
-[[nodiscard]] ProbeColumns columns_of(const ProbeSpecification& probe, int dimension);
+                                            const PointValues& fields, Index point);
 
 /// Values of a probe, one per component: mean, largest or smallest value of its field over the
 /// points of its set, or its value at the point nearest to a place (of points equally near, the one
@@ -34,11 +35,21 @@ struct LoadValues {
 /// CrackMeasure its value.
 /// For an error, one value: the root mean square or the largest of |v - v_expected|.
 /// Collective; all ranks get the same.
-/// @param fields of the points that are recorded here
+/// @param fields of the points that are recorded here: the probe's, for poisson_ratio and opening
+///        the displacement
 /// @throws InputError ("expected[c]") if an expected value is not finite
 [[nodiscard]] std::vector<double> probe_values(const ProbeSpecification& probe,
                                                const RecordedPoints& points,
-                                               const StepFields& fields, const CrackState& crack,
+                                               const PointValues& fields, const CrackState& crack,
+                                               const LoadValues& loads = {});
+
+/// The same in a state, with the fields that the probe needs.
+/// @param crack for crack measures, see SeparatedBonds
+/// @throws InputError ("probe[0].set", "field", "component", …) also for a probe that the body
+/// can't
+///         answer
+[[nodiscard]] std::vector<double> probe_values(const ProbeSpecification& probe, Observation& in,
+                                               const CrackState& crack = {},
                                                const LoadValues& loads = {});
 
 }  // namespace peristat

@@ -1,13 +1,16 @@
 #pragma once
 
-#include "cases/runner/input/case.hpp"
-#include "cases/runner/setup/recorded_points.hpp"
+#include <span>
+
+#include "solvers/observe/probe_specification.hpp"
+#include "solvers/observe/recorded_points.hpp"
 
 namespace peristat {
 
 /// Refuses probes of sets that are not there, and of places off the body, which would be
 /// represented by a distant point. Collective.
 /// @throws InputError ("probe[k].set", "probe[k].at", ...)
-void require_places_of_probes(const Case& from, const RecordedPoints& recorded);
+void require_places_of_probes(std::span<const ProbeSpecification> probes,
+                              const RecordedPoints& recorded);
 
 }  // namespace peristat

@@ -1,4 +1,4 @@
-#include "cases/runner/results/probe.hpp"
+#include "solvers/observe/probe.hpp"
 
 #include <algorithm>
 #include <cmath>
