@@ -443,7 +443,7 @@ std::vector<std::string> describe_interactions(const Body& body) {
     }
   }
   const auto* const points = body.model.find<PointTerm>();
-  if (points != nullptr && points->is_convolved()) {
+  if (points != nullptr && points->has_lattice()) {
     lines.push_back(fmt::format("summed by convolutions over a box of {} sites",
                                 points->lattice()->box.count()));
   }

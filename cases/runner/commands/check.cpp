@@ -243,7 +243,7 @@ void print_pressures(const Body& body) {
 
 const PointTerm* convolved(const Body& body) {
   const auto* const term = body.model.find<PointTerm>();
-  return term != nullptr && term->is_convolved() ? term : nullptr;
+  return term != nullptr && term->has_lattice() ? term : nullptr;
 }
 
 /// Measured time of the forces of an explicit step [s]; terms other than bonds take longer.

@@ -62,7 +62,7 @@ std::vector<Preflight::Division> divisions_of(const Lattice& lattice) {
 /// All bonds of a body; null if a convolved body has too many to find them for this.
 std::shared_ptr<const Bonds> network_of(const Body& body) {
   const auto* const term = body.model.find<PointTerm>();
-  if (term == nullptr || !term->is_convolved()) {
+  if (term == nullptr || !term->has_lattice()) {
     return {std::shared_ptr<const Bonds>(), &body.model.bonds()};
   }
   constexpr Offset most = 5'000'000;  // some seconds
