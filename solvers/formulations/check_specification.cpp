@@ -15,55 +15,6 @@
 namespace peristat {
 namespace {
 
-/// A setting that not all formulations take: its key and whether it differs from the default.
-template <class Specification>
-struct OptionOf {
-  Option option;
-  const char* key;
-  bool (*is_given)(const Specification&);
-};
-
-using OptionOfMaterial = OptionOf<MaterialSpecification>;
-constexpr std::array<OptionOfMaterial, 13> options_of_material{{
-    {Option::plane, "plane", [](auto& m) { return m.plane != PlaneState::stress; }},
-    {Option::kinematics, "kinematics", [](auto& m) { return m.kinematics != Kinematics::finite; }},
-    {Option::potential, "potential", [](auto& m) { return m.potential != Harmonic::name; }},
-    {Option::micromodulus, "micromodulus", [](auto& m) { return m.micromodulus.has_value(); }},
-    {Option::poisson_ratio, "poisson_ratio", [](auto& m) { return m.poisson_ratio.has_value(); }},
-    {Option::stabilisation, "stabilisation",
-     [](auto& m) { return m.stabilisation != MaterialSpecification().stabilisation; }},
-    {Option::constants, "c1", [](auto& m) { return m.c1.has_value(); }},
-    {Option::constants, "c2", [](auto& m) { return m.c2 != 0.0; }},
-    {Option::constants, "c3", [](auto& m) { return m.c3 != 0.0; }},
-    {Option::calibration, "calibration", [](auto& m) { return m.calibration.has_value(); }},
-    {Option::thermal_expansion, "thermal_expansion",
-     [](auto& m) { return m.thermal_expansion.has_value(); }},
-    {Option::fibre, "fibre", [](auto& m) { return m.fibre.has_value(); }},
-    {Option::strength, "damage.strength", [](auto& m) { return m.damage.strength.has_value(); }},
-}};
-
-using OptionOfBody = OptionOf<BodySpecification>;
-constexpr CollocationSpecification usual_collocation;
-constexpr std::array<OptionOfBody, 11> options_of_body{{
-    {Option::volume_correction, "volume_correction",
-     [](auto& of) { return of.volume_correction != VolumeCorrection::none; }},
-    {Option::horizon_shape, "horizon_shape",
-     [](auto& of) { return of.horizon_shape != HorizonShape::ball; }},
-    {Option::surface_correction, "surface_correction",
-     [](auto& of) { return of.surface_correction != SurfaceCorrection::none; }},
-    {Option::weights, "weights", [](auto& of) { return of.weights != InteractionWeights::mean; }},
-    {Option::form, "form", [](auto& of) { return of.form != SolidForm::collocation; }},
-    {Option::collocation, "collocation.degree",
-     [](auto& of) { return of.collocation.degree != usual_collocation.degree; }},
-    {Option::collocation, "collocation.traction_form",
-     [](auto& of) { return of.collocation.traction_form != usual_collocation.traction_form; }},
-    {Option::collocation, "collocation.normals",
-     [](auto& of) { return of.collocation.normals != usual_collocation.normals; }},
-    {Option::interfaces, "interfaces", [](auto& of) { return !of.interfaces.empty(); }},
-    {Option::eigenstrains, "eigenstrains", [](auto& of) { return of.eigenstrains.are_there(); }},
-    {Option::convolutions, "force_operator", [](auto& of) { return of.is_convolved(); }},
-}};
-
 /// Refuses points and an operator that the formulation does not take.
 void check_points_and_operator(const BodySpecification& of, const Points& points) {
   const OptionSet options = options_of(of);
