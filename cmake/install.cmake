@@ -1,4 +1,4 @@
-# The library libperistat.so of all floors below the cases, and the installation: the library with its
+# The library libperistat.so of everything below commands and results, and the installation: the library with its
 # headers and its CMake package, the modules, the program, the launcher with its Python scripts, cases
 # and documentation.
 include(GNUInstallDirs)
@@ -8,7 +8,8 @@ include(CMakePackageConfigHelpers)
 add_library(peristat_library SHARED
   $<TARGET_OBJECTS:peristat_mechanics>
   $<TARGET_OBJECTS:peristat_assembly>
-  $<TARGET_OBJECTS:peristat_solvers>)
+  $<TARGET_OBJECTS:peristat_solvers>
+  $<TARGET_OBJECTS:peristat_cases>)
 add_library(peristat::peristat ALIAS peristat_library)
 set_target_properties(peristat_library PROPERTIES
   OUTPUT_NAME peristat EXPORT_NAME peristat LINKER_LANGUAGE CXX

@@ -339,17 +339,18 @@ std::vector<std::string> arguments_of_ranks(int count, char** arguments) {
 }
 
 /// Aborts all ranks, since others may be waiting for this one.
-[[noreturn]] void end_all_ranks(const Failure& failure) {
+int end_all_ranks(const Failure& failure) {
   give_way_to_first(*all_ranks());
   say_last_words(fmt::format("peristat: {}\n", failure.message));
   all_ranks()->abort(static_cast<int>(failure.code));
+  return static_cast<int>(failure.code);
 }
 
 /// Prints the exception being handled, and returns the exit code.
 int report_failure() {
   const Failure failure = current_failure();
   if (all_ranks() && all_ranks()->count() > 1) {
-    if (!all_have_failed()) end_all_ranks(failure);
+    if (!all_have_failed()) return end_all_ranks(failure);
     // Before MPI ends: mpirun kills the other ranks when the first returns this exit code.
     if (all_ranks()->rank() == 0) say_last_words(fmt::format("peristat: {}\n", failure.message));
     all_ranks().reset();

@@ -22,6 +22,11 @@ int main() try {
   std::printf("end displacement %.17g m\n",
               mean_displacement(body->points, result.state, "right")[0]);
   std::printf("reaction %.17g N\n", result.steps.back().reactions.at("left")[0]);
+
+  Observation observed(*body, result.state);
+  const ProbeSpecification above_hole{
+      .at = Coordinates{0.0, 5.5e-3}, .field = "stress", .component = "xx"};
+  std::printf("stress above the hole %.17g Pa\n", probe_values(above_hole, observed)[0]);
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 2;

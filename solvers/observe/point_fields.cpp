@@ -2,18 +2,103 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "assembly/terms/damage.hpp"
+#include "solvers/observe/observation.hpp"
+#include "solvers/observe/stress_fields.hpp"
+#include "solvers/study/motion.hpp"
 
 namespace peristat {
 namespace {
 
 std::string pair_of_axes(int row, int column) { return {"xyz"[row], "xyz"[column]}; }
 
+/// The first values of an array per degree of freedom: those of the recorded points.
+std::vector<double> recorded(const Observation& in, std::span<const double> values) {
+  const auto dofs = std::size_t(in.points().count()) * std::size_t(in.points().dimension());
+  if (values.size() < dofs) throw std::logic_error("observation: force or velocity is missing");
+  return {values.begin(), values.begin() + std::ptrdiff_t(dofs)};
+}
+
+std::vector<double> force(Observation& in) {
+  std::vector<double> force = recorded(in, in.extras().force);
+  in.extras().force = std::vector<double>();
+  return force;
+}
+
+std::vector<double> damage(Observation& in) {
+  const Body& body = in.body();
+  std::vector<double> damage(body.points.volume.size());
+  const auto cut_weight =
+      in.extras().count_cracks ? std::span(body.cut_weight) : std::span<const double>();
+  static_cast<void>(assess_damage(body.model, in.at().history, cut_weight, damage, &body.points));
+  damage.resize(std::size_t(in.points().count()));
+  return damage;
+}
+
+std::vector<double> energy_density(Observation& in) {
+  const Points& points = in.body().points;
+  std::vector<double> energy(points.volume.size());
+  in.assembler().point_energies(in.at(), energy);
+  for (auto i = std::size_t(points.own()); i < energy.size(); ++i) {
+    energy[std::size_t(points.source(Index(i)))] += energy[i];
+  }
+  energy.resize(std::size_t(in.points().count()));
+  for (std::size_t i = 0; i < energy.size(); ++i) energy[i] /= points.volume[i];
+  return energy;
+}
+
+std::vector<double> stretch(Observation& in) { return std::move(in.stretches().of_points); }
+
+std::vector<double> fragment(Observation& in) {
+  const std::span<const std::int32_t> piece = in.extras().piece;
+  std::vector<double> numbers(std::size_t(in.points().count()));
+  std::copy_n(piece.begin(), std::min(piece.size(), numbers.size()), numbers.begin());
+  return numbers;
+}
+
+/// Takes a part of the stress that no other field takes.
+template <std::vector<double> Stress::*part>
+std::vector<double> part_of_stress(Observation& in) {
+  return std::move(in.stress().*part);
+}
+
 /// tr F - d.
-double divergence(const std::vector<double>& gradients, std::size_t d, Index point) {
-  const double* const of_point = &gradients[std::size_t(point) * d * d];
-  double sum = 0.0;
-  for (std::size_t c = 0; c < d; ++c) sum += of_point[c * (d + 1)] - 1.0;
-  return sum;
+std::vector<double> divergence(Observation& in) {
+  const auto d = std::size_t(in.points().dimension());
+  const std::vector<double>& gradients = in.values("deformation_gradient");
+  std::vector<double> traces(std::size_t(in.points().count()));
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    for (std::size_t c = 0; c < d; ++c) traces[i] += gradients[i * d * d + c * (d + 1)] - 1.0;
+  }
+  return traces;
+}
+
+std::vector<double> strain(Observation& in) {
+  return symmetric_parts(in.values("green_lagrange_strain"), std::size_t(in.points().dimension()));
+}
+
+std::vector<double> stress_halves(Observation& in) {
+  return symmetric_parts(in.values("cauchy_stress"), std::size_t(in.points().dimension()));
+}
+
+std::vector<double> lacking(Observation& in) {
+  return missing_neighbourhood(in.body(), in.at(), in.stress().is_determined);
+}
+
+std::vector<double> kinetic_energy_density(Observation& in) {
+  const auto d = std::size_t(in.points().dimension());
+  const std::vector<double>& velocity = in.values("velocity");
+  const std::vector<double> density = densities_of(in.body());
+  std::vector<double> energy(std::size_t(in.points().count()));
+  for (std::size_t k = 0; k < velocity.size(); ++k) {
+    energy[k / d] += 0.5 * density[k / d] * velocity[k] * velocity[k];
+  }
+  return energy;
 }
 
 }  // namespace
@@ -21,51 +106,51 @@ double divergence(const std::vector<double>& gradients, std::size_t d, Index poi
 const std::vector<PointField>& point_fields() {
   using enum FieldRank;
   using enum FieldNeeds;
-  using S = StepFields;
+  using S = Stress;
   constexpr ShownBy steps = ShownBy::steps, both = ShownBy::both;
   static const std::vector<PointField> fields{
-      {"displacement", "m", "displacement of each point", vector, &S::displacement},
+      {"displacement", "m", "displacement of each point", vector,
+       [](Observation& in) { return recorded(in, in.at().displacement); }},
       {"force", "N", "internal force on each point: minus the derivative of the stored energy",
-       vector, &S::force},
-      {"damage", "1", "damage of each point, 0 intact to 1", scalar, &S::damage},
-      {"energy_density", "J/m3", "stored energy per volume of each point", scalar,
-       &S::energy_density},
+       vector, force},
+      {"damage", "1", "damage of each point, 0 intact to 1", scalar, damage},
+      {"energy_density", "J/m3", "stored energy per volume of each point", scalar, energy_density},
       {"stretch", "1",
        "largest stretch of the unbroken bonds of each point: current / reference length - 1",
-       scalar, &S::stretch},
+       scalar, stretch},
       {"fragment", "1",
        "number of the floating piece that the point belongs to; 0: held by the supports", scalar,
-       &S::fragment, nothing, steps},
+       fragment, nothing, steps},
       {"deformation_gradient", "1",
        "deformation gradient F from the unbroken bonds of each point, least squares; identity "
        "where they give none",
-       tensor, &S::deformation_gradient, stress, both},
-      {"divergence", "1", "trace of F - I", scalar, &S::deformation_gradient, stress,
-       ShownBy::probes},
+       tensor, part_of_stress<&S::deformation_gradient>, stress, both},
+      {"divergence", "1", "trace of F - I", scalar, divergence, stress, ShownBy::probes},
       {"green_lagrange_strain", "1", "strain E = (F^T F - I) / 2", tensor,
-       &S::green_lagrange_strain, stress, steps},
+       part_of_stress<&S::strain>, stress, steps},
       {"first_piola_stress", "Pa",
        "first Piola-Kirchhoff stress P, the virial of each point over its volume", tensor,
-       &S::first_piola_stress, stress, both},
+       part_of_stress<&S::first_piola>, stress, both},
       {"cauchy_stress", "Pa", "Cauchy stress P F^T / det F; 0 where the unbroken bonds give no F",
-       tensor, &S::cauchy_stress, stress, steps},
+       tensor, part_of_stress<&S::cauchy>, stress, steps},
       {"strain", "1", "green_lagrange_strain: xx, or xx, yy, xy, or xx, yy, zz, xy, yz, xz",
-       symmetric, &S::strain, stress, both},
+       symmetric, strain, stress, both},
       {"stress", "Pa",
        "symmetric part of cauchy_stress: xx, or xx, yy, xy, or xx, yy, zz, xy, yz, xz", symmetric,
-       &S::stress, stress, both},
-      {"von_mises", "Pa", "von Mises stress", scalar, &S::von_mises, stress, both},
+       stress_halves, stress, both},
+      {"von_mises", "Pa", "von Mises stress", scalar, part_of_stress<&S::von_mises>, stress, both},
       {"principal_stress", "Pa", "principal values of the Cauchy stress, the largest first",
-       principal, &S::principal_stress, stress, both},
+       principal, part_of_stress<&S::principal>, stress, both},
       {"principal_direction", "1", "unit vectors of the principal stresses, one per row", tensor,
-       &S::principal_direction, stress, steps},
+       part_of_stress<&S::principal_direction>, stress, steps},
       {"missing_neighbourhood", "1",
        "share of a neighbourhood inside the lattice that each point lacks, by surfaces, cracks "
        "and broken bonds; 1 where the unbroken bonds give no F",
-       scalar, &S::missing_neighbourhood, stress, both},
-      {"velocity", "m/s", "velocity of each point", vector, &S::velocity, motion, both},
+       scalar, lacking, stress, both},
+      {"velocity", "m/s", "velocity of each point", vector,
+       [](Observation& in) { return recorded(in, in.extras().velocity); }, motion, both},
       {"kinetic_energy_density", "J/m3", "kinetic energy per volume of each point", scalar,
-       &S::kinetic_energy_density, motion, both}};
+       kinetic_energy_density, motion, both}};
   return fields;
 }
 
@@ -99,12 +184,11 @@ std::vector<std::uint64_t> PointField::extents(int dimension) const {
   return {d};
 }
 
-std::vector<double> PointField::at(const StepFields& fields, int dimension, Index point) const {
-  const std::vector<double>& all = *(fields.*values);
-  if (name == "divergence") return {divergence(all, std::size_t(dimension), point)};
+std::vector<double> PointField::at(const std::vector<double>& values, int dimension,
+                                   Index point) const {
   std::size_t width = 1;
   for (const std::uint64_t extent : extents(dimension)) width *= extent;
-  const auto first = all.begin() + std::ptrdiff_t(std::size_t(point) * width);
+  const auto first = values.begin() + std::ptrdiff_t(std::size_t(point) * width);
   return {first, first + std::ptrdiff_t(width)};
 }
 

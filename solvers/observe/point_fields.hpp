@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "solvers/problem/records.hpp"
+#include "src/core/types.hpp"
 
 namespace peristat {
+
+class Observation;
 
 /// Values of a point: one, one per axis, one per principal axis, one per pair of axes, or one per
 /// symmetric pair (xx, or xx, yy, xy, or xx, yy, zz, xy, yz, xz).
@@ -18,12 +21,15 @@ enum class FieldNeeds { nothing, stress, motion };
 /// Who shows a field: steps of results.h5, probes, or both.
 enum class ShownBy { steps, probes, both };
 
+/// Values of fields at points, by the fields' names: points x values of a point, row major.
+using PointValues = std::map<std::string, std::vector<double>>;
+
 /// A field with values at points.
 struct PointField {
   std::string name, unit, meaning;
   FieldRank rank;
-  /// Its values in a step; of `divergence`, which no step holds, those that it is computed from.
-  const std::vector<double>* StepFields::*values;
+  /// Computes its values in a state; called once per observation, see Observation::values.
+  std::vector<double> (*compute)(Observation& in);
   FieldNeeds needs = FieldNeeds::nothing;
   ShownBy shown_by = ShownBy::both;
 
@@ -31,12 +37,13 @@ struct PointField {
   [[nodiscard]] std::vector<std::string> components(int dimension) const;
   /// Extents of a point's values; none for a scalar.
   [[nodiscard]] std::vector<std::uint64_t> extents(int dimension) const;
-  /// Values of a point.
-  [[nodiscard]] std::vector<double> at(const StepFields& fields, int dimension, Index point) const;
+  /// Values of a point, from those of all points.
+  [[nodiscard]] std::vector<double> at(const std::vector<double>& values, int dimension,
+                                       Index point) const;
 };
 
-/// Every field, in the order in which steps write them. A new field is a row here, a member of
-/// StepFields and what computes it.
+/// Every field, in the order in which steps write them. A new field is a row here: results, their
+/// views and probes read this table.
 [[nodiscard]] const std::vector<PointField>& point_fields();
 
 /// Field of a name; null if there is none.

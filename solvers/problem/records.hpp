@@ -131,32 +131,6 @@ struct BondHistories {
   std::vector<Index> second_image{};  ///< as in BrokenBondRecord; empty for a body without images
 };
 
-/// State that an accepted step writes; arrays are views and count x dimension (row major) or count.
-struct StepFields {
-  const std::vector<double>* displacement = nullptr;    ///< [m]
-  const std::vector<double>* force = nullptr;           ///< internal force -dE/dx [N]
-  const std::vector<double>* damage = nullptr;          ///< per point, 0 intact to 1
-  const std::vector<double>* energy_density = nullptr;  ///< per point [J/m3]
-  const std::vector<double>* stretch = nullptr;   ///< per point, largest of its unbroken bonds
-  const std::vector<double>* fragment = nullptr;  ///< per point, number of its floating piece or 0
-  /// Histories that have changed since the last step that was written; null without damage.
-  const BondHistories* histories = nullptr;
-  /// Strain and stress, if requested; tensors are count x dimension x dimension.
-  const std::vector<double>* deformation_gradient = nullptr;
-  const std::vector<double>* green_lagrange_strain = nullptr;
-  const std::vector<double>* first_piola_stress = nullptr;   ///< [Pa]
-  const std::vector<double>* cauchy_stress = nullptr;        ///< [Pa]
-  const std::vector<double>* strain = nullptr;               ///< symmetric: xx, yy, zz, xy, yz, xz
-  const std::vector<double>* stress = nullptr;               ///< likewise, Cauchy [Pa]
-  const std::vector<double>* von_mises = nullptr;            ///< [Pa]
-  const std::vector<double>* principal_stress = nullptr;     ///< count x dimension [Pa]
-  const std::vector<double>* principal_direction = nullptr;  ///< rows in its order
-  const std::vector<double>* missing_neighbourhood = nullptr;
-  /// Only for a body in motion.
-  const std::vector<double>* velocity = nullptr;                ///< [m/s]
-  const std::vector<double>* kinetic_energy_density = nullptr;  ///< per point [J/m3]
-};
-
 /// A bond that has broken (a row of broken_bonds.csv).
 struct BrokenBondRecord {
   int step = 0;

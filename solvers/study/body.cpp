@@ -15,16 +15,11 @@
 #include "assembly/terms/pressure/pressure_term.hpp"
 #include "assembly/terms/springs/foundation_term.hpp"
 #include "assembly/terms/springs/inertia_term.hpp"
+#include "solvers/formulations/check_specification.hpp"
+#include "solvers/formulations/convolved/convolved_lattice.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/ranks/sum_on_machine.hpp"
-#include "solvers/study/bond_potential.hpp"
-#include "solvers/study/bonds_of_part.hpp"
-#include "solvers/study/collocation_model.hpp"
-#include "solvers/study/cpd_model.hpp"
-#include "solvers/study/fracture_data.hpp"
-#include "solvers/study/linear_model.hpp"
 #include "solvers/study/require_memory_for.hpp"
-#include "solvers/study/state_model.hpp"
 #include "solvers/study/surface_sites.hpp"
 #include "src/connectivity/fragments.hpp"
 #include "src/connectivity/free_motion.hpp"
@@ -71,33 +66,9 @@ void refuse_coincident_points(const Points& points, const Bonds& bonds) {
   }
 }
 
-/// Constants of the bonds inside the materials and of interfaces with constants of their own.
-std::vector<DirectedConstant> micromoduli(const BodySpecification& of,
-                                          const PointMaterials& materials,
-                                          const BondSetting& setting) {
-  std::vector<DirectedConstant> constants;
-  for (const auto& material : all_materials(of, materials)) {
-    constants.push_back(micromodulus_of(*material.of, material.key, setting));
-  }
-  return constants;
-}
-
-/// Makes the model of a body of model "bond"; `cut` receives the bonds that its pre-cracks have
-/// cut. Surface corrections are those of the body without cracks and interfaces, which are no
-/// surfaces.
-Model make_bond_model(const Body& body, const PointMaterials& materials, Bonds bonds,
-                      CutBonds& cut) {
-  const BodySpecification& of = body.specification;
-  if (body.points.own() < body.points.count()) drop_weightless(bonds);
-  const BondMaterials mixed(of, materials, body.factors, body.points,
-                            micromoduli(of, materials, body.setting));
-  if (!of.is_uniform()) {
-    refuse_idle_interfaces(of, materials, bonds, body.index_map->ranks());
-    mixed.weigh(bonds);
-  }
-  cut = cut_bonds(bonds, body.points, of.cracks);
-  auto [potential, never_fails] = mixed.potential(bonds);
-  return Model(std::move(bonds), std::move(potential), std::move(never_fails));
+/// True if points couple that have a neighbour in common.
+bool couples_second_neighbours(const BodySpecification& of) {
+  return !of.is_convolved() && formulation_of(of).couples_second_neighbours;
 }
 
 /// Sets the counts for a model that couples points with a common neighbour: as many blocks as bonds
@@ -116,43 +87,32 @@ void note_materials(Body& body, const PointMaterials& materials, int threads) {
                   materials.factors(body.points, Quantity::strength, threads)};
 }
 
+/// Setting with which the bonds of a body are made.
+BondSetting setting_of_bonds(const Body& body) {
+  const BodySpecification& of = body.specification;
+  const Formulation& formulation = formulation_of(of);
+  BondSetting setting =
+      formulation.setting_of_bonds ? formulation.setting_of_bonds(body.setting) : body.setting;
+  return of.is_convolved() ? setting_of_short_bonds(body.points, std::move(setting)) : setting;
+}
+
 /// Makes the model of a body, and stores the bonds that its pre-cracks have cut.
 /// @param make_network makes the bonds of a setting
 template <class MakeNetwork>
 void make_model(Body& body, const MakeNetwork& make_network, int threads) {
   const BodySpecification& of = body.specification;
   const Stopwatch watch(body.seconds_neighbourhood);
-  const bool is_cpd = of.material.model == MaterialModel::cpd;
-  BondSetting setting = body.setting;
-  // Effective volumes count every neighbour, and the energy that bonds of lps dissipate depends on
-  // their length.
-  if (is_cpd || of.is_collocated()) setting.influence = {};
-  if (of.has_states()) setting = state_setting(std::move(setting));
-  const bool is_linear = of.is_linear() || of.is_convolved();
-  setting = network_setting(of, body.points, std::move(setting));
-  Bonds bonds = make_network(setting);
+  Bonds bonds = make_network(setting_of_bonds(body));
   refuse_coincident_points(body.points, bonds);
   const PointMaterials materials(of, body.points);
   note_materials(body, materials, threads);
-  CutBonds cut;
-  if (is_linear) {
-    body.model = make_linear_model(of, materials, body.factors, body.points, body.setting,
-                                   std::move(bonds), cut, *body.index_map, threads);
-  } else if (of.has_states()) {
-    body.model = make_state_model(of, materials, body.factors, body.points, setting,
-                                  std::move(bonds), cut, *body.index_map, threads);
-  } else if (of.is_collocated()) {
-    body.model =
-        make_collocation_model(of, materials, body.factors, body.points, setting, std::move(bonds),
-                               cut, body.collocation, *body.index_map, threads);
-  } else if (is_cpd) {
-    body.model = make_cpd_model(of, materials, body.factors, body.points, body.setting,
-                                std::move(bonds), cut, *body.index_map, threads);
-  } else {
-    body.model = make_bond_model(body, materials, std::move(bonds), cut);
-  }
-  body.cut_weight = std::move(cut.weight);
-  body.cut_bonds = std::move(cut.ends);
+  MadeModel made = formulation_of(of).make_model(
+      {of, materials, body.factors, body.points, body.setting, *body.index_map, threads},
+      std::move(bonds));
+  body.model = std::move(made.model);
+  body.cut_weight = std::move(made.cut.weight);
+  body.cut_bonds = std::move(made.cut.ends);
+  body.remarks = std::move(made.remarks);
 }
 
 /// Stores interactions that can be stored if they fit into half of the memory that everything else
@@ -205,7 +165,7 @@ std::vector<double> of_materials(const PointMaterials& materials, const Points& 
 /// Finds the surface sites on which tractions of a body by collocation act.
 void take_surface(Body& body, LoadSetting& loads, int threads) {
   const BodySpecification& of = body.specification;
-  if (!of.is_collocated()) return;
+  if (!takes(of, Option::surface_loads)) return;
   loads.surface = surface_sites(body.points, body.model, of.boundary.get(), of.boundary_names,
                                 body.setting.horizon, threads);
   body.specification.boundary.reset();
@@ -330,13 +290,13 @@ double expected_bytes(const Body& body, const BodySpecification& of) {
                                        body.points.dimension, body.horizon_ratio());
   if (of.is_convolved()) {
     expected.horizon_ratio =
-        network_setting(of, body.points, body.setting).horizon / body.points.spacing;
+        setting_of_short_bonds(body.points, body.setting).horizon / body.points.spacing;
   }
   expected.bonds = expected_bonds(expected.points, body.points.dimension, expected.horizon_ratio);
-  // State-based bodies need a stored tangent for products.
-  const bool stores_states = of.has_states() && !of.is_convolved();
-  if (stores_states) reach_twice(expected);
-  return estimate_memory(expected).bytes(false, stores_states, {});
+  // Such a body needs a stored tangent for products.
+  const bool stores_twice = couples_second_neighbours(of);
+  if (stores_twice) reach_twice(expected);
+  return estimate_memory(expected).bytes(false, stores_twice, {});
 }
 
 }  // namespace
@@ -374,14 +334,11 @@ void refuse_without_ranks(const BodySpecification& of) {
         "eigenstrains, tractions, pressures, body forces, total forces and gravity, and damage of "
         "bonds, points, states and triangles");
   };
-  const MaterialSpecification& material = of.material;
-  if (is_polynomial(material.model)) refuse("material.model");
-  if (of.form == SolidForm::printed) refuse("form");
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.controls.empty()) refuse("controls");
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const LoadSpecification::Kind kind = of.loads[k].kind;
-    if (kind == LoadSpecification::Kind::stress && !of.is_collocated()) {
+    if (kind == LoadSpecification::Kind::stress && !takes(of, Option::surface_loads)) {
       refuse("loads[" + std::to_string(k) + "]." + load_key(kind));
     }
   }
@@ -403,7 +360,8 @@ std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
   complete_body(
       *body, of,
       [&](const BondSetting& setting) {
-        return make_bonds(part, of.surface_correction, setting, ranks, threads, bonds_of_part(of));
+        return make_bonds(part, of.surface_correction, setting, ranks, threads,
+                          formulation_of(of).part_bonds);
       },
       threads);
   return body;
@@ -457,8 +415,7 @@ MemoryEstimate estimate_memory(const Body& body) {
   for (const auto& term : body.model.terms()) {
     size.blocks = std::max(size.blocks, double(term->couplings().partner.size()));
   }
-  if (body.specification.has_states() && !size.is_convolved)
-    size.coupling_ratio = 2.0 * size.horizon_ratio;
+  if (couples_second_neighbours(body.specification)) size.coupling_ratio = 2.0 * size.horizon_ratio;
   if (!body.model.balances().potential) {
     // Couplings reach two horizons: 2^d as many points as one.
     const double near = 2.0 * size.bonds / std::max(size.points, 1.0) + 1.0;
@@ -486,7 +443,7 @@ std::vector<std::string> describe_interactions(const Body& body) {
     }
   }
   const auto* const points = body.model.find<PointTerm>();
-  if (points != nullptr && points->is_convolved()) {
+  if (points != nullptr && points->has_lattice()) {
     lines.push_back(fmt::format("summed by convolutions over a box of {} sites",
                                 points->lattice()->box.count()));
   }

@@ -6,11 +6,10 @@
 #include <vector>
 
 #include "assembly/terms/model.hpp"
+#include "solvers/formulations/formulations.hpp"
+#include "solvers/formulations/specification/body_specification.hpp"
 #include "solvers/linear/memory_estimate.hpp"
 #include "solvers/ranks/make_index_map.hpp"
-#include "solvers/study/body_specification.hpp"
-#include "solvers/study/bond_materials.hpp"
-#include "solvers/study/collocation_model.hpp"
 #include "src/conditions/conditions.hpp"
 #include "src/parallel/index_map.hpp"
 
@@ -41,7 +40,7 @@ struct Body {
   std::vector<double> cut_weight;    ///< per point, sum over the bonds that pre-cracks have cut
                                      ///< [m6]
   std::vector<BondEnds> cut_bonds;   ///< by pre-cracks
-  CollocationSummary collocation;    ///< of model lps
+  std::vector<std::string> remarks;  ///< of its formulation, for `check`
   double seconds_neighbourhood = 0.0;
   std::unique_ptr<const IndexMap> index_map;
 

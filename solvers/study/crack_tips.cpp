@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "solvers/study/cpd_model.hpp"
-#include "solvers/study/point_materials.hpp"
+#include "solvers/formulations/formulations.hpp"
+#include "solvers/formulations/materials/point_materials.hpp"
 #include "src/conditions/points_of_set.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -17,38 +17,10 @@ namespace peristat {
 namespace {
 
 TipElasticity elasticity_of(const PointMaterials::Material& material, const Body& body) {
-  const int dimension = body.points.dimension;
-  const bool is_bond = has_bonds(material.of->model);
-  if (is_bond) {
-    // The given modulus, calibrated on the lattice or in the continuum; a micromodulus by the
-    // continuum.
-    const double of_continuum = youngs_modulus_of(
-        micromodulus_of(*material.of, material.key, body.setting).at(1.0), body.setting);
-    const double modulus = material.of->youngs_modulus.value_or(of_continuum);
-    const double nu = poisson_ratio(body.setting);
-    const bool is_thin = dimension == 2 && body.setting.plane == PlaneState::stress;
-    return is_thin ? TipElasticity::plane_stress(modulus, nu)
-                   : TipElasticity::plane_strain(modulus, nu);
-  }
-  if (has_lame_constants(material.of->model)) {
-    const double modulus = *material.of->youngs_modulus, nu = *material.of->poisson_ratio;
-    const bool is_thin = dimension == 2 && body.setting.plane == PlaneState::stress;
-    return is_thin ? TipElasticity::plane_stress(modulus, nu)
-                   : TipElasticity::plane_strain(modulus, nu);
-  }
-  const BondSetting& setting = body.setting;
-  const CpdConstants constants =
-      cpd_constants_of(*material.of, material.key, setting, body.points.spacing);
-  const CpdStiffness stiffness =
-      material.of->calibrated_on() == Calibration::lattice
-          ? lattice_stiffness(setting, body.points.spacing)
-          : continuum_stiffness(dimension, setting.horizon, setting.cross_section);
-  const LameModuli moduli = stiffness.moduli(constants);
-  const double modulus = youngs_modulus_of(moduli, dimension),
-               nu = poisson_ratio_of(moduli, dimension);
-  // In 2D nothing exists outside the plane: the moduli are those of plane stress.
-  return dimension == 2 ? TipElasticity::plane_stress(modulus, nu)
-                        : TipElasticity::plane_strain(modulus, nu);
+  const Moduli of = formulation_of(body.specification)
+                        .moduli(*material.of, material.key, body.setting, body.points.spacing);
+  return of.is_thin ? TipElasticity::plane_stress(of.youngs_modulus, of.poisson_ratio)
+                    : TipElasticity::plane_strain(of.youngs_modulus, of.poisson_ratio);
 }
 
 /// Returns the material of the points about a tip; refuses a ring with two.

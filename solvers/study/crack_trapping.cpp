@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "solvers/formulations/formulations.hpp"
+
 namespace peristat {
 namespace {
 
@@ -21,8 +23,8 @@ constexpr std::array<Measured, 2> measured{{{2, 3.015, 1.14, 1.19}, {2, 4.015, 1
 constexpr double same_ratio = 0.1;
 
 bool is_brittle(const MaterialSpecification& material) {
-  return material.model == MaterialModel::bond &&
-         material.damage.law == DamageLaw::critical_stretch;
+  return material.damage.law == DamageLaw::critical_stretch &&
+         formulation_of(material).has_measured_trapping;
 }
 
 }  // namespace

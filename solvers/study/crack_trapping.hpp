@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "solvers/study/body_specification.hpp"
+#include "solvers/formulations/specification/body_specification.hpp"
 
 namespace peristat {
 

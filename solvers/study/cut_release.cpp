@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "assembly/terms/damage.hpp"
+#include "solvers/formulations/formulations.hpp"
 #include "solvers/search/newton.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -33,10 +34,11 @@ Crack segment_ahead(const CrackTipSpecification& tip, const Points& points) {
 
 void refuse_what_has_no_rate(const Body& body, const CrackTipSpecification& tip,
                              const std::string& key) {
-  if (body.specification.is_convolved() && body.specification.has_states()) {
+  const Formulation& can = formulation_of(body.specification);
+  if (body.specification.is_convolved() && can.couples_second_neighbours) {
     throw InputError(key, number_text(tip.cut),
-                     "needs bonds to cut, which lps with operator \"fft\" does not have; take "
-                     "\"bonds\", or J without a cut");
+                     "needs bonds to cut, which this model with operator \"fft\" does not have; "
+                     "take \"bonds\", or J without a cut");
   }
   const Conditions& conditions = *body.conditions;
   if (!(tip.cut >= body.setting.reach() * (1.0 - 1e-9))) {

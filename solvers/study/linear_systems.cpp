@@ -270,7 +270,8 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
     linear.method = LinearMethod::conjugate_gradients;
   if (options.tangent == TangentStorage::matrix_free &&
       (kind == TangentKind::stored || kind == TangentKind::rows))
-    throw InputError("tangent", "matrix_free", "is for bonds only");
+    throw InputError("tangent", "matrix_free",
+                     "is for bonds alone: other models need the stored tangent");
   LinearProblem problem;
   problem.is_symmetric = is_symmetric;
   problem.index_map = &index_map;

@@ -5,7 +5,7 @@
 
 #include "assembly/terms/points/point_term.hpp"
 #include "assembly/terms/states/state_term.hpp"
-#include "solvers/study/point_materials.hpp"
+#include "solvers/formulations/formulations.hpp"
 #include "src/conditions/absorption.hpp"
 #include "src/conditions/initial_state.hpp"
 #include "src/core/input_error.hpp"
@@ -103,8 +103,7 @@ MotionSetting make_motion_setting(const Body& body) {
     setting.absorption.resize(dofs, 0.0);
     setting.absorption[dof] = rates[dof / d];
   }
-  setting.most_points =
-      body.specification.material.model == MaterialModel::bond ? 2 : body.points.dimension + 1;
+  setting.most_points = formulation_of(body.specification).most_points(body.points.dimension);
   if (const auto* states = body.model.find<StateTerm>()) {
     setting.most_points = most_points_of_states(*states, body);
   } else if (const auto* of_points = body.model.find<PointTerm>()) {

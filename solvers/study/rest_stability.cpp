@@ -10,11 +10,11 @@
 
 #include <fmt/format.h>
 
+#include "solvers/formulations/formulations.hpp"
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/iterative_solver.hpp"
 #include "solvers/linear/rigid_pieces.hpp"
-#include "solvers/study/cpd_model.hpp"
 #include "solvers/study/linear_systems.hpp"
 #include "solvers/study/require_memory_for.hpp"
 #include "solvers/study/without_equation.hpp"
@@ -56,10 +56,12 @@ Stability at_rest(LinearSolver& solver, const TangentOperator& tangent, const Fr
 /// A material with a negative constant, and the key of that constant; the key is empty if there is
 /// none.
 std::pair<PointMaterials::Material, std::string> negative_material(const Body& body) {
+  const Formulation& formulation = formulation_of(body.specification);
+  if (!formulation.negative_constant) return {};
   const PointMaterials materials(body.specification, body.points);
   for (const auto& material : all_materials(body.specification, materials)) {
-    const std::string negative = negative_constant(
-        cpd_constants_of(*material.of, material.key, body.setting, body.points.spacing));
+    const std::string negative = formulation.negative_constant(*material.of, material.key,
+                                                               body.setting, body.points.spacing);
     if (!negative.empty()) return {material, negative};
   }
   return {};
@@ -68,12 +70,12 @@ std::pair<PointMaterials::Material, std::string> negative_material(const Body& b
 }  // namespace
 
 void refuse_unstable_rest(const Body& body, const StudyOptions& options) {
-  if (body.specification.material.model != MaterialModel::cpd) return;
   const auto [of, negative] = negative_material(body);
+  if (negative.empty()) return;
   const FreeDofs free(without_equation(body), body.points.dimension);
   const Communicator& ranks = body.index_map->ranks();
   const Communicator::Counts equations = ranks.count_all(free.count());
-  if (negative.empty() || equations.all == 0) return;
+  if (equations.all == 0) return;
 
   const LinearSystems systems = choose_linear_systems(options, body, {});
   require_memory_for(body, systems.bytes);

@@ -31,11 +31,11 @@ void refuse_modes_without_potential(const Body& body, const StudyOptions& option
   if (body.specification.is_convolved()) return;  // choose_linear_systems refuses their modes
   if (is_explicit) {
     throw InputError("dynamics.scheme", "verlet",
-                     "is for models with an energy; \"lps\" by collocation takes \"newmark\"");
+                     "is for models with an energy; this model takes \"newmark\"");
   }
   if (options.loading.mode != Mode::newton && options.loading.mode != Mode::dynamics) {
     throw InputError("loading.mode", std::string(options.loading.mode.name),
-                     "is for models with an energy; \"lps\" takes mode newton or dynamics");
+                     "is for models with an energy; this model takes mode newton or dynamics");
   }
   if (body.conditions->control()) {
     throw InputError("controls", "", "a control is for models with an energy");
@@ -46,20 +46,22 @@ void refuse_modes_without_potential(const Body& body, const StudyOptions& option
   }
 }
 
-/// Refuses mode path for state-based bodies: it assumes that a body loses just what its bonds lose.
+/// Refuses mode path for bodies whose points have states: it assumes that a body loses just what
+/// its bonds lose.
 void refuse_events_of_states(const Body& body, const StudyOptions& options) {
-  const bool has_bonds = !body.specification.has_states() || body.specification.is_convolved();
-  if (has_bonds || options.loading.mode != Mode::path) return;
+  const OptionSet can = options_of(body.specification);
+  const bool loses_more = can.has(Option::critical_stretch) && !can.has(Option::events);
+  if (!loses_more || options.loading.mode != Mode::path) return;
   throw InputError("loading.mode", std::string(options.loading.mode.name),
-                   "is for models \"bond\" and \"cpd\": when a bond of \"lps\" breaks, its points "
-                   "also lose dilatation");
+                   is_for(Option::events) +
+                       ": when a bond of this model breaks, its points also lose dilatation");
 }
 
 /// Points that fail one by one have no strength that a step could be led to, and what follows one
 /// has no stand-in.
 void refuse_modes_of_failing_points(const Body& body, const StudyOptions& options) {
   const Mode mode = options.loading.mode;
-  if (!body.specification.is_linear() && !body.specification.is_convolved()) return;
+  if (takes(body.specification, Option::critical_stretch)) return;
   if (options.loading.max_broken_bonds > 0 && body.model.fails_in_avalanches()) {
     throw InputError(
         "loading.max_broken_bonds", std::to_string(options.loading.max_broken_bonds),

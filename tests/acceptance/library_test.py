@@ -48,6 +48,24 @@ steps = 2
 name = "end"
 set = "right"
 field = "displacement"
+[[probe]]
+name = "above_hole"
+at = [0.0, 5.5e-3]
+field = "stress"
+component = "xx"
+"""
+# Follows a case file and prints its probes.
+READER = """
+#include <cstdio>
+#include <peristat/peristat.hpp>
+using namespace peristat;
+int main(int, char** arguments) {
+  const Case from = read_case(arguments[1]);
+  const auto body = make_body(from, 2);
+  const StudyResult result = solve(*body, study_options(from, 2));
+  Observation observed(*body, result.state);
+  for (const ProbeSpecification& probe : from.probes) std::printf("%.17g\\n", probe_values(probe, observed)[0]);
+}
 """
 # Another program with its own src/, and in it a header with the name of one of ours.
 OTHERS_POINTS = "#error the program's own header was taken for peristat's\n"
@@ -80,7 +98,7 @@ class Library(Folder):
     def test_the_example_gives_what_the_case_gives(self):
         self.build(EXAMPLES, self.folder / "build")
         told = run(self.folder / "build/plate", environment={"OMP_NUM_THREADS": "2", "OMP_WAIT_POLICY": "passive"})
-        displacement, reaction = (float(value) for value in re.findall(r"(\S+) (?:m|N)\n", told))
+        displacement, reaction, stress = (float(value) for value in re.findall(r"(\S+) (?:m|N|Pa)\n", told))
 
         # The installed program finds its module in the same prefix.
         results = self.folder / "results"
@@ -89,10 +107,22 @@ class Library(Folder):
         # The same computation: only the number of printed digits differs.
         self.assertAlmostEqual(displacement / last["end_x"], 1.0, delta=1e-12)
         self.assertAlmostEqual(reaction / last["reaction_x:left"], 1.0, delta=1e-12)
+        self.assertAlmostEqual(stress / last["above_hole"], 1.0, delta=1e-12)
         # F L / (E w h) of the plate without its hole; the hole and the ends, which are pulled across three rows, make
         # it softer by a tenth or so.
         whole = 12.8e3 * 0.15 / (192e9 * 0.05 * 1e-3)
         self.assertAlmostEqual(displacement / whole, 1.1, delta=0.1)
+
+    def test_a_case_file_is_read(self):
+        shutil.copytree(EXAMPLES, self.folder / "reader")
+        (self.folder / "reader/plate.cpp").write_text(READER, "utf-8")
+        self.build(self.folder / "reader", self.folder / "reader_build")
+        environment = {"OMP_NUM_THREADS": "2", "OMP_WAIT_POLICY": "passive"}
+        told = run(self.folder / "reader_build/plate", self.case(THE_SAME_CASE), environment=environment)
+        run(self.prefix / "bin/peristat", "run", self.case(THE_SAME_CASE), "--output", self.folder / "read", "--threads", 2)
+        last = table(self.folder / "read/history.csv")[-1]
+        for value, name in zip(told.split(), ("end_x", "above_hole"), strict=True):
+            self.assertAlmostEqual(float(value) / last[name], 1.0, delta=1e-12)
 
     def test_headers_do_not_collide_with_a_program_s_own(self):
         source = self.folder / "other"

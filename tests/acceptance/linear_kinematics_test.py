@@ -228,6 +228,11 @@ solver = {relative_tolerance = 1e-12, linear_tolerance = 1e-6}
                 one, other = (file["steps"][last][field][:] for file in (bonds, fft))
                 numpy.testing.assert_allclose(one, other, atol=1e-9 * abs(one).max())
 
+    def test_check_judges_no_quadrature_of_short_bonds(self):
+        for operator, count in (("bonds", 1), ("fft", 0)):
+            said = self.assert_completed(self.command("check", STRIP, f"solver.operator={operator}")).said
+            self.assertEqual(said.count("energy of a confined strain"), count)
+
     def test_check_estimates_the_memory(self):
         cube = """\
 dimension = 3

@@ -263,7 +263,7 @@ class States(Folder):
             (PLATE.replace('form = "energy"', 'form = "energy"\nsurface_correction = "volume"') + PULL, ("surface_correction",)),
             (PLATE.replace('form = "energy"', 'form = "force"') + PULL, ("quadrature.form", "energy")),
             (PULLED + '[solver]\nmode = "path"\n', ("mode", "path")),
-            (PLATE + REGION + '[[interface]]\nrule = "weaker"\n' + PULL, ("interface", "energy")),
+            (PLATE + REGION + '[[interface]]\nrule = "weaker"\n' + PULL, ("interface", '"lps" by collocation')),
             (PLATE + PULL + '[[symmetry]]\naxis = "x"\n', ("symmetry",)),
             (PLATE + PULL + '[solver]\ntangent = "matrix_free"\n', ("matrix_free",)),
             (PLATE + PULL + '[[load]]\nside = "y+"\ntraction = [0, 1]\ndepth = "surface"\n', ("depth",)),
@@ -275,6 +275,16 @@ class States(Folder):
                 said = self.refusal(text)
                 for word in words:
                     self.assertIn(word, said)
+
+    def test_check_reports_the_fracture_energy_that_was_given(self):
+        """With any kernel: its critical stretch is that of this energy."""
+        for kernel in ("inverse", "constant"):
+            text = PLATE + f'influence = "{kernel}"\n' + DAMAGE.replace("critical = 0.01", "fracture_energy = 0.3") + PULL
+            said = self.assert_completed(self.command("check", text)).said
+            self.assertIn("fracture energy 0.3 J/m2 under a uniform dilation", said)
+
+    def test_its_constants_need_no_calibration(self):
+        self.assert_refused(self.command("calibrate", PLATE + PULL), "material.model = lps", "as they are given")
 
     def test_the_kernel_is_the_inverse_one_unless_told(self):
         told = [self.check_tangent(PLATE + more, "1.01*x; y")["energy"]

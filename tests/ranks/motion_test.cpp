@@ -10,9 +10,9 @@
 
 #include <gtest/gtest.h>
 
+#include "solvers/formulations/formulations.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
-#include "solvers/study/bonds_of_part.hpp"
 #include "solvers/study/study.hpp"
 #include "src/geometry/lattice.hpp"
 #include "src/geometry/slab.hpp"
@@ -43,7 +43,7 @@ std::unique_ptr<const Body> whole_body(const RanksBody& body) {
 std::unique_ptr<const Body> part_of(const RanksBody& body, const BodySpecification& of) {
   Part slab = make_slab(body.lattice, all_ranks());
   const double reach = reach_of_bonds(slab.points, of.surface_correction, body.setting(),
-                                      all_ranks(), bonds_of_part(of));
+                                      all_ranks(), formulation_of(of).part_bonds);
   return make_body(distribute(std::move(slab), of.horizon, reach, all_ranks(), 1), of, all_ranks(),
                    1);
 }

@@ -10,11 +10,11 @@
 #include "assembly/assembler.hpp"
 #include "assembly/operators/rows_of_energy.hpp"
 #include "assembly/operators/tangent.hpp"
+#include "solvers/formulations/formulations.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 #include "solvers/ranks/part_tangent.hpp"
 #include "solvers/study/body.hpp"
-#include "solvers/study/bonds_of_part.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/slab.hpp"
 #include "src/neighbourhood/ghost_sites.hpp"
@@ -86,8 +86,8 @@ std::unique_ptr<const Body> part_of_body(const RanksBody& body, const BodySpecif
   const Communicator& ranks = all_ranks();
   Part slab = make_slab(body.lattice, ranks);
   const BondSetting setting = bond_setting(of, slab.points);
-  const double reach =
-      reach_of_bonds(slab.points, of.surface_correction, setting, ranks, bonds_of_part(of));
+  const double reach = reach_of_bonds(slab.points, of.surface_correction, setting, ranks,
+                                      formulation_of(of).part_bonds);
   return make_body(distribute(std::move(slab), of.horizon, reach, ranks, 1), of, ranks, 1);
 }
 
@@ -386,9 +386,9 @@ struct BothCollocated : Both {
     const Communicator& ranks = all_ranks();
     Part slab = make_slab(body.lattice, ranks);
     const BondSetting setting = bond_setting(of, slab.points);
-    const double reach =
-        reach_of_bonds(slab.points, of.surface_correction, setting, ranks, bonds_of_part(of)) +
-        ranks.max(reach_beyond_balls(body.lattice, slab.points));
+    const double reach = reach_of_bonds(slab.points, of.surface_correction, setting, ranks,
+                                        formulation_of(of).part_bonds) +
+                         ranks.max(reach_beyond_balls(body.lattice, slab.points));
     Part part = distribute(std::move(slab), of.horizon, reach, ranks, 1);
     part.points.ghosts = ghost_sites(body.lattice, part.points, of.horizon).reference;
     return make_body(std::move(part), of, ranks, 1);

@@ -33,13 +33,26 @@ ROOMS = [
     "assembly",
     "solvers/linear",
     "solvers/ranks",
+    "solvers/formulations/specification",
+    "solvers/formulations/materials",
+    "solvers/formulations/interface",
+    "solvers/formulations/convolved",
+    "solvers/formulations/solid",
+    "solvers/formulations/bond",
+    "solvers/formulations/linear_bond",
+    "solvers/formulations/green_bond",
+    "solvers/formulations/cpd",
+    "solvers/formulations/lps_energy",
+    "solvers/formulations/lps_collocation",
+    "solvers/formulations/correspondence",
+    "solvers/formulations",
     "solvers/problem",
     "solvers/fracture",
     "solvers/search",
     "solvers/motion",
     "solvers/drivers",
-    "solvers/observe",
     "solvers/study",
+    "solvers/observe",
     "cases/runner/process",
     "cases/runner/input",
     "cases/runner/setup",
@@ -48,7 +61,7 @@ ROOMS = [
     "cases/runner",
 ]
 # Ceilings, to be lowered.
-PARTITION_BRANCHES, MODEL_BRANCHES = 60, 129
+PARTITION_BRANCHES, MODEL_BRANCHES = 60, 15
 OUTSIDE = ["tests", "benchmarks"]
 # Headers outside the standard library that headers of a floor may include; keep it this small.
 ALLOWED_IN_HEADERS = {"omp.h"}
@@ -162,7 +175,11 @@ class Architecture(unittest.TestCase):
 
     def test_few_places_know_the_models(self):
         """A new model has to be added to each of them."""
-        asking = lines_with(r"MaterialModel::\w|\bis_(convolved|collocated|polynomial|cpd|lps)\(|\bhas_states\(")
+        asking = [
+            line
+            for line in lines_with(r"MaterialModel::\w|\bis_(convolved|collocated|polynomial|cpd|lps)\(|\bhas_states\(")
+            if not line.startswith("solvers/formulations/")
+        ]
         self.assertLessEqual(len(asking), MODEL_BRANCHES, asking)
 
     def test_the_code_is_formatted(self):

@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include "cases/runner/results/probe.hpp"
-#include "solvers/study/cpd_model.hpp"
+#include "solvers/formulations/cpd/cpd_model.hpp"
+#include "solvers/observe/probe.hpp"
 #include "src/core/number_text.hpp"
 #include "tests/verification/solved_case.hpp"
 
@@ -166,9 +166,9 @@ Overrides constants_for(const PoissonCase& wanted) {
 double measured_poisson_ratio(const SolvedCase& solved) {
   const ProbeSpecification& probe = solved.from.probes.at(0);
   EXPECT_EQ(probe.name, "poisson_ratio");
-  StepFields fields;
-  fields.displacement = &solved.result.state.displacement;
-  return probe_values(probe, solved.body->points, fields, {}).at(0);
+  return probe_values(probe, solved.body->points,
+                      {{"displacement", solved.result.state.displacement}}, {})
+      .at(0);
 }
 
 double axis_poisson_ratio(const SolvedCase& solved) {

@@ -17,7 +17,7 @@ LinearTerm::LinearTerm(std::shared_ptr<const Bonds> bonds, double micromodulus,
 
 std::unique_ptr<LatticeForces> LinearTerm::forces(const Points& points, Workspace& shared) const {
   constexpr std::array<bool, 3> open{};
-  if (!is_convolved()) {
+  if (!has_lattice()) {
     return std::make_unique<LinearBondSums>(points, bonds(), micromodulus(), shared);
   }
   const ConvolvedLattice& of = *lattice();

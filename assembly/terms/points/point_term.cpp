@@ -54,7 +54,7 @@ class PointPasses : public TermPasses, BlockTangent, RowVisits, ProductOperator 
   Evaluation commit_forces(std::span<const double> displacement,
                            const SharedEnvironment& environment, History& history,
                            std::span<double> gradient, Write how) override {
-    if (failure_.can_fail() || term_.is_convolved()) {
+    if (failure_.can_fail() || term_.has_lattice()) {
       return commit(displacement, environment, history, gradient, how, Failing::until_none_does);
     }
     forces_->find_forces(own(displacement), force_);
@@ -299,7 +299,7 @@ class PointPasses : public TermPasses, BlockTangent, RowVisits, ProductOperator 
     if (!gradient.empty()) write(force_, -1.0, gradient, how);
     Evaluation found;
     found.energy = stored(displacement);
-    if (!has_half_work_ && term_.is_convolved()) found.round_off = round_off_at(displacement);
+    if (!has_half_work_ && term_.has_lattice()) found.round_off = round_off_at(displacement);
     found.degenerate = !std::isfinite(found.energy);
     return found;
   }
@@ -352,24 +352,24 @@ PointTerm::PointTerm(std::shared_ptr<const Bonds> bonds, double micromodulus,
     : micromodulus_(micromodulus),
       failure_(std::make_shared<PointFailure>(std::move(bonds), micromodulus, std::move(bearable),
                                               std::move(lattice), threads)) {
-  if (is_convolved()) no_couplings_.assign(std::size_t(this->bonds().points()) + 1, 0);
+  if (has_lattice()) no_couplings_.assign(std::size_t(this->bonds().points()) + 1, 0);
 }
 
 std::vector<InteractionCount> PointTerm::counts() const {
-  if (!is_convolved()) return {bond_count(bonds())};
+  if (!has_lattice()) return {bond_count(bonds())};
   return {{"bonds", failure_->count_of_bonds(), "neighbours", "neighbours within the horizon, #N1",
            failure_->neighbours()}};
 }
 
 Couplings PointTerm::couplings() const {
-  if (!is_convolved()) return bonds();
+  if (!has_lattice()) return bonds();
   return {no_couplings_, std::span<const Index>()};
 }
 
 double PointTerm::stored_bytes() const {
   const double points = double(bonds().points());
   const double own = 8.0 * points * double(4 + (failure_->can_fail() ? 3 : 0));
-  return own + (is_convolved() ? bytes_of_forces() : 0.0);
+  return own + (has_lattice() ? bytes_of_forces() : 0.0);
 }
 
 std::unique_ptr<TermPasses> PointTerm::passes(const TermSetting& setting) const {

@@ -31,7 +31,7 @@ class PointTerm : public Term {
   [[nodiscard]] double micromodulus() const { return micromodulus_; }
   [[nodiscard]] const PointFailure& point_failure() const { return *failure_; }
   [[nodiscard]] const Bonds& bonds() const { return failure_->bonds(); }
-  [[nodiscard]] bool is_convolved() const { return lattice().has_value(); }
+  [[nodiscard]] bool has_lattice() const { return lattice().has_value(); }
   [[nodiscard]] const std::optional<ConvolvedLattice>& lattice() const {
     return failure_->lattice();
   }
@@ -42,7 +42,7 @@ class PointTerm : public Term {
 
   [[nodiscard]] Couplings couplings() const override;
   [[nodiscard]] TangentKind tangent_kind() const override {
-    return is_convolved() ? TangentKind::products : TangentKind::visited;
+    return has_lattice() ? TangentKind::products : TangentKind::visited;
   }
   [[nodiscard]] bool has_symmetric_blocks() const override { return true; }
   [[nodiscard]] std::shared_ptr<const FailureModel> failure() const override { return failure_; }

@@ -8,7 +8,10 @@
 
 #include "cases/runner/commands/calibrate_bonds.hpp"
 #include "cases/runner/setup/body.hpp"
-#include "solvers/study/bond_materials.hpp"
+#include "solvers/formulations/check_specification.hpp"
+#include "solvers/formulations/cpd/cpd.hpp"
+#include "solvers/formulations/formulations.hpp"
+#include "solvers/formulations/materials/bond_materials.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
@@ -311,10 +314,10 @@ Exit calibrate(const CalibrationQuestion& question, const DamageSpecification& d
 }
 
 Exit calibrate(const Case& from, bool with_strengths) {
-  if (has_bonds(from.material.model)) return calibrate_bonds(from, with_strengths);
-  if (from.material.model == MaterialModel::correspondence) {
-    throw InputError("material.model", "correspondence",
-                     "uses the constants as they are given; calibrate is for the other models");
+  if (takes(from, Option::micromodulus)) return calibrate_bonds(from, with_strengths);
+  if (!takes(from, Option::constants)) {
+    throw InputError("material.model", name_of(from.material.model),
+                     "uses E and nu as they are given; calibrate " + is_for(Option::calibration));
   }
   const Points points = make_points_of(from);
   located_errors(from, [&] { require_whole_square_cells(points); });

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "solvers/study/bond_materials.hpp"
-#include "solvers/study/bond_potential.hpp"
-#include "solvers/study/fracture_data.hpp"
+#include "solvers/formulations/formulations.hpp"
+#include "solvers/formulations/materials/bond_materials.hpp"
+#include "solvers/formulations/materials/bond_potential.hpp"
 #include "src/core/input_error.hpp"
 
 namespace peristat {
@@ -145,7 +145,7 @@ std::string bond_calibration(const MaterialSpecification& material, const std::s
     throw InputError(key + ".fibre", "",
                      "calibrate is for materials without fibres; check prints their constants");
   }
-  const FractureScale scale = FractureScale::of(material, key, setting, spacing);
+  const FractureScale scale = fracture_scale_of(material, key, setting, spacing);
   std::optional<BulkBonds> bonds;
   if (setting.lattice) bonds.emplace(setting);
   std::vector<std::string> pairs{
@@ -170,9 +170,9 @@ std::string damage_calibration(const MaterialSpecification& material, const std:
         {exact_pair("energy_density", bearable_energy_density(material.damage, setting.horizon)),
          exact_pair("fracture_energy", *material.damage.fracture_energy)});
   }
-  const FractureScale scale = FractureScale::of(material, key, setting, spacing);
+  const FractureScale scale = fracture_scale_of(material, key, setting, spacing);
   std::optional<BulkBonds> bonds;
-  if (setting.lattice && material.model == MaterialModel::bond) bonds.emplace(setting);
+  if (setting.lattice && takes(material.model, Option::micromodulus)) bonds.emplace(setting);
   return damage_section(with_stretches(material.damage, key, scale), scale, bonds,
                         setting.dimension, with_strengths);
 }

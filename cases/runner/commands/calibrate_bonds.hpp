@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "solvers/study/body_specification.hpp"
+#include "solvers/formulations/specification/body_specification.hpp"
 
 namespace peristat {
 

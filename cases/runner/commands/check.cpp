@@ -13,16 +13,13 @@
 #include "cases/runner/setup/preflight.hpp"
 #include "cases/runner/setup/preflight_rules.hpp"
 #include "cases/runner/setup/solver_options.hpp"
+#include "solvers/formulations/formulations.hpp"
+#include "solvers/formulations/materials/bond_potential.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
-#include "solvers/study/bond_materials.hpp"
-#include "solvers/study/bond_potential.hpp"
-#include "solvers/study/collocation_model.hpp"
-#include "solvers/study/cpd_model.hpp"
 #include "solvers/study/crack_tips.hpp"
 #include "solvers/study/crack_trapping.hpp"
 #include "solvers/study/found_loads.hpp"
-#include "solvers/study/fracture_data.hpp"
 #include "solvers/study/linear_systems.hpp"
 #include "solvers/study/study.hpp"
 #include "src/neighbourhood/neighbour_counts.hpp"
@@ -69,26 +66,6 @@ std::string seconds_text(double seconds) {
 /// "constants", or "constants of fibres": with several materials, lines name theirs.
 std::string heading(const std::string& what, const std::string& of) {
   return of.empty() ? fmt::format("{:<11}", what) : fmt::format("{} of {}:", what, of);
-}
-
-/// Prints constants of bonds and their moduli.
-void print_bond_constants(const PointMaterials::Material& of, const std::string& name,
-                          const BondSetting& setting) {
-  const DirectedConstant constant = micromodulus_of(*of.of, of.key, setting);
-  if (of.of->fibre) {
-    const FibreSpecification& fibre = *of.of->fibre;
-    const double along = *of.of->youngs_modulus, across = fibre.transverse_modulus;
-    fmt::print(
-        "{} micromodulus {:.6g} N/m6 along the fibres, {:.6g} N/m6 across, at least {:.6g} N/m6; "
-        "Young's moduli {:.6g} and {:.6g} Pa, shear modulus {:.6g} Pa\n",
-        heading("constants", name), constant.at(1.0), constant.at(0.0), constant.least(), along,
-        across, fibre.shear_modulus.value_or(natural_shear(along, across, setting)));
-    return;
-  }
-  const double modulus = constant.at(1.0);
-  fmt::print("{} micromodulus {:.6g} N/m6, Young's modulus {:.6g} Pa, Poisson's ratio {:.4g}\n",
-             heading("constants", name), modulus, youngs_modulus_of(modulus, setting),
-             poisson_ratio(setting));
 }
 
 /// ": fracture energy 10 J/m2, …"; empty if computing it would take minutes.
@@ -138,8 +115,8 @@ void print_strengths(const DamageSpecification& damage, const std::string& name,
 }
 
 /// Prints fracture energy and strength of a law of damage.
-void print_fracture(const PointMaterials::Material& of, const std::string& name,
-                    const BondSetting& setting, double spacing) {
+void print_fracture(const Formulation& formulation, const PointMaterials::Material& of,
+                    const std::string& name, const BondSetting& setting, double spacing) {
   const DamageSpecification& damage = of.of->damage;
   if (damage.law == DamageLaw::none || of.of->fibre) return;
   if (damage.law == DamageLaw::energy_density) {
@@ -147,44 +124,19 @@ void print_fracture(const PointMaterials::Material& of, const std::string& name,
                bearable_energy_density(damage, setting.horizon));
     return;
   }
-  if (of.of->model == MaterialModel::lps) {
-    const double per_square = crack_energy_of_dilation(lame_constants(*of.of, setting.dimension),
-                                                       setting.horizon, setting.dimension);
+  if (formulation.crack_energy_of_dilation) {
+    const double energy = formulation.crack_energy_of_dilation(*of.of, of.key, setting, spacing);
     fmt::print("{} critical stretch {:.6g}: fracture energy {:.6g} J/m2 under a uniform dilation\n",
                heading("fracture", name), damage.critical,
-               per_square * damage.critical * damage.critical);
+               energy * damage.critical * damage.critical);
     return;
   }
-  const FractureScale scale = FractureScale::of(*of.of, of.key, setting, spacing);
+  const FractureScale scale = fracture_scale_of(*of.of, of.key, setting, spacing);
   const std::string begin = damage.softens() ? fmt::format("onset {:.6g}, ", damage.onset) : "";
   fmt::print("{} {}critical stretch {:.6g}{}{}\n", heading("fracture", name), begin,
              damage.critical, fracture_energy_text(damage, scale, setting),
              strength_text(damage, scale, setting.dimension));
   print_strengths(damage, name, scale, setting.dimension);
-}
-
-void print_cpd_constants(const PointMaterials::Material& of, const std::string& name,
-                         const Body& body) {
-  const int dimension = body.points.dimension;
-  const CpdConstants constants =
-      cpd_constants_of(*of.of, of.key, body.setting, body.points.spacing);
-  fmt::print("{} C1 {:.6g} N/m6, C2 {:.6g} N/m10, C3 {:.6g} N/m14\n", heading("constants", name),
-             constants.c1, constants.c2, constants.c3);
-  const auto print_moduli = [&](const char* where, const CpdStiffness& stiffness) {
-    const CubicElasticity elasticity = stiffness.elasticity(constants);
-    const LameModuli moduli = elasticity.isotropic(dimension);
-    fmt::print(
-        "{} {}: Young's modulus {:.6g} Pa, Poisson's ratio {:.4g} (along the axes "
-        "{:.4g}), "
-        "anisotropy {:.4g}\n",
-        heading("moduli", name), where, youngs_modulus_of(moduli, dimension),
-        poisson_ratio_of(moduli, dimension), elasticity.axis_poisson_ratio(dimension),
-        elasticity.anisotropy());
-  };
-  print_moduli("lattice", lattice_stiffness(body.setting, body.points.spacing));
-  if (body.setting.influence) return;  // continuum moduli are not known with an influence function
-  print_moduli("continuum",
-               continuum_stiffness(dimension, body.setting.horizon, body.setting.cross_section));
 }
 
 /// Prints the error of the quadrature of bonds, whatever their constants.
@@ -199,46 +151,27 @@ void print_quadrature(const Case& from, const Body& body, int threads) {
       confined_energy_error(body.points, bonds, body.setting));
 }
 
-/// Prints Lame's constants of models lps and correspondence.
-void print_lame_constants(const PointMaterials::Material& of, const std::string& name,
-                          int dimension) {
-  const LamePair constants = lame_constants(*of.of, dimension);
-  fmt::print("{} lambda {:.6g} Pa, mu {:.6g} Pa\n", heading("constants", name), constants.lambda,
-             constants.mu);
-}
-
-/// Prints properties of the weights of collocated model lps.
-void print_collocation(const Case& from, const Body& body) {
-  const CollocationSummary& of = body.collocation;
-  fmt::print(
-      "quadrature  exact to degree {}; weights solved for in {} of {} neighbourhoods, {} weights "
-      "below 0",
-      from.collocation.degree, of.solves, body.points.count(), of.negative);
-  fmt::print(", the lowest is {:.4g} of a cell", of.lowest);
-  if (of.lowered > 0) fmt::print("; exact only to a lower degree at {} points", of.lowered);
-  fmt::print("\n");
-}
-
 void print_constants(const Case& from, const Body& body, int threads) {
   const BodySpecification& of = body.specification;  // its stretches are computed
   const PointMaterials materials(of, body.points);
   const auto all = all_materials(of, materials);
-  const bool is_bond = has_bonds(from.material.model);
-  const bool is_solid = has_lame_constants(from.material.model);
+  const Formulation& formulation = formulation_of(of);
+  const double spacing = body.points.spacing;
   for (const auto& material : all) {
     const std::string name = from.regions.empty() ? "" : material.name;
-    if (is_bond)
-      print_bond_constants(material, name, body.setting);
-    else if (is_solid)
-      print_lame_constants(material, name, from.dimension);
-    else
-      print_cpd_constants(material, name, body);
+    for (const auto& [topic, text] :
+         formulation.describe(*material.of, material.key, body.setting, spacing)) {
+      fmt::print("{} {}\n", heading(topic, name), text);
+    }
   }
-  if (from.material.model == MaterialModel::bond) print_quadrature(from, body, threads);
-  if (from.is_collocated()) print_collocation(from, body);
+  // A convolved body stores short bonds only.
+  if (formulation.has_quadrature_of_bonds && !of.is_convolved()) {
+    print_quadrature(from, body, threads);
+  }
+  for (const std::string& remark : body.remarks) fmt::print("{}\n", remark);
   for (const auto& material : all) {
-    print_fracture(material, from.regions.empty() ? "" : material.name, body.setting,
-                   body.points.spacing);
+    print_fracture(formulation, material, from.regions.empty() ? "" : material.name, body.setting,
+                   spacing);
   }
   const BondFailure* const bonds = body.model.failing_bonds();
   const ToothedStrength teeth = bonds ? toothed_strength(bonds->potential()) : ToothedStrength();
@@ -310,7 +243,7 @@ void print_pressures(const Body& body) {
 
 const PointTerm* convolved(const Body& body) {
   const auto* const term = body.model.find<PointTerm>();
-  return term != nullptr && term->is_convolved() ? term : nullptr;
+  return term != nullptr && term->has_lattice() ? term : nullptr;
 }
 
 /// Measured time of the forces of an explicit step [s]; terms other than bonds take longer.

@@ -12,18 +12,6 @@
 namespace peristat {
 namespace {
 
-void replace_all(std::string& text, const std::string& part, const std::string& by) {
-  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += by.size())
-    text.replace(at, part.size(), by);
-}
-
-/// 1e-6 for 1e-06
-std::string short_exponents(std::string text) {
-  for (const auto& [part, by] : {std::pair("e-0", "e-"), {"e+0", "e"}, {"e+", "e"}})
-    replace_all(text, part, by);
-  return text;
-}
-
 /// N/m⁶ for N/m6
 std::string raised(const std::string& unit) {
   static const std::vector<std::string> digits{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -56,12 +44,6 @@ std::string shown_name(const TableDescription& table) {
 }
 
 }  // namespace
-
-std::string default_text(const std::string& toml) {
-  if (toml.empty()) return "none";
-  if (toml.front() == '"' || toml.front() == '[') return "`" + toml + "`";
-  return short_exponents(toml.ends_with(".0") ? toml.substr(0, toml.size() - 2) : toml);
-}
 
 std::string key_reference(const TableDescription& table) {
   std::string rows = "| key | meaning | unit | default | allowed |\n|---|---|---|---|---|\n";

@@ -18,17 +18,16 @@
 #include "cases/runner/results/crack_tip_columns.hpp"
 #include "cases/runner/results/dossier.hpp"
 #include "cases/runner/results/motion_columns.hpp"
-#include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/recorder.hpp"
 #include "cases/runner/results/results.hpp"
 #include "cases/runner/setup/body.hpp"
 #include "cases/runner/setup/part_body.hpp"
 #include "cases/runner/setup/preflight.hpp"
 #include "cases/runner/setup/preflight_rules.hpp"
-#include "cases/runner/setup/recorded_points.hpp"
 #include "cases/runner/setup/solver_options.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/lu_factor.hpp"
+#include "solvers/observe/recorded_points.hpp"
 #include "solvers/ranks/part_bonds.hpp"
 #include "solvers/study/crack_trapping.hpp"
 #include "solvers/study/found_loads.hpp"
@@ -41,11 +40,10 @@
 namespace peristat {
 namespace {
 
-std::vector<LineTable> lines_of(const Case& from, const Points& points) {
-  const RecordedPoints recorded(points);
+std::vector<LineTable> lines_of(const Case& from) {
   std::vector<LineTable> lines;
   for (const ProbeSpecification& probe : from.probes) {
-    if (probe.from) lines.push_back(LineProbe(probe, recorded).table());
+    if (probe.from) lines.push_back(line_table(probe, from.dimension));
   }
   return lines;
 }
@@ -152,7 +150,7 @@ class CaseRun {
     body_ = ranks_.count() > 1 ? make_part_body(from_, ranks_, options_.threads)
                                : make_body(from_, options_.threads);
     gathering_.emplace(*body_->index_map);
-    further_ = {from_.output.stress, lines_of(from_, body_->points)};
+    further_ = {from_.output.stress, lines_of(from_)};
     study_.emplace(*body_, study_options(from_, options_.threads),
                    [this](const std::string& reason) { recorder_->changed_solver(reason); });
     if (!gathering_->is_whole()) {

@@ -1,15 +1,18 @@
 #include "cases/runner/input/body_keys.hpp"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "cases/runner/input/key_kinds.hpp"
 #include "cases/runner/input/shape_keys.hpp"
+#include "solvers/formulations/formulations.hpp"
 #include "src/core/number_text.hpp"
 #include "src/neighbourhood/optimised_weights.hpp"
 
@@ -279,23 +282,11 @@ Table<Crack> crack_keys() {
 
 // ---- The quadrature
 
-namespace {
-
-bool is_cpd(const Case& from) { return from.material.model == MaterialModel::cpd; }
-bool is_lps(const Case& from) { return from.material.model == MaterialModel::lps; }
-
-}  // namespace
-
 Table<Case> quadrature_keys() {
   using K = Key<Case>;
-  const auto of_kernel = [](auto&, const Case& from) {
-    return !is_cpd(from) && !from.is_collocated();
+  const auto with = [](Option option) {
+    return [option](auto&, const Case& from) { return takes(from, option); };
   };
-  const auto of_bond = [](auto&, const Case& from) {
-    return from.material.model == MaterialModel::bond;
-  };
-  const auto of_lps = [](auto&, const Case& from) { return is_lps(from); };
-  const auto of_collocation = [](auto&, const Case& from) { return from.is_collocated(); };
   constexpr auto collocation = [](auto& from) -> auto& { return from.collocation; };
   return {
       "quadrature",
@@ -309,7 +300,7 @@ Table<Case> quadrature_keys() {
          "and loads of the other models except mode `path`. `\"printed\"`: forces of [FCBM] (A-8), "
          "for comparisons only; they have no potential where neighbourhoods differ, and need "
          "`solver.operator = \"fft\"` in mode `dynamics` with `scheme = \"verlet\"`")
-           .written_if(of_lps)
+           .written_if(with(Option::form))
            .on_ranks(),
        K("volume_correction", &Case::volume_correction,
          choice<VolumeCorrection>({{"none", VolumeCorrection::none},
@@ -321,7 +312,7 @@ Table<Case> quadrature_keys() {
          "its cell within the horizon; `\"exact_centroids\"`: the same, with the bond's length and "
          "influence taken at that part's centroid. The last two are for whole cells of a lattice, "
          "whose corners `cell_perturbation` may shift")
-           .written_if(of_kernel)
+           .written_if(with(Option::volume_correction))
            .on_ranks(),
        K("horizon_shape", &Case::horizon_shape,
          choice<HorizonShape>({{"ball", HorizonShape::ball},
@@ -331,7 +322,7 @@ Table<Case> quadrature_keys() {
          "by its largest component along the lattice's axes (`\"box\"`), or by the sum of these "
          "components (`\"diamond\"`). Boxes and diamonds are stiffer along some directions than "
          "along others: [moduli](theory.md#horizon-shapes) are means over all directions")
-           .written_if(of_bond)
+           .written_if(with(Option::horizon_shape))
            .on_ranks(),
        K("surface_correction", &Case::surface_correction,
          choice<SurfaceCorrection>({{"none", SurfaceCorrection::none},
@@ -340,26 +331,26 @@ Table<Case> quadrature_keys() {
          "factor that restores the stiffness of points whose neighbourhood is cut by a surface. "
          "`\"none\"`: no factor; `\"volume\"`: from the volume of the neighbourhood; `\"energy\"`: "
          "from the energy of simple deformations")
-           .written_if(of_bond)
+           .written_if(with(Option::surface_correction))
            .on_ranks(),
        K("weights", &Case::weights,
          choice<InteractionWeights>(
              {{"mean", InteractionWeights::mean}, {"bulk", InteractionWeights::bulk}}),
          "model `cpd`: weights of interactions near surfaces. `\"mean\"`: from the mean of their "
          "points' effective volumes; `\"bulk\"`: as in the bulk everywhere")
-           .written_if([](auto&, const Case& from) { return is_cpd(from); })
+           .written_if(with(Option::weights))
            .on_ranks(),
        K("degree", in(collocation, &CollocationSpecification::degree),
          count_from(least_exact_degree, "", most_exact_degree),
          "model `lps` by collocation: degree of the polynomials that the quadrature is exact for")
-           .written_if(of_collocation)
+           .written_if(with(Option::collocation))
            .on_ranks(),
        K("traction_form", in(collocation, &CollocationSpecification::traction_form),
          choice<TractionForm>({{"full", TractionForm::full}, {"paper", TractionForm::paper}}),
          "model `lps` by collocation: part of the displacements' continuation over the boundary "
          "that counts. `\"full\"`: all of it, which is exact for linear fields on every grid; "
          "`\"paper\"`: the part that [LPS] eq. 4.6 keeps")
-           .written_if(of_collocation)
+           .written_if(with(Option::collocation))
            .on_ranks(),
        K("normals", in(collocation, &CollocationSpecification::normals),
          choice<NormalSource>(
@@ -367,36 +358,29 @@ Table<Case> quadrature_keys() {
          "model `lps` by collocation: normals of surfaces. `\"numerical\"`: from the "
          "neighbourhoods; `\"exact\"`: from the shapes' faces, at points that have one face and "
          "all of their bonds")
-           .written_if(of_collocation)
+           .written_if(with(Option::collocation))
            .on_ranks()}};
 }
 
 void check_quadrature(const Entry& at, const Case& result) {
   if (!at.from.has("quadrature")) return;
   const TomlTable quadrature = at.from.table("quadrature");
-  const std::vector<std::string> of_bond{"volume_correction", "surface_correction",
-                                         "horizon_shape"},
-      of_cpd{"weights"}, of_lps{"form"}, of_collocation{"degree", "traction_form", "normals"};
-  const auto refuse = [&](const std::vector<std::string>& keys, const std::string& what) {
-    for (const std::string& key : keys) {
-      const bool is_none = key != "degree" && quadrature.has(key) &&
-                           (quadrature.string(key) == "none" || quadrature.string(key) == "ball");
-      if (quadrature.has(key) && !is_none) quadrature.refuse(key, what);
-    }
-  };
-  if (is_cpd(result))
-    refuse(of_bond, "is for model \"bond\"; the effective volumes of cpd need none");
-  if (result.is_collocated())
-    refuse(of_bond, "is for model \"bond\"; lps has a quadrature of its own");
-  if (result.has_states())
-    refuse({"surface_correction", "horizon_shape"},
-           "is for model \"bond\"; the states of lps are those of the "
-           "neighbours there are");
-  if (is_polynomial(result.material.model))
-    refuse({"surface_correction", "horizon_shape"}, "is for model \"bond\"");
-  if (!is_cpd(result)) refuse(of_cpd, "is for model \"cpd\"");
-  if (!is_lps(result)) refuse(of_lps, "is for model \"lps\"");
-  if (!result.is_collocated()) refuse(of_collocation, "is for model \"lps\" by collocation");
+  const std::array<std::pair<const char*, Option>, 8> options{
+      {{"volume_correction", Option::volume_correction},
+       {"horizon_shape", Option::horizon_shape},
+       {"surface_correction", Option::surface_correction},
+       {"weights", Option::weights},
+       {"form", Option::form},
+       {"degree", Option::collocation},
+       {"traction_form", Option::collocation},
+       {"normals", Option::collocation}}};
+  for (const auto& [key, option] : options) {
+    if (!quadrature.has(key) || takes(result, option)) continue;
+    // Corrections that there are none of are as good as not given.
+    const bool is_none = option != Option::collocation &&
+                         (quadrature.string(key) == "none" || quadrature.string(key) == "ball");
+    if (!is_none) quadrature.refuse(key, is_for(option));
+  }
 }
 
 }  // namespace peristat

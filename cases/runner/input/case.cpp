@@ -6,6 +6,7 @@
 #include "cases/runner/input/given_values.hpp"
 #include "cases/runner/input/key_table.hpp"
 #include "cases/runner/input/toml_table.hpp"
+#include "solvers/formulations/check_specification.hpp"
 #include "solvers/observe/point_fields.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/core/input_error.hpp"
@@ -60,6 +61,9 @@ const std::map<std::string, std::string>& keys_of_members() {
       {"horizon_shape", "quadrature.horizon_shape"},
       {"force_operator", "solver.operator"},
       {"degree", "quadrature.degree"},
+      {"collocation", "quadrature"},
+      {"weights", "quadrature.weights"},
+      {"form", "quadrature.form"},
       {"shapes", "lattice.shape"},
       {"layers", "lattice.layer"},
       {"cracks", "crack"},
@@ -147,6 +151,7 @@ Case read_case(const std::filesystem::path& file, const std::string& text,
   try {
     document_keys().read({TomlTable(document, "", result.file), "", result}, result);
     if (!result.dynamics.is_asked_for) refuse_idle_tables(result);
+    check_materials(result, result.dimension);
   } catch (const InputError& error) {
     throw located(result, error);
   }
@@ -171,13 +176,12 @@ InputError located(const Case& from, const InputError& error) {
   return InputError(key, value, error.allowed(), location_of(from, key).text(from.file));
 }
 
-bool needs_stress(const ProbeSpecification& probe) {
-  const PointField* const field = point_field(probe.field);
-  return field != nullptr && field->needs == FieldNeeds::stress;
-}
-
 bool tells_stress(const Case& from) {
-  return from.output.stress || std::ranges::any_of(from.probes, needs_stress);
+  return from.output.stress ||
+         std::ranges::any_of(from.probes, [](const ProbeSpecification& probe) {
+           const PointField* const field = point_field(probe.field);
+           return field != nullptr && field->needs == FieldNeeds::stress;
+         });
 }
 
 }  // namespace peristat

@@ -11,9 +11,10 @@
 #include "cases/runner/input/case_location.hpp"
 #include "cases/runner/input/settings.hpp"
 #include "solvers/drivers/load_stepping.hpp"
+#include "solvers/formulations/specification/body_specification.hpp"
 #include "solvers/fracture/crack_tip.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
-#include "solvers/study/body_specification.hpp"
+#include "solvers/observe/probe_specification.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/lattice.hpp"
 #include "src/geometry/point_set.hpp"
@@ -105,30 +106,6 @@ struct OutputSpecification {
   bool stress = false;        ///< strain and stress are among the fields
 };
 
-/// Statistic of a field's values over a set.
-enum class Statistic { mean, max, min, rms_error, max_error };
-
-/// True for statistics of the difference from expected values.
-[[nodiscard]] constexpr bool is_of_error(Statistic statistic) {
-  return statistic == Statistic::rms_error || statistic == Statistic::max_error;
-}
-
-/// A value of a field at every accepted step: over a set, at the point nearest to a place, or for
-/// every point along a line, which is written to a table of its own. Exactly one of `set`, `at` and
-/// `from` is given.
-struct ProbeSpecification {
-  std::string name, set;
-  std::optional<Coordinates> at{}, from{}, to{};  ///< [m]
-  /// One of point_fields, or poisson_ratio, opening or crack_length of a set
-  std::string field = "displacement";
-  std::string component;  ///< of a vector or tensor; empty: all
-  Statistic statistic = Statistic::mean;
-  /// Statistics of errors: expected components, expressions of place and load parameters.
-  std::vector<std::string> expected{};
-  int axis = 0;       ///< poisson_ratio: direction that is pulled; crack_length: of the crack
-  std::string other;  ///< opening: set whose mean displacement is subtracted
-};
-
 /// A case, read and checked once and constant from then on: the specification of the body, which
 /// knows no file, and all the rest.
 struct Case : BodySpecification {
@@ -155,9 +132,6 @@ struct Case : BodySpecification {
   /// Places of every key, table and array element by dotted key, e.g. "support[1].displacement[0]".
   std::map<std::string, CaseLocation> locations;
 };
-
-/// True if the probe needs strain or stress.
-[[nodiscard]] bool needs_stress(const ProbeSpecification& probe);
 
 /// True if the results or a probe of the case contain strain or stress.
 [[nodiscard]] bool tells_stress(const Case& from);

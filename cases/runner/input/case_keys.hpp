@@ -29,8 +29,8 @@ struct TableDescription {
 /// resolved text, the known keys and the reference derive from it.
 [[nodiscard]] const Table<Case>& document_keys();
 
-/// A default as the reference shows it, from its TOML text.
-[[nodiscard]] std::string default_text(const std::string& toml);
+/// A text with short exponents, as the reference shows it: 1e-6 for 1e-06.
+[[nodiscard]] std::string short_exponents(std::string text);
 
 /// Every table, the document first.
 [[nodiscard]] const std::vector<TableDescription>& table_descriptions();

@@ -175,6 +175,16 @@ class Key : public UntypedKey {
     add_exclusion(untyped_predicate<Spec>(holds), reason);
     return *this;
   }
+  /// The same by those rules of a specification that have its name: { key, is_idle, why }.
+  template <class Rules>
+  Key& by_rules(const Rules& rules) {
+    for (const auto& rule : rules) {
+      if (name() != rule.key) continue;
+      unless([is_idle = rule.is_idle](const Spec& spec, const Case&) { return is_idle(spec); },
+             rule.why);
+    }
+    return *this;
+  }
   /// Exactly one of the keys of the table that are marked by this is needed.
   Key& one_of() {
     set_one_of();

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "cases/runner/input/key_kinds.hpp"
+#include "solvers/formulations/formulations.hpp"
 
 namespace peristat {
 
@@ -42,7 +43,7 @@ void check_place_of_load(const Entry& at, const LoadSpecification& load) {
     at.from.refuse("depth", "is for a traction");
   const bool needs_set = load.kind == Kind::body_force || load.kind == Kind::total_force;
   if (needs_set) static_cast<void>(at.from.string("set"));
-  const bool is_on_surface = at.so_far.is_collocated();
+  const bool is_on_surface = takes(at.so_far, Option::surface_loads);
   if (is_on_surface && at.from.has("depth") && load.depth != Depth::surface)
     at.from.refuse("depth",
                    "must be \"surface\" with model lps, whose tractions act on the surface itself");
@@ -107,7 +108,7 @@ Table<LoadSpecification> load_keys() {
          "spread evenly over a horizon below the boundary; `\"surface\"`: on the surface itself, "
          "only and always with model `lps`")
            .written_if([=](auto& load, const Case& from) {
-             return is_traction(load, from) && !from.is_collocated();
+             return is_traction(load, from) && !takes(from, Option::surface_loads);
            })
            .on_ranks()},
       {},

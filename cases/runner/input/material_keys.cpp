@@ -8,7 +8,8 @@
 
 #include "cases/runner/input/body_keys.hpp"
 #include "cases/runner/input/key_kinds.hpp"
-#include "src/neighbourhood/influence.hpp"
+#include "solvers/formulations/formulations.hpp"
+#include "solvers/formulations/specification/check_damage.hpp"
 
 namespace peristat {
 
@@ -45,27 +46,12 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
   using Spec = DamageSpecification;
   using K = Key<Spec>;
   const auto is_whole = [](auto& damage, auto&) { return damage.law == DamageLaw::none; };
-  const auto is_of_points = [](auto& damage, auto&) {
-    return damage.law == DamageLaw::energy_density;
-  };
-  const std::string for_stretches = "is for the laws of stretches";
-  const auto is_sudden = [](auto& damage, auto&) { return !damage.softens(); };
-  const auto has_no_rate = [](auto& damage, auto&) { return !damage.has_rate(); };
-  const auto is_not_blended = [](auto& damage, auto&) { return damage.law != DamageLaw::blended; };
-  const auto is_sized = [](auto& damage, auto&) {
-    return damage.fracture_energy || (damage.strength && !damage.softens());
-  };
-  const auto begins_by_strength = [](auto& damage, auto&) {
-    return damage.strength && damage.law != DamageLaw::blended;
-  };
   // Reading a missing key throws the error that it is missing.
   const auto require_key = [](auto lacks) {
     return [=](const Entry& at, const Spec& damage) {
       if (lacks(damage)) static_cast<void>(at.from.number(at.key, Range()));
     };
   };
-  const std::string for_softening = "is for the laws that soften",
-                    for_blended = "is for the law \"blended\"";
   return {
       material + ".damage",
       {K("law", &Spec::law,
@@ -92,6 +78,7 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` follows "
          "from it. `cpd` takes it at horizon ratios up to 12 in 2D, 3.2 in 3D")
            .unless(is_whole, "")
+           .by_rules(damage_rules)
            .early(),
        K("strength", &Spec::strength, positive("Pa"),
          "$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the "
@@ -100,19 +87,17 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "the horizon ratios of `fracture_energy`, in 3D at smaller ones, where it does not take "
          "minutes")
            .unless(is_whole, "")
-           .unless(is_of_points, for_stretches)
+           .by_rules(damage_rules)
            .early(),
        K("critical", &Spec::critical, stretch(), "stretch $s_c$ at which a bond breaks")
            .unless(is_whole, "")
-           .unless(is_of_points, for_stretches)
-           .unless(is_sized, "follows from fracture_energy or strength; give one of them")
+           .by_rules(damage_rules)
            .then(require_key([](auto& damage) { return damage.critical == 0.0; }))
            .default_words("this or `fracture_energy` is required with a law"),
        K("onset", &Spec::onset, stretch(),
          "laws that soften: stretch $s_m$ beyond which a bond loses stiffness")
            .unless(is_whole, "")
-           .unless(is_sudden, for_softening)
-           .unless(begins_by_strength, "follows from strength; give one of them")
+           .by_rules(damage_rules)
            .then(require_key(
                [](auto& damage) { return damage.onset == 0.0 && !damage.is_by_data(); }))
            .written_if([](auto& damage, auto&) { return damage.onset != 0.0; })
@@ -121,9 +106,7 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
                           "a brittle bond of that energy, for `blended` a quarter"),
        K("peak", &Spec::peak, stretch(), "`blended`: stretch $s_p$ at which the force is largest")
            .unless(is_whole, "")
-           .unless(is_not_blended, for_blended)
-           .unless([](auto& damage, auto&) { return damage.strength.has_value(); },
-                   "follows from strength; give one of them")
+           .by_rules(damage_rules)
            .then(require_key([](auto& damage) {
              return damage.peak == 0.0 && (damage.onset != 0.0 || !damage.fracture_energy);
            }))
@@ -136,12 +119,12 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "`blended`: slope of the force between `onset` and `peak`, relative to that of the "
          "undamaged bond")
            .unless(is_whole, "")
-           .unless(is_not_blended, for_blended),
+           .by_rules(damage_rules),
        K("rate", &Spec::rate, between(0.1, 50.0, "1"),
          "tanh laws: $\\beta$, how strongly the softening is concentrated midway between the two "
          "stretches; `exponential`: how much more steeply the force falls at first")
            .unless(is_whole, "")
-           .unless(has_no_rate, "is for the tanh laws and \"exponential\""),
+           .by_rules(damage_rules),
        K("no_fail", &Spec::no_fail, known_sets(),
          "sets of points whose bonds stay elastic at any stretch, including bonds to points "
          "outside the sets")
@@ -223,16 +206,22 @@ void make_linear_if_lps(const Entry& at, MaterialSpecification& material) {
   material.kinematics = Kinematics::linear;
 }
 
+Kind<std::int64_t> choice_of_models() {
+  std::vector<Choice<std::int64_t>> choices;
+  for (const auto& [model, name] : model_names()) {
+    choices.push_back({name, static_cast<std::int64_t>(model)});
+  }
+  return choice_of_numbers(std::move(choices));
+}
+
 }  // namespace
 
 Table<MaterialSpecification> material_keys(const std::string& name) {
   using Spec = MaterialSpecification;
   using K = Key<Spec>;
-  const auto of_cpd = [](auto& material, auto&) { return material.model == MaterialModel::cpd; };
-  const auto of_bond = [](auto& material, auto&) { return has_bonds(material.model); };
-  const auto of_lps = [](auto& material, auto&) { return has_lame_constants(material.model); };
-  const auto of_correspondence = [](auto& material, auto&) {
-    return material.model == MaterialModel::correspondence;
+  // Is there a key only for models that take its option?
+  const auto without = [](Option option) {
+    return [option](auto& material, auto&) { return !takes(material.model, option); };
   };
   const auto has_moduli = [](auto& material, auto&) { return material.youngs_modulus.has_value(); };
   const auto has_constants = [](auto& material, auto&) { return material.c1.has_value(); };
@@ -248,16 +237,10 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
       return *material.fibre;
     }
   };
-  const std::string for_bond = "is for model \"bond\"", for_cpd = "is for model \"cpd\"",
-                    with_moduli = "goes with youngs_modulus, not with c1";
+  const std::string with_moduli = "goes with youngs_modulus, not with c1";
   return {
       name,
-      {K("model", &Spec::model,
-         choice<MaterialModel>({{"bond", MaterialModel::bond},
-                                {"cpd", MaterialModel::cpd},
-                                {"lps", MaterialModel::lps},
-                                {"green_bond", MaterialModel::green_bond},
-                                {"correspondence", MaterialModel::correspondence}}),
+      {K("model", &Spec::model, choice_of_models(),
          "`\"bond\"`: bond-based peridynamics, whose Poisson ratio is 1/4 (3D and plane strain) or "
          "1/3 (plane stress); `\"cpd\"`: continuum-kinematics-inspired peridynamics with one-, "
          "two- and three-neighbour interactions, dimension 2 and 3; `\"lps\"`: the [linear "
@@ -271,14 +254,9 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .then([name](auto& at, auto& material) {
              const bool tells_body = name == "material" || (!at.so_far.material.has_constants() &&
                                                             at.so_far.regions.empty());
-             if (tells_body && material.model == MaterialModel::lps)
-               material.influence = InverseInfluence::name;
-             if (at.so_far.dimension > 1) return;
-             if (material.model == MaterialModel::cpd)
-               at.refuse("cpd needs dimension 2 or 3; in 1D it is the bond model");
-             if (material.model == MaterialModel::lps) at.refuse("lps needs dimension 2 or 3");
-             if (material.model == MaterialModel::correspondence)
-               at.refuse("correspondence needs dimension 2 or 3");
+             const Formulation& can = formulation_of(material);
+             if (tells_body) material.influence = can.default_influence;
+             if (at.so_far.dimension < can.least_dimension) at.refuse("needs dimension 2 or 3");
            })
            .early()
            .on_ranks(),
@@ -290,7 +268,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          choice<PlaneState>({{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}),
          "state of a plane body, dimension 2 only (`cpd` in 2D is purely two-dimensional and has "
          "neither)")
-           .unless(of_cpd, for_bond)
+           .unless(without(Option::plane), is_for(Option::plane))
            .unless(in_dimension<1>, "is for dimension 2 only")
            .unless(in_dimension<3>, "is for dimension 2 only")
            .on_ranks(),
@@ -301,7 +279,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "without eigenstrains, with `potential = \"harmonic\"` and with damage by "
          "`energy_density` alone. `lps` is always linear")
            .then(make_linear_if_lps)
-           .unless(of_cpd, "is for models \"bond\" and \"lps\"")
+           .written_if(
+               [](auto& material, auto&) { return takes(material.model, Option::kinematics); })
            .on_ranks(),
        K("influence", &Spec::influence, one_of(influence_names()),
          "influence function $\\omega(r/\\delta)$: [GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, "
@@ -316,16 +295,14 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .on_ranks(),
        K("micromodulus", &Spec::micromodulus, positive("N/m6", 1e150),
          "`bond`: bond constant c of the pairwise force c·stretch")
-           .unless(of_cpd, for_bond)
-           .unless(of_lps, for_bond)
+           .unless(without(Option::micromodulus), is_for(Option::micromodulus))
            .one_of()
            .on_ranks(),
        K("poisson_ratio", &Spec::poisson_ratio, between(-1.0, 1.0),
          "Poisson's ratio, for `cpd`, `lps` and `correspondence` with `youngs_modulus`")
-           .unless(
-               of_bond,
-               "can't be chosen with bonds alone: they have 1/3 in plane stress, 1/4 in plane "
-               "strain and 3D; models \"cpd\", \"lps\" and \"correspondence\" take other values")
+           .unless(without(Option::poisson_ratio),
+                   is_for(Option::poisson_ratio) +
+                       "; bonds alone have 1/3 in plane stress, 1/4 in plane strain and 3D")
            .unless(has_constants, with_moduli)
            .moreover("`lps`, `correspondence`: to 0.5; `cpd`: in 3D to 0.5; these limits are "
                      "excluded; `cpd` with damage: at least 1/3 (2D) or 1/4 (3D)")
@@ -336,20 +313,15 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "[springs](theory.md#materials-of-convolutions-at-finite-deformation) that resist motions "
          "the deformation gradients do not see (zero-energy modes), relative to bonds of the same "
          "bulk modulus")
-           .written_if(of_correspondence)
-           .unless([of_correspondence](auto& material,
-                                       auto& from) { return !of_correspondence(material, from); },
-                   "is for model \"correspondence\""),
+           .unless(without(Option::stabilisation), is_for(Option::stabilisation)),
        K("c1", &Spec::c1, positive("N/m6", 1e200), "`cpd`: one-neighbour constant")
-           .unless(of_bond, for_cpd)
-           .unless(of_lps, for_cpd)
+           .unless(without(Option::constants), is_for(Option::constants))
            .one_of()
            .on_ranks(),
        K("c2", &Spec::c2, stiffness("N/m10"),
          "`cpd`: two-neighbour constant; in 3D it may also be given with `youngs_modulus`, in 2D "
          "it follows from it")
-           .unless(of_bond, for_cpd)
-           .unless(of_lps, for_cpd)
+           .unless(without(Option::constants), is_for(Option::constants))
            .unless(
                [](auto& material, const Case& so_far) {
                  return material.youngs_modulus && so_far.dimension == 2;
@@ -360,8 +332,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .on_ranks(),
        K("c3", &Spec::c3, stiffness("N/m14"),
          "`cpd`: three-neighbour constant, 3D; it follows from `youngs_modulus` if that is given")
-           .unless(of_bond, for_cpd)
-           .unless(of_lps, for_cpd)
+           .unless(without(Option::constants), is_for(Option::constants))
            .unless(has_moduli,
                    "follows from youngs_modulus and poisson_ratio; give c1 for a free c3")
            .then([](auto& at, auto& material) {
@@ -378,7 +349,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "`\"continuum\"`: in the integrals")
            .unless(has_constants, with_moduli)
            .unless(has_micromodulus, "goes with youngs_modulus, not with micromodulus")
-           .unless(of_lps, "is for models \"bond\", \"green_bond\" and \"cpd\"")
+           .unless(without(Option::calibration), is_for(Option::calibration))
            .default_words("`\"lattice\"` with `cpd`, `\"continuum\"` with `bond`")
            .on_ranks(),
        K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "per K"),
@@ -394,8 +365,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
        K("fibre", fibre_of, fibre_keys(name),
          "table `[material.fibre]`: moduli and stretches that depend on the direction of the bond")
            .written_if([](auto& material, auto&) { return material.fibre.has_value(); })
-           .unless(of_cpd, for_bond)
-           .unless(of_lps, for_bond)
+           .unless(without(Option::fibre), is_for(Option::fibre))
            .unless(in_dimension<1>, "needs dimension 2 or 3")
            .otherwise([](auto&, auto&) {}, "none")
            .on_ranks(),
@@ -422,19 +392,6 @@ Table<MaterialSpecification> material_of_body_keys(const std::string& name) {
     material.influence = body.influence;
     material.kinematics = body.kinematics;
   });
-  keys.do_after([of_body](const Entry& at, MaterialSpecification& material) {
-    const bool is_first = !at.so_far.material.has_constants() && at.so_far.regions.empty();
-    const MaterialSpecification& body = of_body(at.so_far);
-    if (is_first) return;
-    const auto require = [&](bool is_same, const std::string& key) {
-      if (!is_same) at.from.refuse(key, "must be the same for all materials of a body");
-    };
-    require(material.model == body.model, "model");
-    require(material.potential == body.potential, "potential");
-    require(material.plane == body.plane, "plane");
-    require(material.influence == body.influence, "influence");
-    require(material.kinematics == body.kinematics, "kinematics");
-  });
   return keys;
 }
 
@@ -445,12 +402,6 @@ Table<RegionSpecification> region_keys() {
   using K = Key<Spec>;
   return {"region",
           {K("set", &Spec::set, known_set(), "set of the points that have this material")
-               .then([](auto& at, auto& region) {
-                 if (region.set == rest_name)
-                   at.refuse(
-                       "is the name by which `between` refers to the points in no region; give the "
-                       "set another name");
-               })
                .moreover("no region shares points with another")
                .required()
                .early(),
@@ -473,7 +424,6 @@ Kind<std::array<std::string, 2>> two_materials() {
       at.refuse("there is no region of the set \"" + name + "\"" + did_you_mean(name, names) +
                 (names.empty() ? "" : "  (there: " + listed(names) + ")"));
     }
-    if (given[0] == given[1]) at.refuse("must be two materials, not one");
     return std::array{given[0], given[1]};
   };
   return {read, [](const auto& names, const Case&) { return array_text(names, toml_string); },
@@ -513,15 +463,7 @@ Table<InterfaceSpecification> interface_keys() {
          "`density` and `scatter`: constants and damage of its own")
            .written_if([](auto& interface, auto&) { return interface.material.has_value(); })
            .early()
-           .otherwise([](auto&, auto&) {}, "none: the `rule` holds")},
-      {},
-      [](auto& at, auto& interface) {
-        for (const auto& other : at.so_far.interfaces) {
-          const auto& [a, b] = interface.between;
-          if (other.between == interface.between || other.between == std::array{b, a})
-            at.refuse("another interface has the same pair of materials");
-        }
-      }};
+           .otherwise([](auto&, auto&) {}, "none: the `rule` holds")}};
 }
 
 }  // namespace peristat

@@ -7,6 +7,7 @@
 
 #include "cases/runner/input/key_kinds.hpp"
 #include "solvers/observe/point_fields.hpp"
+#include "solvers/observe/probe.hpp"
 
 namespace peristat {
 namespace {
@@ -74,8 +75,8 @@ std::vector<std::string> quantities() {
   for (const PointField& field : point_fields()) {
     if (field.shown_by != ShownBy::steps) names.push_back(field.name);
   }
-  names.insert(names.end(), {"poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end",
-                             "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"});
+  const std::vector<std::string>& whole = fields_of_whole_sets();
+  names.insert(names.end(), whole.begin(), whole.end());
   return names;
 }
 

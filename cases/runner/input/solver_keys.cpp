@@ -7,6 +7,7 @@
 
 #include "cases/runner/input/key_kinds.hpp"
 #include "solvers/drivers/drivers.hpp"
+#include "solvers/formulations/formulations.hpp"
 
 namespace peristat {
 namespace {
@@ -24,7 +25,7 @@ bool may_fail(const Case& from) {
 }
 
 /// True if the model's tangent is symmetric, as that of an energy is.
-bool has_symmetric_tangent(const Case& from) { return !from.is_collocated(); }
+bool has_symmetric_tangent(const Case& from) { return formulation_of(from).has_potential; }
 
 void check_linear(const Entry& at, const SolverSpecification& solver) {
   const std::string why = what_is_against(solver.linear, has_symmetric_tangent(at.so_far));
@@ -50,7 +51,6 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
     at.refuse(
         "does not go with this solver.linear or solver.preconditioner, which need the stored "
         "tangent");
-  if (at.so_far.material.model == MaterialModel::cpd) at.refuse("is for material.model = \"bond\"");
   if (!at.so_far.foundations.empty())
     at.refuse("does not go with a [[foundation]], which needs the stored tangent");
   for (const LoadSpecification& load : at.so_far.loads) {

@@ -163,6 +163,26 @@ std::string UntypedTable::untyped_lines(const void* spec, const Case& from) cons
   return text;
 }
 
+std::string short_exponents(std::string text) {
+  using Replaced = std::pair<std::string_view, std::string_view>;
+  for (const auto& [part, by] : {Replaced{"e-0", "e-"}, {"e+0", "e"}, {"e+", "e"}}) {
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += by.size())
+      text.replace(at, part.size(), by);
+  }
+  return text;
+}
+
+namespace {
+
+/// A default as the reference shows it, from its TOML text.
+std::string default_text(const std::string& toml) {
+  if (toml.empty()) return "none";
+  if (toml.front() == '"' || toml.front() == '[') return "`" + toml + "`";
+  return short_exponents(toml.ends_with(".0") ? toml.substr(0, toml.size() - 2) : toml);
+}
+
+}  // namespace
+
 void UntypedTable::describe(std::vector<TableDescription>& all, bool is_array) const {
   static const Case no_case;
   TableDescription own{name_, is_array, {}, {}};

@@ -111,6 +111,7 @@ class UntypedKey {
   ~UntypedKey();
 
  protected:
+  [[nodiscard]] const std::string& name() const { return description_.name; }
   void set_required(std::string_view words);
   void set_fallback(Action, std::string_view words);
   void set_default_words(std::string_view words);
@@ -127,7 +128,6 @@ class UntypedKey {
  private:
   friend class UntypedTable;
 
-  const std::string& name() const { return description_.name; }
   const std::string* exclusion(const void* spec, const Case& so_far) const;
   bool applies(const Entry& at, const void* spec) const;
   void read(const Entry& table, void* spec) const;

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "cases/runner/setup/recorded_points.hpp"
+#include "solvers/observe/recorded_points.hpp"
 #include "solvers/problem/records.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"

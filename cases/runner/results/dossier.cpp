@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cases/runner/setup/recorded_points.hpp"
+#include "solvers/observe/recorded_points.hpp"
 #include "src/parallel/collectives.hpp"
 
 namespace peristat {

@@ -7,17 +7,13 @@
 
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/process/progress.hpp"
-#include "cases/runner/results/crack_measures.hpp"
 #include "cases/runner/results/damage_histories.hpp"
-#include "cases/runner/results/line_probe.hpp"
-#include "cases/runner/results/probe.hpp"
 #include "cases/runner/results/results.hpp"
-#include "cases/runner/results/stress_fields.hpp"
 #include "cases/runner/setup/body.hpp"
-#include "cases/runner/setup/recorded_points.hpp"
 #include "solvers/drivers/load_stepping.hpp"
+#include "solvers/observe/probe.hpp"
+#include "solvers/observe/separated_bonds.hpp"
 #include "solvers/study/crack_tips.hpp"
-#include "solvers/study/motion.hpp"
 
 namespace peristat {
 
@@ -30,21 +26,12 @@ class Recorder {
       : case_(from),
         points_(body.points),
         recorded_(body.points, *body.index_map),
-        own_(std::size_t(recorded_.count())),
         assembler_(assembler),
         results_(results),
         progress_(progress),
         body_(body),
-        crack_tips_(crack_tips) {
-    for (const BondEnds& ends : body.cut_bonds) {
-      if (recorded_.tells(ends[0], ends[1])) separated_.push_back(ends);
-    }
-    cut_ = separated_.size();
-    if (from.dynamics.is_asked_for) density_ = densities_of(body);
-    for (const ProbeSpecification& probe : from.probes) {
-      if (probe.from) lines_.emplace_back(probe, recorded_);
-    }
-  }
+        crack_tips_(crack_tips),
+        separated_(body) {}
 
   /// Restores its state at the time of the checkpoint.
   void go_on(const Checkpoint& checkpoint, const EarlierResults& earlier,
@@ -67,26 +54,11 @@ class Recorder {
   [[nodiscard]] const std::vector<DecisionRecord>& decisions() const { return decisions_; }
 
  private:
-  struct Fields {
-    std::vector<double> displacement, force, damage, energy_density, stretch, fragment;
-    std::optional<std::vector<double>> velocity;  ///< of a body in motion
-    std::vector<double> kinetic_energy_density;
+  /// Fields of a state that are recorded: for steps of the results, and for probes.
+  struct Fields : StepFields {
     double max_damage = 0.0, max_stretch = 0.0;
-    std::optional<BondHistories> histories;
-    std::optional<StressFields> stress;  ///< where a probe or the results need it
-    /// @param with_stress include strain and stress
-    [[nodiscard]] StepFields view(bool with_stress) const;
   };
-
-  /// Fields of a state.
-  /// @param force minus its gradient [N]; may have more points than these
-  [[nodiscard]] Fields fields(const StateView& at, std::vector<double> force,
-                              std::span<const std::int32_t> piece,
-                              std::span<const double> velocity) const;
-  /// Adds velocity and kinetic energy.
-  void add_motion(std::span<const double> velocity, Fields& made) const;
-  /// Bonds that have broken since the last call.
-  [[nodiscard]] std::vector<BondEnds> newly_broken(const History& history);
+  [[nodiscard]] Fields fields(const StateView& at, ObservedExtras extras) const;
   /// Adds the bonds that have broken since the last step to the results.
   void record_broken_bonds(const StepRecord& record, const History& history);
   /// True if any point has moved, on any rank.
@@ -102,20 +74,14 @@ class Recorder {
   const Case& case_;
   const Points& points_;
   const RecordedPoints recorded_;
-  std::size_t own_;  // number of recorded points
   Assembler& assembler_;
   Results& results_;
   Progress& progress_;
   const Body& body_;
   const std::vector<CrackTip>& crack_tips_;
-  std::optional<Fields> unwritten_;    // of the last step, if it only entered the history
-  std::vector<char> broken_;           // per bond, in the last accepted state
-  DamageHistories written_histories_;  // in the last state that was written with fields
-  std::vector<double> density_;        // per point, of a body in motion [kg/m3]
-  std::vector<LineProbe> lines_;
-  /// Bonds cut by pre-cracks, or broken up to the last accepted state, that this rank reports.
-  std::vector<BondEnds> separated_;
-  std::size_t cut_ = 0;                        // number of these cut by pre-cracks
+  std::optional<StepFields> unwritten_;  // of the last step, if it only entered the history
+  DamageHistories written_histories_;    // in the last state that was written with fields
+  SeparatedBonds separated_;
   std::map<std::string, CrackGrowth> growth_;  // per probe of crack_resistance
   double relative_residual_ = 0.0;
   std::optional<StepRecord> last_;

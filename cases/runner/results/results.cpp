@@ -158,7 +158,7 @@ struct Results::Files {
   void describe(const CaseText& text);
   void go_on(const EarlierResults& earlier, const Checkpoint& checkpoint,
              StateNumbering* numbering);
-  void add(const StepRecord& record, const std::optional<StepFields>& step_fields);
+  void add(const StepRecord& record, const StepFields& fields);
   void add_fields(const StepRecord& record, const StepFields& step_fields);
   void write_step(const StepRecord& record, const StepPart& part);
   void link(WrittenStep step);
@@ -344,9 +344,8 @@ void Results::Files::write_step(const StepRecord& record, const StepPart& part) 
   link(std::move(step));
 }
 
-void Results::Files::add(const StepRecord& record, const std::optional<StepFields>& step_fields) {
+void Results::Files::add(const StepRecord& record, const StepFields& fields) {
   const Row row = make_row(record, support_sets, probes);
-  const StepFields fields = step_fields.value_or(StepFields{});
   const StepPart part(shape, fields, gathering);
   if (record.step < 0 || record.step <= last_step) {
     throw std::logic_error("results: step " + std::to_string(record.step) + " after step " +
@@ -570,9 +569,9 @@ void Results::add_line(const std::string& name, const std::vector<Row>& rows) {
   }
 }
 
-void Results::add(const StepRecord& record, const std::optional<StepFields>& fields) {
+void Results::add(const StepRecord& record, const StepFields& fields) {
   if (sender_) {
-    if (fields) sender_->send(record, *fields);
+    if (!fields.values.empty()) sender_->send(record, fields);
     return sender_->totals.add(record);
   }
   const Stopwatch stopwatch(files_->seconds);

@@ -12,6 +12,7 @@
 #include "cases/runner/results/earlier_run.hpp"
 #include "cases/runner/results/points_part.hpp"
 #include "cases/runner/results/probe_columns.hpp"
+#include "cases/runner/results/step_fields.hpp"
 #include "cases/runner/results/summary.hpp"
 #include "solvers/problem/records.hpp"
 #include "src/geometry/points.hpp"
@@ -83,9 +84,9 @@ class Results {
   /// Adds rows of a line for the step added next.
   void add_line(const std::string& name, const std::vector<Row>& rows);
   /// Adds an accepted step and publishes it, together with the iterations and decisions so far.
-  /// `fields` is empty for steps that only enter the history. Step numbers ascend; the record holds
-  /// a reaction of every support set and every probe.
-  void add(const StepRecord& record, const std::optional<StepFields>& fields);
+  /// `fields` has no values for steps that only enter the history. Step numbers ascend; the record
+  /// holds a reaction of every support set and every probe.
+  void add(const StepRecord& record, const StepFields& fields = {});
 
   /// Publishes a checkpoint after the path's last step has been added; fills in its counts of rows.
   /// Now and then makes sure that all files have reached the disk, so seldom that it takes a

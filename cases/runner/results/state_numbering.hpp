@@ -7,8 +7,8 @@
 
 #include "assembly/terms/model.hpp"
 #include "cases/runner/results/point_rows.hpp"
-#include "cases/runner/setup/recorded_points.hpp"
 #include "solvers/drivers/state_archive.hpp"
+#include "solvers/observe/recorded_points.hpp"
 #include "src/parallel/index_map.hpp"
 
 namespace peristat {

@@ -17,7 +17,11 @@ Hdf5File::Shape shape_of(const PointField& field, StepShape of) {
   return shape;
 }
 
-bool is_written(const PointField& field) { return field.shown_by != ShownBy::probes; }
+/// False for fields that only probes show.
+bool is_written(const PointField& field, StepShape of) {
+  const bool is_asked_for = field.needs != FieldNeeds::stress || of.has_tensors;
+  return field.shown_by != ShownBy::probes && is_asked_for;
+}
 
 bool is_vector(const PointField& field) {
   return field.rank == FieldRank::vector || field.rank == FieldRank::principal;
@@ -75,8 +79,9 @@ StepPart::StepPart(StepShape shape, const StepFields& fields, const RowGathering
   StepShape here = shape;
   here.points = gathering.part().own_rows(shape.points);
   for (const PointField& field : point_fields()) {
-    if (!is_written(field) || fields.*field.values == nullptr) continue;
-    check(field, *(fields.*field.values), here);
+    const auto values = fields.values.find(field.name);
+    if (!is_written(field, shape) || values == fields.values.end()) continue;
+    check(field, values->second, here);
     names_.push_back(field.name);
   }
   if (!fields.histories) return;
@@ -100,7 +105,7 @@ void StepPart::write(Hdf5File& file, const WrittenStep& step) const {
   file.set_attribute(step.group, "step", std::int64_t{step.step});
   file.set_attribute(step.group, "load_factor", step.load_factor);
   file.set_attribute(step.group, "mode", step.mode);
-  if (fields_.velocity != nullptr) file.set_attribute(step.group, "time", step.load_factor);
+  if (fields_.values.contains("velocity")) file.set_attribute(step.group, "time", step.load_factor);
   const RowSink sink(&file, gathering_, std::uint64_t(shape_.points));
   if (fields_.histories) file.make_group(step.group + "/history");
   write_rows(sink, step.group);
@@ -114,7 +119,7 @@ void StepPart::send() const {
 void StepPart::write_rows(const RowSink& sink, const std::string& group) const {
   for (const std::string& name : names_) {
     const PointField& field = *point_field(name);
-    sink.write(group + "/" + name, *(fields_.*field.values), field.extents(shape_.dimension),
+    sink.write(group + "/" + name, fields_.values.at(name), field.extents(shape_.dimension),
                {field.unit, field.meaning});
   }
   if (fields_.histories) {
@@ -126,8 +131,7 @@ std::vector<std::string> field_names(const Hdf5File& file, const std::string& gr
   const std::vector<std::string> objects = file.names(group);
   std::vector<std::string> names;
   for (const PointField& field : point_fields()) {
-    const bool is_there = std::ranges::find(objects, field.name) != objects.end();
-    if (is_written(field) && is_there) names.push_back(field.name);
+    if (std::ranges::find(objects, field.name) != objects.end()) names.push_back(field.name);
   }
   return names;
 }

@@ -6,8 +6,8 @@
 
 #include "cases/runner/results/hdf5_file.hpp"
 #include "cases/runner/results/point_rows.hpp"
+#include "cases/runner/results/step_fields.hpp"
 #include "cases/runner/results/xdmf_series.hpp"
-#include "solvers/problem/records.hpp"
 
 namespace peristat {
 

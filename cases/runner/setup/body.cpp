@@ -7,11 +7,12 @@
 #include <fmt/format.h>
 
 #include "cases/runner/setup/find_boundary.hpp"
-#include "cases/runner/setup/probe_places.hpp"
+#include "solvers/formulations/check_specification.hpp"
+#include "solvers/formulations/faster_operator.hpp"
+#include "solvers/formulations/materials/bond_materials.hpp"
 #include "solvers/linear/available_memory.hpp"
+#include "solvers/observe/probe_places.hpp"
 #include "solvers/ranks/agree_on_kinds.hpp"
-#include "solvers/study/bond_materials.hpp"
-#include "solvers/study/linear_model.hpp"
 #include "src/connectivity/free_motion.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -73,7 +74,7 @@ Points make_points_of(const Case& from) {
       check_lattice(*lattice);  // first: the size of an invalid lattice is undefined
       require_memory_for_lattice(from, *lattice);
       points = make_points(*lattice);
-      if (points.lattice && from.is_collocated()) {
+      if (points.lattice && formulation_of(from).has_ghost_sites) {
         points.ghosts = ghost_sites(*lattice, points, from.horizon).reference;
       }
       if (points.lattice && lattice->perturbation == 0.0 && lattice->cell_perturbation == 0.0) {
@@ -93,7 +94,7 @@ Points make_points_of(const Case& from) {
       const std::string table = "set[" + std::to_string(k) + "]";
       errors_in_table(table, [&] { add_set(points, rule); });
     }
-    require_places_of_probes(from, RecordedPoints(points));
+    require_places_of_probes(from.probes, RecordedPoints(points));
     return points;
   });
 }
@@ -146,11 +147,11 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     };
     const PointMaterials materials(from, body.points);
     const auto all = all_materials(from, materials);
-    if (from.material.model != MaterialModel::bond || !std::ranges::all_of(all, has_modulus))
+    if (!formulation_of(from).has_elastic_stand_in || !std::ranges::all_of(all, has_modulus))
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "needs the bond model with a youngs_modulus: a micromodulus is valid for "
                        "one horizon only");
-    require_summable(from.material.model, from.dimension, key,
+    require_summable(from.material, from.dimension, key,
                      number_text(from.solver.elastic_horizon_ratio),
                      from.solver.elastic_horizon_ratio);
     if (!body.points.neighbours.empty())

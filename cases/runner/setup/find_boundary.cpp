@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "solvers/formulations/formulations.hpp"
 #include "src/geometry/covers.hpp"
 #include "src/parallel/communicator.hpp"
 
@@ -12,7 +13,7 @@ namespace peristat {
 void find_boundary(const Case& from, const Points& points, const Communicator& ranks,
                    BodySpecification& of) {
   const auto* const lattice = std::get_if<Lattice>(&from.body);
-  if (!from.is_collocated() || lattice == nullptr) return;
+  if (!takes(from, Option::surface_loads) || lattice == nullptr) return;
   std::vector<Coordinates> places;
   for (Index i = 0; i < points.owned.value_or(points.own()); ++i) {
     places.push_back(points.position(i));

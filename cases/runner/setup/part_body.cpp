@@ -9,10 +9,11 @@
 #include "cases/runner/input/case_keys.hpp"
 #include "cases/runner/setup/body.hpp"
 #include "cases/runner/setup/find_boundary.hpp"
-#include "cases/runner/setup/probe_places.hpp"
+#include "solvers/formulations/faster_operator.hpp"
+#include "solvers/formulations/formulations.hpp"
+#include "solvers/observe/probe_places.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/part_bonds.hpp"
-#include "solvers/study/bonds_of_part.hpp"
 #include "src/conditions/pressed_boundary.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/image_kinds.hpp"
@@ -52,8 +53,9 @@ bool has_ranks(const std::string& key) {
 /// Refuses convolutions: their transforms need the whole body, which no rank has.
 void refuse_convolutions(const Case& from) {
   const std::string why = "is for one rank, since convolutions need the whole body; ";
-  if (from.needs_convolutions()) {
-    throw InputError(from.has_states() ? "quadrature.form" : "material.model", "",
+  if (needs_convolutions(from)) {
+    const bool is_by_form = from.form == SolidForm::printed;
+    throw InputError(is_by_form ? "quadrature.form" : "material.model", "",
                      why + "models with bonds run on several");
   }
   if (from.solver.force_operator != ForceOperator::fft) return;
@@ -67,7 +69,7 @@ void refuse_values_without_ranks(const Case& from) {
   const bool is_lattice = std::holds_alternative<Lattice>(from.body);
   const bool has_shares = from.volume_correction != VolumeCorrection::none &&
                           from.volume_correction != VolumeCorrection::linear;
-  if (from.material.model != MaterialModel::bond && (!is_lattice || has_shares)) {
+  if (formulation_of(from).part_needs_lattice && (!is_lattice || has_shares)) {
     refuse(
         "material.model", "",
         "models other than \"bond\" need a lattice, and volume_correction \"none\" or \"linear\"");
@@ -139,10 +141,10 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
       refuse("lattice.spacing", "", "results have numbers for fewer than 2^31 points");
     }
     const BondSetting setting = bond_setting(from, slab.points);
-    double reach =
-        reach_of_bonds(slab.points, from.surface_correction, setting, ranks, bonds_of_part(from));
+    double reach = reach_of_bonds(slab.points, from.surface_correction, setting, ranks,
+                                  formulation_of(from).part_bonds);
     const auto* const lattice = std::get_if<Lattice>(&from.body);
-    const bool has_ghost_sites = lattice != nullptr && from.is_collocated();
+    const bool has_ghost_sites = lattice != nullptr && formulation_of(from).has_ghost_sites;
     if (has_ghost_sites) reach += ranks.max(reach_beyond_balls(*lattice, slab.points));
     if (from.has_pressures()) reach = std::max(reach, reach_of_pressures(slab.points));
     std::vector<ImageKind> images = kinds_of_images(from, slab.points, ranks);
@@ -157,7 +159,7 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
     find_boundary(from, part.points, ranks, of);
     if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
     std::unique_ptr<const Body> body = make_body(std::move(part), of, ranks, threads);
-    require_places_of_probes(from, {body->points, *body->index_map});
+    require_places_of_probes(from.probes, {body->points, *body->index_map});
     return body;
   });
 }

@@ -12,8 +12,8 @@
 #include "assembly/terms/damage.hpp"
 #include "assembly/terms/points/point_term.hpp"
 #include "cases/runner/setup/body.hpp"
-#include "solvers/study/bond_materials.hpp"
-#include "solvers/study/fracture_data.hpp"
+#include "solvers/formulations/formulations.hpp"
+#include "solvers/formulations/materials/bond_materials.hpp"
 #include "src/core/expression.hpp"
 #include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
@@ -62,7 +62,7 @@ std::vector<Preflight::Division> divisions_of(const Lattice& lattice) {
 /// All bonds of a body; null if a convolved body has too many to find them for this.
 std::shared_ptr<const Bonds> network_of(const Body& body) {
   const auto* const term = body.model.find<PointTerm>();
-  if (term == nullptr || !term->is_convolved()) {
+  if (term == nullptr || !term->has_lattice()) {
     return {std::shared_ptr<const Bonds>(), &body.model.bonds()};
   }
   constexpr Offset most = 5'000'000;  // some seconds
@@ -234,10 +234,10 @@ void add_materials(const Case& from, const Body& body, Preflight& to) {
     }
     const DamageSpecification& damage = material.damage;
     to.may_fail = to.may_fail || damage.law != DamageLaw::none;
-    const bool has_strength = material.model == MaterialModel::bond && !material.fibre;
+    const bool has_strength = formulation_of(of).has_quick_fracture_scale && !material.fibre;
     if (!has_strength || !damage.breaks_bonds()) continue;
     const FractureScale scale =
-        FractureScale::of(material, found[k].key, body.setting, body.points.spacing);
+        fracture_scale_of(material, found[k].key, body.setting, body.points.spacing);
     const double strength = scale.strength(damage);
     if (strength == 0.0) continue;  // of a lattice without shear stiffness
     const DamageSpecification& asked = given[k].of->damage;
@@ -320,8 +320,7 @@ void take_cross_section(const Case& from, const Body& body, Preflight& to) {
   to.cross_section = body.setting.cross_section;
   to.cross_section_is_given = from.locations.contains(to.cross_section_key);
   // Plane cpd does not depend on the thickness, and plane strain is reported per metre of it.
-  const bool is_plane =
-      from.material.model != MaterialModel::cpd && from.material.plane == PlaneState::stress;
+  const bool is_plane = takes(from, Option::plane) && from.material.plane == PlaneState::stress;
   to.cross_section_counts = from.dimension == 1 || is_plane;
 }
 

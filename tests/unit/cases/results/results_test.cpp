@@ -195,7 +195,10 @@ struct ExampleFields {
     }
   }
   [[nodiscard]] StepFields views() const {
-    return {&displacement, &force, &damage, &energy_density};
+    return {{{"displacement", displacement},
+             {"force", force},
+             {"damage", damage},
+             {"energy_density", energy_density}}};
   }
   std::vector<double> displacement, force, damage, energy_density;
 };
@@ -454,7 +457,7 @@ TEST_F(ResultsTest, TablesStayWholeOverManyPages) {
 
 TEST_F(ResultsTest, StepWithoutFieldsEntersTheHistoryOnly) {
   Results results = open_results(directory);
-  results.add(example_step(1), std::nullopt);
+  results.add(example_step(1));
   add_step(results, 2);
   const Reader file(directory / "results.h5");
   EXPECT_EQ(file.members("/steps"), std::vector<std::string>{"000002"});
@@ -545,7 +548,7 @@ TEST_F(ResultsTest, NumbersThatAreNotFiniteAreRefusedBeforeAnythingIsWritten) {
   EXPECT_THROW(results.add(IterationRecord{1, 0, nan, 1.0, 1.0, 1.0, 0, 0}), std::logic_error);
   StepRecord record = example_step(1);
   record.reactions["right"][1] = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(results.add(record, std::nullopt), std::logic_error);
+  EXPECT_THROW(results.add(record), std::logic_error);
   ExampleFields fields(1, 2);
   fields.force[3] = nan;
   EXPECT_THROW(results.add(example_step(1), fields.views()), std::logic_error);
@@ -553,10 +556,9 @@ TEST_F(ResultsTest, NumbersThatAreNotFiniteAreRefusedBeforeAnythingIsWritten) {
   EXPECT_THROW(results.add(example_step(1), fields.views()), std::logic_error);
   record = example_step(1);
   record.probes.erase("tip");
-  EXPECT_THROW(results.add(record, std::nullopt), std::logic_error);
+  EXPECT_THROW(results.add(record), std::logic_error);
   add_step(results, 1);
-  EXPECT_THROW(results.add(example_step(1), std::nullopt), std::logic_error)
-      << "the same step again";
+  EXPECT_THROW(results.add(example_step(1)), std::logic_error) << "the same step again";
   EXPECT_EQ(lines(directory / "history.csv").size(), 2u);
   EXPECT_EQ(lines(directory / "iterations.csv").size(), 3u);
   EXPECT_EQ(Reader(directory / "results.h5").numbers("/history/step"), std::vector<double>{1});
@@ -665,9 +667,9 @@ TEST_F(ResultsTest, HistoriesOfBondsAreWrittenWithTheStep) {
   const ExampleFields fields(1, 2);
   StepFields views = fields.views();
   const BondHistories changed{{0, 3}, {2, 5}, {0.02, -1.0}, {}}, none;
-  views.histories = &changed;
+  views.histories = changed;
   results.add(example_step(1), views);
-  views.histories = &none;
+  views.histories = none;
   results.add(example_step(2), views);
   const auto expect_histories = [&] {
     const Reader file(directory / "results.h5");
@@ -690,7 +692,7 @@ TEST_F(ResultsTest, BondsToImagesAreTold) {
   const ExampleFields fields(1, 2);
   StepFields views = fields.views();
   const BondHistories changed{{0, 3}, {0, 1}, {0.02, 0.01}, {2, 0}};
-  views.histories = &changed;
+  views.histories = changed;
   results.add({{1, 0.1, 0, 0, 2}, {1, 0.1, 3, 1, 0}});
   results.add(example_step(1), views);
   results.close({});

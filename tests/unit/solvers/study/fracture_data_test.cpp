@@ -1,5 +1,3 @@
-#include "solvers/study/fracture_data.hpp"
-
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -7,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "solvers/formulations/formulations.hpp"
 #include "src/core/input_error.hpp"
 
 namespace peristat {
@@ -16,7 +15,7 @@ namespace {
 FractureScale of_bar() {
   MaterialSpecification material;
   material.youngs_modulus = 70e9;
-  return FractureScale::of(material, "m", {{1, 3e-3, 2e-6}}, 1e-3);
+  return fracture_scale_of(material, "m", {{1, 3e-3, 2e-6}}, 1e-3);
 }
 
 const FractureScale scale = of_bar();
@@ -168,7 +167,7 @@ TEST(FractureData, GiveABodyItsStrength) {
         material.damage = law(DamageLaw::linear);
         material.damage.fracture_energy = 110.0;
         material.damage.strength = 3e6;
-        const FractureScale of = FractureScale::of(material, "m", setting, 1e-3);
+        const FractureScale of = fracture_scale_of(material, "m", setting, 1e-3);
         const DamageSpecification found = with_stretches(material.damage, "m", of);
         EXPECT_NEAR(of.strength(found) / 3e6, 1.0, 1e-8);
         EXPECT_NEAR(of.energy(found) / 110.0, 1.0, 1e-8);
@@ -186,7 +185,7 @@ TEST(FractureData, OfALatticeWithoutShearStiffnessHaveNoStrength) {
   material.damage.strength = 3e6;
   BondSetting setting{{2, 1.1e-3, 2e-3}};
   setting.lattice = {Spacing(1e-3)};
-  const FractureScale of = FractureScale::of(material, "m", setting, 1e-3);
+  const FractureScale of = fracture_scale_of(material, "m", setting, 1e-3);
   EXPECT_THROW(static_cast<void>(with_stretches(material.damage, "m", of)), InputError);
 }
 
@@ -196,7 +195,7 @@ TEST(FractureData, OfPlaneStressAreThoseOfTheBooks) {
   material.youngs_modulus = 70e9;
   material.damage = law(DamageLaw::critical_stretch);
   material.damage.fracture_energy = energy;
-  const FractureScale of = FractureScale::of(material, "m", setting, 1e-3);
+  const FractureScale of = fracture_scale_of(material, "m", setting, 1e-3);
   const double book = std::sqrt(4.0 * std::numbers::pi * energy / (9.0 * 70e9 * 3e-3));
   EXPECT_NEAR(with_stretches(material.damage, "m", of).critical / book, 1.0, 1e-14);
 }
@@ -215,7 +214,7 @@ TEST(FractureData, OfCpdComeBackAsTheEnergyOfATear) {
     const BondSetting setting{{dimension, 2e-3, dimension == 2 ? 2e-3 : 1.0}};
     MaterialSpecification whole = cpd(DamageLaw::critical_stretch);
     whole.damage.fracture_energy = energy;
-    const FractureScale of = FractureScale::of(whole, "m", setting, 1e-3);
+    const FractureScale of = fracture_scale_of(whole, "m", setting, 1e-3);
     const DamageSpecification sudden = with_stretches(whole.damage, "m", of);
     EXPECT_NEAR(of.energy(sudden) / energy, 1.0, 1e-9);
     const double strength = of.strength(sudden);
@@ -255,15 +254,15 @@ TEST(FractureData, OfCpdAreRefusedWhereTheyWouldTakeMinutes) {
   const BondSetting setting{{3, 4e-3, 1.0}};
   MaterialSpecification material = cpd(DamageLaw::critical_stretch);
   material.damage.critical = 0.01;
-  EXPECT_FALSE(FractureScale::of(material, "m", setting, 1e-3).tear);
+  EXPECT_FALSE(fracture_scale_of(material, "m", setting, 1e-3).tear);
   material.damage.critical = 0.0;
   material.damage.fracture_energy = energy;
-  EXPECT_THROW(static_cast<void>(FractureScale::of(material, "m", setting, 1e-3)), InputError);
+  EXPECT_THROW(static_cast<void>(fracture_scale_of(material, "m", setting, 1e-3)), InputError);
   material.damage = law(DamageLaw::tanh);
   material.damage.fracture_energy = energy;
   material.damage.rate = 50.0;
   const BondSetting shorter{{3, 3.015e-3, 1.0}};
-  const FractureScale of = FractureScale::of(material, "m", shorter, 1e-3);
+  const FractureScale of = fracture_scale_of(material, "m", shorter, 1e-3);
   EXPECT_THROW(static_cast<void>(with_stretches(material.damage, "m", of)), InputError);
 }
 
@@ -272,7 +271,7 @@ TEST(FractureData, OfCpdAreRefusedForNegativeConstants) {
   MaterialSpecification material = cpd(DamageLaw::critical_stretch);
   material.poisson_ratio = 0.1;
   material.damage.fracture_energy = energy;
-  EXPECT_THROW(static_cast<void>(FractureScale::of(material, "m", setting, 1e-3)), InputError);
+  EXPECT_THROW(static_cast<void>(fracture_scale_of(material, "m", setting, 1e-3)), InputError);
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](auto&, auto& of) { of.material.youngs_modulus = -1.0; }},
         Refusal{"UnknownPotential", "material.potential", "no potential of this name",
                 [](auto&, auto& of) { of.material.potential = "harmonik"; }},
-        Refusal{"PoissonRatioOfBonds", "material.poisson_ratio", "is for the model cpd",
+        Refusal{"PoissonRatioOfBonds", "material.poisson_ratio", "is for models \"cpd\"",
                 [](auto&, auto& of) { of.material.poisson_ratio = 0.3; }},
         Refusal{"CpdWithoutPoissonRatio", "material.poisson_ratio", "goes with youngs_modulus",
                 [](auto&, auto& of) { of.material.model = MaterialModel::cpd; }},

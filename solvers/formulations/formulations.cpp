@@ -1,0 +1,135 @@
+#include "solvers/formulations/formulations.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/formulations/bond/bond.hpp"
+#include "solvers/formulations/correspondence/correspondence.hpp"
+#include "solvers/formulations/cpd/cpd.hpp"
+#include "solvers/formulations/green_bond/green_bond.hpp"
+#include "solvers/formulations/linear_bond/linear_bond.hpp"
+#include "solvers/formulations/lps_collocation/lps_collocation.hpp"
+#include "solvers/formulations/lps_energy/lps_energy.hpp"
+#include "solvers/formulations/specification/for_each_material.hpp"
+
+namespace peristat {
+namespace {
+
+/// The one list of formulations.
+const std::vector<const Formulation*>& all_formulations() {
+  static const std::vector<const Formulation*> all{
+      &bond_formulation(),          &linear_bond_formulation(),     &cpd_formulation(),
+      &lps_energy_formulation(),    &lps_collocation_formulation(), &green_bond_formulation(),
+      &correspondence_formulation()};
+  return all;
+}
+
+/// Names of those that take an option: a model, or the formulation if its model has others that do
+/// not.
+std::vector<std::string> names_with(Option option) {
+  std::vector<std::string> names;
+  for (const auto& [model, name] : model_names()) {
+    std::vector<std::string> of_model;
+    bool all_take = true;
+    for (const Formulation* formulation : all_formulations()) {
+      if (formulation->model != model) continue;
+      if (!all_options_of(*formulation).has(option)) {
+        all_take = false;
+      } else if (formulation->takes.has(option)) {
+        of_model.push_back(std::string(formulation->label));
+      } else {
+        of_model.push_back(std::string(formulation->label) + " with operator \"fft\"");
+        all_take = false;
+      }
+    }
+    if (all_take) of_model = {'"' + std::string(name) + '"'};
+    names.insert(names.end(), of_model.begin(), of_model.end());
+  }
+  return names;
+}
+
+}  // namespace
+
+const std::vector<ModelName>& model_names() {
+  static const std::vector<ModelName> names{{MaterialModel::bond, "bond"},
+                                            {MaterialModel::cpd, "cpd"},
+                                            {MaterialModel::lps, "lps"},
+                                            {MaterialModel::green_bond, "green_bond"},
+                                            {MaterialModel::correspondence, "correspondence"}};
+  return names;
+}
+
+std::string name_of(MaterialModel model) {
+  return std::ranges::find(model_names(), model, &ModelName::model)->name;
+}
+
+const Formulation& formulation_of(const MaterialSpecification& material) {
+  if (material.model == MaterialModel::bond && material.kinematics == Kinematics::linear) {
+    return linear_bond_formulation();
+  }
+  return **std::ranges::find(all_formulations(), material.model, &Formulation::model);
+}
+
+const Formulation& formulation_of(const BodySpecification& of) {
+  const bool is_collocated =
+      of.material.model == MaterialModel::lps && of.form == SolidForm::collocation;
+  return is_collocated ? lps_collocation_formulation() : formulation_of(of.material);
+}
+
+OptionSet all_options_of(const Formulation& formulation) {
+  return formulation.takes.with(formulation.takes_convolved.value_or(OptionSet{}));
+}
+
+OptionSet options_of(const BodySpecification& of) {
+  const Formulation& formulation = formulation_of(of);
+  return of.is_convolved() ? formulation.takes_convolved.value_or(formulation.takes)
+                           : formulation.takes;
+}
+
+bool takes(MaterialModel model, Option option) {
+  return std::ranges::any_of(all_formulations(), [&](const Formulation* formulation) {
+    return formulation->model == model && all_options_of(*formulation).has(option);
+  });
+}
+
+std::string is_for(Option option) {
+  const std::vector<std::string> names = names_with(option);
+  std::string text = names.size() == 1 ? "is for model " : "is for models ";
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    text += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
+  }
+  return text;
+}
+
+FractureScale fracture_scale_of(const MaterialSpecification& material, const std::string& key,
+                                const BondSetting& setting, double spacing) {
+  return formulation_of(material).fracture_scale(material, key, setting, spacing);
+}
+
+namespace {
+
+/// Finds the stretches of a material from its data.
+void find_stretches(const Formulation& formulation, MaterialSpecification& material,
+                    const std::string& key, const BondSetting& setting, double spacing) {
+  if (!material.damage.is_by_data()) return;
+  if (formulation.crack_energy_of_dilation) {
+    const double energy = formulation.crack_energy_of_dilation(material, key, setting, spacing);
+    material.damage.critical = std::sqrt(*material.damage.fracture_energy / energy);
+    material.damage.fracture_energy.reset();
+    return;
+  }
+  const FractureScale scale = formulation.fracture_scale(material, key, setting, spacing);
+  material.damage = with_stretches(material.damage, key, scale);
+}
+
+}  // namespace
+
+BodySpecification with_stretches(BodySpecification of, const BondSetting& setting, double spacing) {
+  const Formulation& formulation = formulation_of(of);
+  for_each_material(of, [&](MaterialSpecification& material, const std::string& key) {
+    find_stretches(formulation, material, key, setting, spacing);
+  });
+  return of;
+}
+
+}  // namespace peristat

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solvers/formulations/interface/formulation.hpp"
+
+namespace peristat {
+
+/// A model of materials: its name in case files.
+struct ModelName {
+  MaterialModel model;
+  const char* name;
+};
+
+/// All models, in the order in which pages list them.
+[[nodiscard]] const std::vector<ModelName>& model_names();
+[[nodiscard]] std::string name_of(MaterialModel model);
+
+/// The formulation of a body.
+[[nodiscard]] const Formulation& formulation_of(const BodySpecification& of);
+/// One formulation of a model: all of a model take the same constants.
+[[nodiscard]] const Formulation& formulation_of(const MaterialSpecification& material);
+
+/// Options of a formulation with any of its operators.
+[[nodiscard]] OptionSet all_options_of(const Formulation& formulation);
+/// Options of a body, with convolutions if it has them.
+[[nodiscard]] OptionSet options_of(const BodySpecification& of);
+[[nodiscard]] inline bool takes(const BodySpecification& of, Option option) {
+  return options_of(of).has(option);
+}
+/// True if a formulation of the model takes the option.
+[[nodiscard]] bool takes(MaterialModel model, Option option);
+
+/// "is for models \"bond\" and \"cpd\"": those that take the option.
+[[nodiscard]] std::string is_for(Option option);
+
+/// Scale of the fracture energy and strength of a material without fibres, of a formulation with
+/// such a scale.
+[[nodiscard]] FractureScale fracture_scale_of(const MaterialSpecification& material,
+                                              const std::string& key, const BondSetting& setting,
+                                              double spacing);
+
+/// The body with stretches in the place of fracture energies and strengths.
+/// @throws InputError as the with_stretches of a law does
+[[nodiscard]] BodySpecification with_stretches(BodySpecification of, const BondSetting& setting,
+                                               double spacing);
+
+}  // namespace peristat

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "solvers/formulations/specification/material_specification.hpp"
+
+namespace peristat {
+
+/// True if the critical stretch follows from other data.
+constexpr bool is_sized(const DamageSpecification& damage) {
+  return damage.fracture_energy || (damage.strength && !damage.softens());
+}
+
+/// When a datum of a law has no effect, and why.
+struct DamageRule {
+  const char* key;
+  bool (*is_idle)(const DamageSpecification&);
+  const char* why;
+};
+inline constexpr std::array<DamageRule, 9> damage_rules{
+    {{"strength", [](auto& damage) { return damage.law == DamageLaw::energy_density; },
+      "is for the laws of stretches"},
+     {"critical", [](auto& damage) { return damage.law == DamageLaw::energy_density; },
+      "is for the laws of stretches"},
+     {"critical", is_sized, "follows from fracture_energy or strength; give one of them"},
+     {"onset", [](auto& damage) { return !damage.softens(); }, "is for the laws that soften"},
+     {"onset", [](auto& damage) { return damage.strength && damage.law != DamageLaw::blended; },
+      "follows from strength; give one of them"},
+     {"peak", [](auto& damage) { return damage.law != DamageLaw::blended; },
+      "is for the law \"blended\""},
+     {"peak", [](auto& damage) { return damage.strength.has_value(); },
+      "follows from strength; give one of them"},
+     {"hardening", [](auto& damage) { return damage.law != DamageLaw::blended; },
+      "is for the law \"blended\""},
+     {"rate", [](auto& damage) { return !damage.has_rate(); },
+      "is for the tanh laws and \"exponential\""}}};
+
+/// Refuses a law of damage with too little or too much data, or with stretches that do not fit
+/// together.
+/// @param table key of the damage with a dot, "material.damage."
+/// @throws InputError
+void check_damage(const DamageSpecification& damage, const std::string& table);
+
+}  // namespace peristat
