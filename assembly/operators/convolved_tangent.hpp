@@ -1,23 +1,19 @@
 #pragma once
 
-#include <vector>
-
-#include "assembly/energy/kept_state.hpp"
+#include "assembly/operators/operator_of_energy.hpp"
 #include "assembly/operators/tangent_operator.hpp"
 
 namespace peristat {
 
 /// Tangent of forces that are computed by convolutions: it has products, diagonal blocks, bounds of
-/// row sums and a mean stencil, but no rows. The energy must outlive it.
-struct ConvolvedTangent : TangentOperator {
+/// row sums and a mean stencil, but no rows.
+struct ConvolvedTangent : OperatorOfEnergy<TangentOperator> {
   explicit ConvolvedTangent(Energy& energy);
 
-  [[nodiscard]] std::vector<double> positions() const override;
   /// @param projection see TermPasses::product; diagonal blocks and row sums ignore it
   void linearise(Energy& energy, const StateView& at, double projection) override;
   /// Frees what `linearise` computes again at little cost.
   void forget();
-  void multiply(std::span<const double> v, std::span<double> result) const override;
   [[nodiscard]] bool has_rows() const override { return false; }
   /// @throws std::logic_error
   void for_each_row(const RowVisitor& visit) const override;
@@ -25,12 +21,7 @@ struct ConvolvedTangent : TangentOperator {
   void absolute_row_sums(std::span<double> sums) const override;
   [[nodiscard]] LatticeStencil stencil() const override;
   /// False for forces without a potential.
-  [[nodiscard]] bool is_symmetric() const override;
-
- private:
-  Energy* energy_;
-  KeptState at_;
-  double projection_ = 0.0;
+  [[nodiscard]] bool is_symmetric() const override { return energy_->has_potential(); }
 };
 
 /// Frees the arrays of a tangent by convolutions until it is linearised again; other tangents keep

@@ -4,29 +4,16 @@
 
 namespace peristat {
 
-MatrixFreeTangent::MatrixFreeTangent(Energy& energy)
-    : TangentOperator(energy.pattern(), energy.points().dimension, energy.threads()),
-      energy_(&energy) {
+MatrixFreeTangent::MatrixFreeTangent(Energy& energy) : OperatorOfEnergy(energy, energy.pattern()) {
   if (energy.tangent_kind() != TangentKind::visited) {
     throw std::logic_error("the tangent of this energy must be stored");
   }
 }
 
-std::vector<double> MatrixFreeTangent::positions() const {
-  return at_.positions(energy_->points().reference);
-}
-
 void MatrixFreeTangent::linearise(Energy& energy, const StateView& at, double projection) {
-  energy_ = &energy;
-  reference = energy.points().reference;
-  at_.keep(at);
-  projection_ = projection;
+  keep(energy, at, projection);
   energy.forms().visits->visit_tangent(
       at, projection, [](int, Index, std::span<const double>) {}, diagonal);
-}
-
-void MatrixFreeTangent::multiply(std::span<const double> v, std::span<double> result) const {
-  energy_->product(at_.view(), v, result, projection_);
 }
 
 void MatrixFreeTangent::for_each_row(const RowVisitor& visit) const {

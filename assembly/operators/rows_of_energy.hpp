@@ -2,21 +2,17 @@
 
 #include <vector>
 
-#include "assembly/energy/kept_state.hpp"
-#include "assembly/energy/tangent_forms.hpp"
+#include "assembly/operators/operator_of_energy.hpp"
 #include "assembly/operators/unsymmetric_tangent.hpp"
 
 namespace peristat {
 
-/// Tangent of kind TangentKind::rows: products are computed anew each time, rows on
-/// request. The energy must outlive it.
-struct RowsOfEnergy : UnsymmetricTangent {
+/// Tangent in sparse rows, which are computed on request.
+struct RowsOfEnergy : OperatorOfEnergy<UnsymmetricTangent> {
   explicit RowsOfEnergy(Energy& energy);
 
-  [[nodiscard]] std::vector<double> positions() const override;
   /// Ignores the projection: the operator is linear.
   void linearise(Energy& energy, const StateView& at, double projection) override;
-  void multiply(std::span<const double> v, std::span<double> result) const override;
   /// Upper bounds.
   void absolute_row_sums(std::span<double> sums) const override;
 
@@ -27,8 +23,6 @@ struct RowsOfEnergy : UnsymmetricTangent {
   [[nodiscard]] SparseRows local_rows() const override;
 
  private:
-  Energy* energy_;
-  KeptState at_;
   std::vector<double> row_sums_;
 };
 

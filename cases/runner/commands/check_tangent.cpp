@@ -10,11 +10,10 @@
 
 #include <fmt/format.h>
 
-#include "assembly/operators/constrained_product.hpp"
-#include "assembly/operators/constrained_tangent.hpp"
-#include "assembly/operators/rows_of_energy.hpp"
+#include "assembly/operators/unsymmetric_tangent.hpp"
 #include "cases/runner/setup/body.hpp"
 #include "solvers/motion/newmark.hpp"
+#include "solvers/study/linear_systems.hpp"
 #include "solvers/study/motion.hpp"
 #include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
@@ -295,15 +294,6 @@ double relative_moment_sum(const Points& points, const std::vector<double>& disp
   return size > 0.0 ? std::hypot(sum[0], sum[1], sum[2]) / size : 0.0;
 }
 
-std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler,
-                                              const Constraints& constraints) {
-  const TangentKind kind = assembler.tangent_kind();
-  if (kind == TangentKind::products) return make_convolved_tangent(assembler, constraints);
-  if (kind == TangentKind::rows) return std::make_unique<RowsOfEnergy>(assembler);
-  if (constraints.none()) return std::make_unique<Tangent>(assembler);
-  return std::make_unique<ConstrainedTangent>(assembler, constraints);
-}
-
 /// As JSON: null for a tangent without entries.
 std::string frobenius_norm(const TangentOperator& tangent) {
   const Tangent* const stored = tangent.as_tangent();
@@ -445,7 +435,8 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   if (found.degenerate) {
     throw InputError("--deformation", '"' + text + '"', "collapses a bond to zero length");
   }
-  const std::unique_ptr<TangentOperator> made_tangent = make_tangent(assembler, constraints);
+  const std::unique_ptr<TangentOperator> made_tangent =
+      LinearSystems().make_tangent(assembler, constraints);
   TangentOperator& tangent = *made_tangent;
   const std::vector<Tensor> of_rigid_sets = reduced.curvature(displacement);
   StateView state = at;
