@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "solvers/body/body.hpp"
 #include "solvers/problem/equilibrium.hpp"
-#include "solvers/study/body.hpp"
 
 namespace peristat {
 

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "assembly/terms/bonds/point_stretches.hpp"
+#include "solvers/body/without_equation.hpp"
 #include "solvers/observe/internal_force.hpp"
 #include "solvers/observe/stress_fields.hpp"
-#include "solvers/study/without_equation.hpp"
 #include "src/core/input_error.hpp"
 
 namespace peristat {

@@ -10,9 +10,9 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/stress.hpp"
+#include "solvers/body/body.hpp"
 #include "solvers/observe/point_fields.hpp"
 #include "solvers/observe/recorded_points.hpp"
-#include "solvers/study/body.hpp"
 
 namespace peristat {
 

@@ -3,10 +3,10 @@
 #include <span>
 #include <vector>
 
+#include "solvers/body/body.hpp"
 #include "solvers/observe/crack_measures.hpp"
 #include "solvers/observe/recorded_points.hpp"
 #include "solvers/problem/records.hpp"
-#include "solvers/study/body.hpp"
 
 namespace peristat {
 

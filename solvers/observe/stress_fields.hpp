@@ -5,7 +5,7 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/stress.hpp"
-#include "solvers/study/body.hpp"
+#include "solvers/body/body.hpp"
 
 namespace peristat {
 

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include "solvers/body/body.hpp"
 #include "solvers/fracture/crack_tip_integrals.hpp"
-#include "solvers/study/body.hpp"
 #include "solvers/study/cut_release.hpp"
 
 namespace peristat {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solvers/study/body.hpp"
+#include "solvers/body/body.hpp"
 #include "solvers/study/study_options.hpp"
 
 namespace peristat {

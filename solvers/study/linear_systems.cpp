@@ -9,6 +9,7 @@
 #include "assembly/operators/matrix_free_tangent.hpp"
 #include "assembly/operators/rows_of_energy.hpp"
 #include "assembly/operators/tangent.hpp"
+#include "solvers/body/body_memory.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/linear/no_solver.hpp"
 #include "solvers/linear/sines_estimate.hpp"

@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "assembly/assembler.hpp"
+#include "solvers/body/body.hpp"
 #include "solvers/linear/memory_estimate.hpp"
-#include "solvers/study/body.hpp"
 #include "solvers/study/study_options.hpp"
 #include "src/parallel/index_map.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "solvers/body/body.hpp"
 #include "solvers/motion/motion_setting.hpp"
-#include "solvers/study/body.hpp"
 
 namespace peristat {
 

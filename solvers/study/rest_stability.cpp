@@ -10,14 +10,14 @@
 
 #include <fmt/format.h>
 
+#include "solvers/body/require_memory_for.hpp"
+#include "solvers/body/without_equation.hpp"
 #include "solvers/formulations/formulations.hpp"
 #include "solvers/linear/block_jacobi.hpp"
 #include "solvers/linear/cholesky.hpp"
 #include "solvers/linear/iterative_solver.hpp"
 #include "solvers/linear/rigid_pieces.hpp"
 #include "solvers/study/linear_systems.hpp"
-#include "solvers/study/require_memory_for.hpp"
-#include "solvers/study/without_equation.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/parallel/communicator.hpp"

@@ -3,12 +3,13 @@
 #include <cmath>
 #include <utility>
 
+#include "solvers/body/require_memory_for.hpp"
+#include "solvers/body/unheld_body.hpp"
+#include "solvers/body/without_equation.hpp"
 #include "solvers/motion/stable_step.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"
-#include "solvers/study/require_memory_for.hpp"
 #include "solvers/study/rest_stability.hpp"
-#include "solvers/study/without_equation.hpp"
 #include "src/conditions/points_of_set.hpp"
 #include "src/core/number_text.hpp"
 #include "src/parallel/index_map.hpp"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "solvers/body/body.hpp"
 #include "solvers/drivers/load_stepping.hpp"
 #include "solvers/motion/motion_setting.hpp"
-#include "solvers/study/body.hpp"
 #include "solvers/study/linear_systems.hpp"
 #include "src/parallel/index_map.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cases/runner/results/point_rows.hpp"
+#include "cases/runner/results/files/point_rows.hpp"
 #include "solvers/ranks/distribute.hpp"
 #include "solvers/ranks/make_index_map.hpp"
 #include "src/geometry/slab.hpp"

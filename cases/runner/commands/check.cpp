@@ -13,6 +13,7 @@
 #include "cases/runner/setup/preflight.hpp"
 #include "cases/runner/setup/preflight_rules.hpp"
 #include "cases/runner/setup/solver_options.hpp"
+#include "solvers/body/describe_body.hpp"
 #include "solvers/formulations/formulations.hpp"
 #include "solvers/formulations/materials/bond_potential.hpp"
 #include "solvers/linear/available_memory.hpp"

@@ -14,7 +14,7 @@
 #include "cases/runner/input/case_keys.hpp"
 #include "cases/runner/input/toml_text.hpp"
 #include "cases/runner/process/progress.hpp"
-#include "cases/runner/results/earlier_run.hpp"
+#include "cases/runner/results/folder/earlier_run.hpp"
 #include "cases/runner/setup/part_body.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/core/input_error.hpp"

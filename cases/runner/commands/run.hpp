@@ -5,7 +5,7 @@
 
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/process/exit.hpp"
-#include "cases/runner/results/earlier_run.hpp"
+#include "cases/runner/results/folder/earlier_run.hpp"
 #include "src/parallel/communicator.hpp"
 
 namespace peristat {

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "cases/runner/process/output_file.hpp"
-#include "cases/runner/results/constraint_columns.hpp"
-#include "cases/runner/results/results_folder.hpp"
+#include "cases/runner/results/folder/results_folder.hpp"
+#include "cases/runner/results/tables/constraint_columns.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/point_file.hpp"
 

@@ -7,8 +7,8 @@
 
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/process/progress.hpp"
-#include "cases/runner/results/points_part.hpp"
-#include "cases/runner/results/run_costs.hpp"
+#include "cases/runner/results/parts/points_part.hpp"
+#include "cases/runner/results/tables/run_costs.hpp"
 #include "solvers/study/study.hpp"
 
 namespace peristat {

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "assembly/terms/damage.hpp"
-#include "cases/runner/results/constraint_columns.hpp"
-#include "cases/runner/results/crack_tip_columns.hpp"
-#include "cases/runner/results/motion_columns.hpp"
-#include "cases/runner/results/record_tables.hpp"
+#include "cases/runner/results/tables/constraint_columns.hpp"
+#include "cases/runner/results/tables/crack_tip_columns.hpp"
+#include "cases/runner/results/tables/motion_columns.hpp"
+#include "cases/runner/results/tables/record_tables.hpp"
 #include "solvers/observe/internal_force.hpp"
 #include "src/geometry/image_number.hpp"
 

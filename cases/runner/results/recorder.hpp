@@ -7,7 +7,7 @@
 
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/process/progress.hpp"
-#include "cases/runner/results/damage_histories.hpp"
+#include "cases/runner/results/checkpoint/damage_histories.hpp"
 #include "cases/runner/results/results.hpp"
 #include "cases/runner/setup/body.hpp"
 #include "solvers/drivers/load_stepping.hpp"

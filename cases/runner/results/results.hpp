@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "cases/runner/input/settings.hpp"
-#include "cases/runner/results/earlier_run.hpp"
-#include "cases/runner/results/points_part.hpp"
-#include "cases/runner/results/probe_columns.hpp"
-#include "cases/runner/results/step_fields.hpp"
-#include "cases/runner/results/summary.hpp"
+#include "cases/runner/results/folder/earlier_run.hpp"
+#include "cases/runner/results/parts/points_part.hpp"
+#include "cases/runner/results/tables/probe_columns.hpp"
+#include "cases/runner/results/tables/step_fields.hpp"
+#include "cases/runner/results/tables/summary.hpp"
 #include "solvers/problem/records.hpp"
 #include "src/geometry/points.hpp"
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cases/runner/setup/find_boundary.hpp"
+#include "solvers/body/body_memory.hpp"
 #include "solvers/formulations/check_specification.hpp"
 #include "solvers/formulations/faster_operator.hpp"
 #include "solvers/formulations/materials/bond_materials.hpp"

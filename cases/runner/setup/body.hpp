@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cases/runner/input/case.hpp"
-#include "solvers/study/body.hpp"
+#include "solvers/body/body.hpp"
 
 namespace peristat {
 

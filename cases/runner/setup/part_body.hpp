@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "cases/runner/input/case.hpp"
-#include "solvers/study/body.hpp"
+#include "solvers/body/body.hpp"
 #include "src/parallel/communicator.hpp"
 
 namespace peristat {

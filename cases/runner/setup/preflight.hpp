@@ -9,7 +9,7 @@
 
 #include "cases/runner/input/given_values.hpp"
 #include "cases/runner/setup/feature_lengths.hpp"
-#include "solvers/study/body.hpp"
+#include "solvers/body/body.hpp"
 #include "src/parallel/communicator.hpp"
 
 namespace peristat {

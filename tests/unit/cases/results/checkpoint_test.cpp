@@ -1,4 +1,4 @@
-#include "cases/runner/results/checkpoint.hpp"
+#include "cases/runner/results/checkpoint/checkpoint.hpp"
 
 #include <cmath>
 #include <string>

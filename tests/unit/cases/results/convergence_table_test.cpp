@@ -1,4 +1,4 @@
-#include "cases/runner/results/convergence_table.hpp"
+#include "cases/runner/results/tables/convergence_table.hpp"
 
 #include <cmath>
 #include <string>

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cases/runner/results/record_tables.hpp"
+#include "cases/runner/results/tables/record_tables.hpp"
 #include "solvers/drivers/drivers.hpp"
 #include "solvers/drivers/load_stepping.hpp"
 #include "solvers/drivers/state_archive.hpp"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "solvers/study/body.hpp"
+#include "solvers/body/body.hpp"
 #include "src/core/input_error.hpp"
 
 namespace peristat {

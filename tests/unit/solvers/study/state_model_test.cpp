@@ -7,9 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "assembly/terms/states/state_term.hpp"
+#include "solvers/body/body.hpp"
+#include "solvers/body/body_memory.hpp"
 #include "solvers/formulations/check_specification.hpp"
 #include "solvers/formulations/lps_energy/lps_energy.hpp"
-#include "solvers/study/body.hpp"
 #include "src/core/input_error.hpp"
 #include "src/materials/lame_constants.hpp"
 #include "tests/bodies.hpp"
