@@ -12,12 +12,6 @@ Model::Model(Bonds network, BondPotential potential, std::vector<char> never_fai
           std::make_shared<BondFailure>(std::make_shared<const Bonds>(std::move(network)),
                                         std::move(potential), std::move(never_fails)))) {}
 
-void Model::add(std::shared_ptr<Term> term) {
-  const auto has_failure = [](const auto& of) { return of->failure() != nullptr; };
-  if (has_failure(term) && std::ranges::none_of(terms_, has_failure)) failure_ = term->failure();
-  terms_.push_back(std::move(term));
-}
-
 std::size_t Model::slot_of(const Term& term) const {
   const auto found = std::ranges::find(terms_, &term, &std::shared_ptr<Term>::get);
   if (found == terms_.end()) throw std::logic_error("the model has no such term");

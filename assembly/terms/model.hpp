@@ -9,8 +9,8 @@
 namespace peristat {
 
 /// The discrete energy of a body: a sum of terms on a network of bonds, which defines connectivity
-/// and what a crack cuts, and the failure model of the first term that has one. Copies share their
-/// terms.
+/// and what a crack cuts, and the failure model of the term that it was made with. Copies share
+/// their terms.
 class Model {
  public:
   Model() : Model(Bonds{{0}, {}, {}}) {}
@@ -24,10 +24,10 @@ class Model {
   /// @param never_fails per bond, 1: no damage whatever the stretch; empty: none
   Model(Bonds network, BondPotential potential, std::vector<char> never_fails = {});
 
-  /// A term with its failure model, and the network of that.
-  explicit Model(std::shared_ptr<Term> term) { add(std::move(term)); }
+  /// A term that has a failure model, and the network of that.
+  explicit Model(std::shared_ptr<Term> term) : failure_(term->failure()), terms_{std::move(term)} {}
 
-  void add(std::shared_ptr<Term> term);
+  void add(std::shared_ptr<Term> term) { terms_.push_back(std::move(term)); }
 
   [[nodiscard]] const Bonds& bonds() const { return failure_->bonds(); }
   [[nodiscard]] const std::shared_ptr<const Bonds>& shared_bonds() const {
