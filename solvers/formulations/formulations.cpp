@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "solvers/formulations/bond/bond.hpp"
 #include "solvers/formulations/correspondence/correspondence.hpp"
@@ -103,7 +104,9 @@ std::string is_for(Option option) {
 
 FractureScale fracture_scale_of(const MaterialSpecification& material, const std::string& key,
                                 const BondSetting& setting, double spacing) {
-  return formulation_of(material).fracture_scale(material, key, setting, spacing);
+  const Formulation& formulation = formulation_of(material);
+  if (!formulation.fracture_scale) throw std::logic_error("a formulation without fracture scale");
+  return formulation.fracture_scale(material, key, setting, spacing);
 }
 
 namespace {
@@ -118,7 +121,7 @@ void find_stretches(const Formulation& formulation, MaterialSpecification& mater
     material.damage.fracture_energy.reset();
     return;
   }
-  const FractureScale scale = formulation.fracture_scale(material, key, setting, spacing);
+  const FractureScale scale = fracture_scale_of(material, key, setting, spacing);
   material.damage = with_stretches(material.damage, key, scale);
 }
 

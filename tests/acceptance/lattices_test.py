@@ -351,7 +351,7 @@ class Refusals(Cases):
             self.refuses(CUT, ["lattice.volumes=fractional", correction], "quadrature.volume_correction", "part of its cell")
             self.refuses(CUT, ["lattice.perturbation=0.1", correction], "quadrature.volume_correction", "not at a lattice site")
             self.refuses(HOLED, [correction], "quadrature.volume_correction", "cuts Voronoi cells")
-            self.refuses(PULLED, [cpd, correction], "quadrature.volume_correction", "is for model \"bond\"")
+            self.refuses(PULLED, [cpd, correction], "quadrature.volume_correction", "is for models \"bond\", \"lps\"")
         box = "quadrature.horizon_shape=box"
         for correction in ("linear", "exact"):
             self.refuses(CUT, [box, f"quadrature.volume_correction={correction}"], "quadrature.horizon_shape", "parts of cells")
@@ -453,7 +453,7 @@ displacement = ["1e-5*load", "free"]
         for correction in ("linear", "exact", "exact_centroids"):
             self.refuses(self.GIVEN, [f"quadrature.volume_correction={correction}"], "volume_correction", "shares")
         self.refuses(self.GIVEN, ["quadrature.surface_correction=volume"], "surface_correction", "energy")
-        self.refuses(self.GIVEN, ['material={model="cpd", youngs_modulus=1e9, poisson_ratio=0.4}'], "material.model")
+        self.refuses(self.GIVEN, ['material={model="cpd", youngs_modulus=1e9, poisson_ratio=0.4}'], "points.neighbours")
         self.refuses(self.GIVEN, ["solver.mode=adaptive", "solver.elastic_horizon_ratio=2"], "elastic_horizon_ratio")
         (self.folder / "neighbours.txt").write_text("i j w_ij\n1 2 1\n2 100 1\n")
         self.refuses(self.GIVEN, [], "neighbours.txt:3", "from 1 to 72")

@@ -340,9 +340,9 @@ displacement = [0, 0]
 
     def test_what_does_not_go_with_it(self):
         self.assert_both_refuse("planes of symmetry", patch() + '[[symmetry]]\naxis = "y"\nat = 0.0\n')
-        self.assert_both_refuse("lps has a quadrature of its own", patch(quadrature='surface_correction = "energy"'))
-        self.assert_both_refuse("lps has a quadrature of its own", patch(quadrature='volume_correction = "linear"'))
-        self.assert_both_refuse("not for the model lps",
+        self.assert_both_refuse(X_correction = "energy"'))
+        self.assert_both_refuse("is for models? \"bond\"", patch(quadrature='volume_correction = "linear"'))
+        self.assert_both_refuse("is for models \"bond\"",
                             patch(material="thermal_expansion = 1e-5") + '[temperature]\nchange = "10"\n')  # fmt: skip
         rigid = patch() + '[[set]]\nname = "middle"\nwhere = "abs(x - 0.5) < 0.1"\n[[rigid]]\nset = "middle"\n'
         self.assertRegex(self.refusal(rigid), "rigid sets, .* are for models with an energy")

@@ -145,14 +145,12 @@ std::string bond_calibration(const MaterialSpecification& material, const std::s
     throw InputError(key + ".fibre", "",
                      "calibrate is for materials without fibres; check prints their constants");
   }
-  const FractureScale scale = fracture_scale_of(material, key, setting, spacing);
-  std::optional<BulkBonds> bonds;
-  if (setting.lattice) bonds.emplace(setting);
+  const double modulus = micromodulus_of(material, key, setting).at(1.0);
   std::vector<std::string> pairs{
-      exact_pair("micromodulus", scale.micromodulus),
-      exact_pair("continuum_youngs_modulus", youngs_modulus_of(scale.micromodulus, setting))};
-  if (bonds) {
-    pairs.push_back("\"youngs_modulus\": " + youngs_moduli(*bonds, scale.micromodulus, setting));
+      exact_pair("micromodulus", modulus),
+      exact_pair("continuum_youngs_modulus", youngs_modulus_of(modulus, setting))};
+  if (setting.lattice) {
+    pairs.push_back("\"youngs_modulus\": " + youngs_moduli(BulkBonds(setting), modulus, setting));
   }
   pairs.push_back(exact_pair("poisson_ratio", poisson_ratio(setting)));
   require_law(material.damage, with_strengths);
