@@ -99,6 +99,9 @@ std::string is_for(Option option) {
   for (std::size_t k = 0; k < names.size(); ++k) {
     text += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
   }
+  if (option == Option::poisson_ratio) {
+    text += "; bonds alone have 1/3 in plane stress, 1/4 in plane strain and 3D";
+  }
   return text;
 }
 

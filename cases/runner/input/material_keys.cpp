@@ -300,9 +300,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .on_ranks(),
        K("poisson_ratio", &Spec::poisson_ratio, between(-1.0, 1.0),
          "Poisson's ratio, for `cpd`, `lps` and `correspondence` with `youngs_modulus`")
-           .unless(without(Option::poisson_ratio),
-                   is_for(Option::poisson_ratio) +
-                       "; bonds alone have 1/3 in plane stress, 1/4 in plane strain and 3D")
+           .unless(without(Option::poisson_ratio), is_for(Option::poisson_ratio))
            .unless(has_constants, with_moduli)
            .moreover("`lps`, `correspondence`: to 0.5; `cpd`: in 3D to 0.5; these limits are "
                      "excluded; `cpd` with damage: at least 1/3 (2D) or 1/4 (3D)")
