@@ -33,7 +33,7 @@ DamageState assess_damage(const Model& model, const History& history,
   for (std::size_t i = 0; i < damage.size(); ++i) {
     if (!(whole[i] > 0.0)) continue;
     const double of_point = 1.0 - left[i] / whole[i];
-    if (of_point > lost.round_off) damage[i] = std::min(of_point, 1.0);
+    if (!(of_point <= lost.round_off)) damage[i] = std::min(of_point, 1.0);  // a NaN stays visible
     if (i < told) state.max_damage = std::max(state.max_damage, damage[i]);
   }
   return state;

@@ -12,6 +12,10 @@ Model::Model(Bonds network, BondPotential potential, std::vector<char> never_fai
           std::make_shared<BondFailure>(std::make_shared<const Bonds>(std::move(network)),
                                         std::move(potential), std::move(never_fails)))) {}
 
+Model::Model(std::shared_ptr<Term> term) : failure_(term->failure()), terms_{std::move(term)} {
+  if (!failure_) throw std::logic_error("a model is made with a term that has a failure model");
+}
+
 std::size_t Model::slot_of(const Term& term) const {
   const auto found = std::ranges::find(terms_, &term, &std::shared_ptr<Term>::get);
   if (found == terms_.end()) throw std::logic_error("the model has no such term");

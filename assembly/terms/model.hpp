@@ -25,7 +25,8 @@ class Model {
   Model(Bonds network, BondPotential potential, std::vector<char> never_fails = {});
 
   /// A term that has a failure model, and the network of that.
-  explicit Model(std::shared_ptr<Term> term) : failure_(term->failure()), terms_{std::move(term)} {}
+  /// @throws std::logic_error if it has none
+  explicit Model(std::shared_ptr<Term> term);
 
   void add(std::shared_ptr<Term> term) { terms_.push_back(std::move(term)); }
 

@@ -26,7 +26,7 @@ void check_points_and_operator(const BodySpecification& of, const Points& points
     throw InputError("material.model", model,
                      "does not go with planes of symmetry and periods, which are for other models");
   }
-  for (std::size_t k = 0; of.is_convolved() && k < of.loads.size(); ++k) {
+  for (std::size_t k = 0; !options.has(Option::pressures) && k < of.loads.size(); ++k) {
     require_absent(of.loads[k].kind == LoadSpecification::Kind::pressure,
                    "loads[" + std::to_string(k) + "].pressure",
                    "turns with its faces, which couples points in a way that operator \"fft\" does "

@@ -36,7 +36,7 @@ std::vector<std::string> names_with(Option option) {
       if (formulation->model != model) continue;
       if (!all_options_of(*formulation).has(option)) {
         all_take = false;
-      } else if (formulation->takes.has(option)) {
+      } else if (formulation->takes.has(option) || option == Option::convolutions) {
         of_model.push_back(std::string(formulation->label));
       } else {
         of_model.push_back(std::string(formulation->label) + " with operator \"fft\"");

@@ -52,6 +52,9 @@ bool build_by_launcher(const char* library, const std::string& file) {
 
 void* load_module(const char* library, const char* file, const char* symbol, std::size_t room) {
   if (!has_address_space(room)) throw std::bad_alloc();
+  // By default Scotch 7, which MUMPS and the ranks use, orders on all cores, and differently in
+  // each run: round-off of factors and partitions would not repeat.
+  setenv("SCOTCH_PTHREAD_NUMBER", "1", 0);
   void* loaded = dlopen(file, RTLD_LAZY | RTLD_LOCAL);
   std::string reason = loaded ? "" : dlerror();
   if (!loaded && is_missing(file, reason) && build_by_launcher(library, file)) {

@@ -45,9 +45,8 @@ struct LoadValues {
 
 /// The same in a state, with the fields that the probe needs.
 /// @param crack for crack measures, see SeparatedBonds
-/// @throws InputError ("probe[0].set", "field", "component", …) also for a probe that the body
-/// can't
-///         answer
+/// @throws InputError ("probe[0].set", "field", "component", …) also for a probe that the
+///         body can't answer
 [[nodiscard]] std::vector<double> probe_values(const ProbeSpecification& probe, Observation& in,
                                                const CrackState& crack = {},
                                                const LoadValues& loads = {});

@@ -90,6 +90,15 @@ class LinearSolvers(Folder):
         self.assertIn("preconditioned by surrogate", told)
         self.assertIn("(as the case asks)", told)
 
+    def test_runs_with_mumps_repeat_to_the_last_bit(self):
+        """Scotch orders its matrix: on several cores differently in each run. One run in two would differ."""
+        histories = set()
+        for _ in range(6):
+            output = self.run_case(CASES / "three_point_bending/toughness.toml", words=("--stop-after", 1), code=130)
+            histories.add((output / "history.csv").read_text())
+        self.assertIn("MUMPS", self.ended.output)
+        self.assertEqual(len(histories), 1)
+
     def test_newton_stays_quadratic_with_iterations(self):
         self.run_case(BEAM, *SMALL)
         residuals = [row["relative_residual"] for row in self.iterations()]
