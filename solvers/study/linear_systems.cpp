@@ -80,7 +80,7 @@ constexpr double vectors_of_flow = 9.0;
 
 /// Mode path: vectors beside those of Newton's search, and numbers per bond: histories of three
 /// states, resistances in two.
-constexpr double vectors_of_events = 12.0, numbers_of_events_per_bond = 6.0;
+constexpr double vectors_of_events = 12.0, numbers_of_events_per_bond = 5.0;
 
 /// Mode dynamics: vectors of mass, its inverse, velocities before and after, and Lanczos' method.
 constexpr double vectors_of_motion = 9.0;

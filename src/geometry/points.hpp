@@ -10,6 +10,7 @@
 #include "src/core/types.hpp"
 #include "src/geometry/cell_polygons.hpp"
 #include "src/geometry/images.hpp"
+#include "src/geometry/mesh_elements.hpp"
 
 namespace peristat {
 
@@ -41,6 +42,12 @@ struct Points {
   /// Cells of the points, without images; empty if cells are a lattice's, or cut by the body's
   /// boundary, or if there are none.
   CellPolygons polygons{};
+  MeshElements elements{};  ///< of points at the centroids of a mesh's elements; or empty
+
+  /// Further columns of the points' file by name: a value per point, in SI units.
+  std::map<std::string, std::vector<double>> columns{};
+  /// Horizon of each point [m], see points.horizon of case files; empty: one horizon for all.
+  std::vector<double> horizons{};
 
   /// Places around the body that hold no point and that quadratures by collocation use, all x
   /// dimension [m].

@@ -17,7 +17,8 @@ StateNumbering::StateNumbering(const RecordedPoints& points, const RowGathering&
       part_(gathering.part()),
       gathering_(gathering),
       bonds_(model.bonds()),
-      rows_of_histories_(model.fails_in_avalanches() ? Rows::points : Rows::bonds),
+      rows_of_histories_(model.failure().parts() == FailingParts::points ? Rows::points
+                                                                         : Rows::bonds),
       prescribed_(prescribed) {
   std::vector<std::int64_t> counts;
   for (Index point = 0; point < part_.owned(); ++point) {
