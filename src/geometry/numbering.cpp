@@ -78,6 +78,11 @@ Points renumbered(const Points& points, const std::vector<Index>& order) {
     result.volume.push_back(points.volume[old]);
     if (!points.polygons.empty()) result.polygons.append(points.polygons.of(std::size_t(old)));
   }
+  for (const auto& [name, values] : points.columns) {
+    std::vector<double>& new_values = result.columns[name];
+    new_values.reserve(order.size());
+    for (const Index old : order) new_values.push_back(values[std::size_t(old)]);
+  }
   for (NeighbourShares pair : points.neighbours) {
     pair.i = new_number[pair.i];
     pair.j = new_number[pair.j];

@@ -30,6 +30,16 @@ void check_set(const std::string& name, const std::vector<Index>& members, Index
   }
 }
 
+void check_column(const std::string& name, const std::vector<double>& values, Index points) {
+  const std::string shown = '"' + name + '"', why_not = why_no_column(name);
+  require(why_not.empty(), "points.columns", shown, why_not);
+  require(values.size() == std::size_t(points), "points.columns", shown,
+          "must have a value for every point");
+  for (const double value : values) {
+    require(std::isfinite(value), "points.columns", shown, "must be finite");
+  }
+}
+
 }  // namespace
 
 void check_points(const Points& points) {
@@ -43,6 +53,7 @@ void check_points(const Points& points) {
     require(std::isfinite(at), "points.reference", number_text(at), "must be finite");
   for (const double volume : points.volume) require_positive(volume, "points.volume");
   check_shares(points);
+  for (const auto& [name, values] : points.columns) check_column(name, values, points.own());
   for (const auto& [name, members] : points.sets) check_set(name, members, points.count());
 }
 
