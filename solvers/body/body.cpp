@@ -149,7 +149,7 @@ void take_surface(Body& body, LoadSetting& loads, int threads) {
 }
 
 LoadingProgramme programme_of(const BodySpecification& of) {
-  if (of.end_time) return LoadingProgramme::of_time(*of.end_time);
+  if (of.end_time) return LoadingProgramme::of_time(*of.end_time, of.loads_over_time);
   return of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme);
 }
 

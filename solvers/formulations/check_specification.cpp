@@ -94,12 +94,13 @@ void check_scatter(const MaterialSpecification& material, const std::string& key
   using Quantity = ScatterSpecification::Quantity;
   bool is_known[2] = {false, false};
   for (std::size_t k = 0; k < material.scatter.size(); ++k) {
-    const auto& [of, distribution, field] = material.scatter[k];
+    const auto& [of, distribution, field, factor] = material.scatter[k];
     const std::string table = key + ".scatter[" + std::to_string(k) + "]";
     require_absent(std::exchange(is_known[int(of)], true), table + ".of",
                    "another table of this material has the same quantity");
     require_absent(of == Quantity::strength && !material.damage.breaks_bonds(), table + ".of",
                    "strength needs a law of damage by stretches");
+    if (!factor.empty()) continue;
     require_within(field.modulus, 1.0, 1e3, table + ".weibull_modulus");
     require(std::isfinite(field.correlation_length) && field.correlation_length >= 0.0,
             table + ".correlation_length", number_text(field.correlation_length),

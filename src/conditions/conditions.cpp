@@ -103,8 +103,8 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     for (int c = 0; c < points.dimension; ++c) {
       const std::string key = indexed(table + ".value", std::size_t(c));
       loads_.push_back({key, on, c, with_key(key, [&] {
-                          return total ? Expression(loads[k].value[c], 0, points.spacing, parameters,
-                                                    points.columns)
+                          return total ? Expression(loads[k].value[c], 0, points.spacing,
+                                                    parameters, points.columns)
                                        : expression_of(loads[k].value[c], points, parameters);
                         })});
     }
@@ -395,7 +395,8 @@ void Conditions::prescribe(const LoadPoint& at, std::span<double> displacement) 
   for (const Prescription& prescription : prescriptions_) {
     with_key(prescription.key, [&] {
       for (Index point : *prescription.points) {
-        const double value = at.preload * value_at(prescription.displacement, points_, point, loads);
+        const double value =
+            at.preload * value_at(prescription.displacement, points_, point, loads);
         double& first = displacement[dof_of(prescription, point)];
         if (first_.empty() || first_[dof_of(prescription, point)] == &prescription) {
           first = value;
@@ -427,7 +428,8 @@ void Conditions::external_force(const LoadPoint& at, std::span<double> force) co
         const auto& [points, amount, spread_over] = *load.on;
         for (std::size_t k = 0; k < points.size(); ++k) {
           force[std::size_t(points[k]) * points_.dimension + load.component] +=
-              at.preload * value_at(load.value, points_, points[k], loads) * amount[k] / spread_over;
+              at.preload * value_at(load.value, points_, points[k], loads) * amount[k] /
+              spread_over;
         }
       });
     }

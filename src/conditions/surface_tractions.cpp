@@ -80,8 +80,7 @@ void SurfaceTractions::add(const Points& points, const LoadSpecification& load,
                                            : "needs the components xx, yy, zz, xy, yz, xz");
   }
   for (const std::string& text : texts) {
-    with_key(made.key,
-             [&] { made.value.push_back(expression_of(text, points, parameters)); });
+    with_key(made.key, [&] { made.value.push_back(expression_of(text, points, parameters)); });
   }
   if (load.kind != LoadSpecification::Kind::stress) refuse_one_sided(points, made, prescribed);
   loads_.push_back(std::move(made));

@@ -42,7 +42,7 @@ std::string why_no_column(const std::string& name) {
   }
   if (name.size() > longest) return "has more than " + std::to_string(longest) + " characters";
   static const std::vector<std::string> words{
-      "x",       "y",         "z",         "load",      "load2", "load3", "load4",  "t",
+      "x",       "y",         "z",         "load",      "load2", "load3", "load4",   "t",
       "spacing", "spacing_x", "spacing_y", "spacing_z", "pi",    "free",  table_name};
   const bool is_function = mu::Parser().GetFunDef().contains(name);
   if (is_function || std::ranges::count(words, name) > 0) {
@@ -124,8 +124,7 @@ struct Expression::Parser {
     if (!of.is_trial && !std::isnan(place) && !table.covers(place)) {
       of.refuse("the table " + of.files[k] + " goes from " + number_text(table.first()) + " to " +
                 number_text(table.last()) + ", but its value at " + number_text(place) +
-                " is needed" + of.where(" at ") +
-                "; add a row, or hold its ends with min and max");
+                " is needed" + of.where(" at ") + "; add a row, or hold its ends with min and max");
     }
     return table(place);
   }

@@ -20,8 +20,8 @@ using Columns = std::map<std::string, std::vector<double>>;
 /// A number as a function of place and of parameters, written as text: operators, functions and
 /// comparisons of muParser, the variables x, y, z (those of the dimension) [m], the parameters by
 /// their names (`load`), columns of the points by theirs, and the constants pi, spacing_x,
-/// spacing_y, spacing_z (along the lattice's axes) and, where these are equal, spacing [m]. Decimals
-/// have a point, whatever the locale.
+/// spacing_y, spacing_z (along the lattice's axes) and, where these are equal, spacing [m].
+/// Decimals have a point, whatever the locale.
 ///
 /// table("file.csv", x) and table("file.csv", "column", x) are the LinearTable of a file at x; a
 /// place outside the table is refused.

@@ -33,8 +33,7 @@ class TwoColumns {
     const bool is_header = is_first && !number_in(cells.front(), why_not);
     if (is_first) choose(cells, is_header);
     if (cells.size() != columns_) {
-      refuse(std::to_string(cells.size()) + " values for " + std::to_string(columns_) +
-             " columns");
+      refuse(std::to_string(cells.size()) + " values for " + std::to_string(columns_) + " columns");
     }
     if (is_header) return false;
     at = number(cells.front());

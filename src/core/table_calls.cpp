@@ -41,8 +41,7 @@ class TableCallScanner {
 
   [[noreturn]] void refuse(const std::string& what) const {
     throw InputError("", '"' + text_ + '"',
-                     "not a valid expression (character " + std::to_string(at_ + 1) +
-                         "): " + what);
+                     "not a valid expression (character " + std::to_string(at_ + 1) + "): " + what);
   }
 
   /// Reads what follows the word; the variable of the table stays for the parser.
@@ -100,7 +99,8 @@ std::string with_table_files(const std::string& text,
     const std::string file = rename(call->file);
     const char quote = file.find('"') == std::string::npos ? '"' : '\'';
     if (file.find(quote) != std::string::npos) {
-      throw InputError("", '"' + text + '"', "a file of a table can't have both quotes in its name");
+      throw InputError("", '"' + text + '"',
+                       "a file of a table can't have both quotes in its name");
     }
     std::string quoted = quote + file + quote;
     if (!call->column.empty()) {

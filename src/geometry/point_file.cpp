@@ -63,7 +63,7 @@ struct PointRow {
   std::size_t line = 0;
   Coordinates place{};
   double volume = 0.0;
-  std::string_view sets{};   ///< names joined by |
+  std::string_view sets{};        ///< names joined by |
   std::vector<double> further{};  ///< values of the further columns, in their order
 };
 
@@ -266,8 +266,8 @@ class Collection {
   Points points;
 
  private:
-  std::vector<std::size_t> lines_;              // per point
-  std::vector<std::vector<double>*> columns_;   // in the order of the file
+  std::vector<std::size_t> lines_;             // per point
+  std::vector<std::vector<double>*> columns_;  // in the order of the file
 };
 
 double spacing_of(double mean_volume, double cross_section, int dimension,

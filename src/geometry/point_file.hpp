@@ -22,8 +22,9 @@ namespace peristat {
 /// be left empty if it is `set`. Decimals have a point, whatever the locale. Points are renumbered
 /// with locality; the spacing is the (mean volume / cross_section)^(1/dimension).
 /// @throws InputError with "FILE:LINE" as its place for a missing column, one whose name
-///         expressions can't use, a value that is not a number or not finite, a volume that is not positive, and two points at one
-///         place; with "file" for a file that can't be read or has no points
+///         expressions can't use, a value that is not a number or not finite, a volume that is not
+///         positive, and two points at one place; with "file" for a file that can't be read or has
+///         no points
 /// @param neighbours their neighbours, if they are given; points are numbered there from 1 in the
 ///        order of the file
 [[nodiscard]] Points read_points(const std::filesystem::path& file, int dimension,

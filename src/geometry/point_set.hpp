@@ -10,7 +10,8 @@
 namespace peristat {
 
 /// Rule that selects points for a named set: an expression of x, y, z and the points' columns (true
-/// where not zero) or a shape; a point must satisfy all that are given. Points of fictitious layers are candidates too.
+/// where not zero) or a shape; a point must satisfy all that are given. Points of fictitious layers
+/// are candidates too.
 struct SetRule {
   std::string name{};
   std::string where{};

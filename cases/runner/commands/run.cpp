@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "cases/runner/commands/run_facts.hpp"
+#include "cases/runner/input/case_inputs.hpp"
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/interruption.hpp"
 #include "cases/runner/process/ranks_environment.hpp"
@@ -222,8 +223,13 @@ class CaseRun {
 
   void open_results() {
     Assembler& assembler = study_->equations().assembler();
-    const CaseText text{from_.as_read, from_.as_resolved,    from_.title,
-                        versions(),    identity(from_.file), from_.settings};
+    const CaseText text{from_.as_read,
+                        from_.as_resolved,
+                        from_.title,
+                        versions(),
+                        identity(from_.file),
+                        from_.settings,
+                        fingerprints_of_tables(from_)};
     const Points points = only_recorded({body_->points, *body_->index_map});
     if (earlier_) {
       results_.emplace(*earlier_, earlier_results_, points, text, support_sets_, probes_, further_,

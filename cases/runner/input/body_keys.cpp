@@ -10,10 +10,13 @@
 #include <variant>
 #include <vector>
 
+#include "cases/runner/input/case_inputs.hpp"
 #include "cases/runner/input/key_kinds.hpp"
 #include "cases/runner/input/shape_keys.hpp"
 #include "solvers/formulations/formulations.hpp"
+#include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/point_file.hpp"
 #include "src/neighbourhood/optimised_weights.hpp"
 
 namespace peristat {
@@ -176,14 +179,11 @@ namespace {
 
 Kind<std::filesystem::path> file_beside_the_case() {
   const auto read = [](const Entry& at) {
-    const std::filesystem::path given = at.from.string(at.key);
-    if (given.empty()) at.refuse("is empty");
-    const auto folder = std::filesystem::path(at.so_far.file).parent_path();
-    const auto file = std::filesystem::absolute(folder / given).lexically_normal();
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error))
-      at.refuse("no such file; searched for " + file.string());
-    return file;
+    try {
+      return absolute_beside_case(at.so_far, at.from.string(at.key));
+    } catch (const InputError& error) {
+      at.refuse(error.allowed());
+    }
   };
   return {read, [](auto& file, auto&) { return toml_string(file.string()); }, "an existing file"};
 }
@@ -197,6 +197,10 @@ Table<Case> points_keys() {
       {K("file", in(points, &PointSource::file), file_beside_the_case(),
          "file with comma- or blank-separated text; its path is relative to the case file's folder")
            .required()
+           .then([](auto&, auto& from) {
+             for (const std::string& name : further_columns(points(from).file, from.dimension))
+               from.columns[name];
+           })
            .on_ranks(),
        K("horizon", in(points, &PointSource::horizon), positive("m"),
          "horizon, the same for every point")

@@ -131,7 +131,10 @@ std::vector<std::string> LoadingSpecification::parameters() const {
 }
 
 std::vector<std::string> Case::parameters() const {
-  return dynamics.is_asked_for ? std::vector<std::string>{"t"} : loading.parameters();
+  if (!dynamics.is_asked_for) return loading.parameters();
+  std::vector<std::string> all = LoadingProgramme::names(loading.tables.size());
+  all.insert(all.begin(), "t");
+  return all;
 }
 
 Case read_case(const std::filesystem::path& file, const Settings& overrides) {
@@ -150,13 +153,19 @@ Case read_case(const std::filesystem::path& file, const std::string& text,
   collect_locations(document, "", result.locations);
   try {
     document_keys().read({TomlTable(document, "", result.file), "", result}, result);
-    if (!result.dynamics.is_asked_for) refuse_idle_tables(result);
+    refuse_idle_tables(result);
     check_materials(result, result.dimension);
   } catch (const InputError& error) {
     throw located(result, error);
   }
   resolve_size(result);
-  for (const LoadTable& table : result.loading.tables) result.programme.push_back(table.entries);
+  for (const LoadTable& table : result.loading.tables) {
+    if (result.dynamics.is_asked_for) {
+      result.loads_over_time.push_back(table.over_time);
+    } else {
+      result.programme.push_back(table.entries);
+    }
+  }
   if (result.dynamics.is_asked_for) result.end_time = result.dynamics.end_time;
   result.has_inertia = result.dynamics.is_implicit();
   result.as_resolved = document_keys().lines(result, result);

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -15,6 +17,7 @@
 #include "solvers/fracture/crack_tip.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
 #include "solvers/observe/probe_specification.hpp"
+#include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/lattice.hpp"
 #include "src/geometry/point_set.hpp"
@@ -29,10 +32,11 @@ struct PointSource {
   double horizon = 0.0;                ///< [m]
 };
 
-/// Values of a load parameter: given one by one, or as an expression of the step.
+/// Values of a load parameter: given one by one, as an expression of the step, or over time.
 struct LoadTable {
   std::vector<double> entries;
   std::string expression;
+  TimeTable over_time;  ///< of a motion
 };
 
 struct LoadingSpecification {
@@ -49,7 +53,7 @@ struct LoadingSpecification {
   /// Number of equal steps from one entry to the next; 1 for an expression, which has an entry for
   /// each step.
   [[nodiscard]] int steps_to_entry() const;
-  /// Load parameters that expressions may use.
+  /// Load parameters that expressions may use in a quasi-static mode.
   [[nodiscard]] std::vector<std::string> parameters() const;
 };
 
@@ -113,6 +117,8 @@ struct Case : BodySpecification {
   int dimension = 2;
   std::variant<Lattice, PointSource> body;
   double horizon_ratio = 3.015;  ///< horizon / spacing, for a lattice
+  /// Names of further data of points from a file, which expressions may use; without values.
+  Columns columns;
   std::vector<SetRule> sets;
   LoadingSpecification loading;
   SolverSpecification solver;
@@ -122,8 +128,13 @@ struct Case : BodySpecification {
   std::vector<ProbeSpecification> probes;
   std::vector<CrackTipSpecification> crack_tips;
 
-  /// Parameters that expressions of supports and loads may use: of the loading, or the time.
+  /// Parameters that expressions of supports and loads may use: those of the loading, and the time
+  /// of a motion.
   [[nodiscard]] std::vector<std::string> parameters() const;
+
+  /// Files of the tables in expressions, absolute; grows while the keys are read.
+  std::shared_ptr<std::set<std::filesystem::path>> tables =
+      std::make_shared<std::set<std::filesystem::path>>();
 
   std::string file;         ///< as given by the person
   std::string as_read;      ///< text of the file

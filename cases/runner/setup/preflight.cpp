@@ -128,10 +128,10 @@ class Values {
 
   [[nodiscard]] Preflight::Applied of(const GivenValue& given) const {
     const Expression expression(given.text, given.has_place ? from_.dimension : 0, spacing_,
-                                from_.parameters());
+                                from_.parameters(), body_.points.columns);
     Preflight::Applied value{given.kind, given.key, given.where, given.unit, given.text};
     value.changes = expression.has_parameters();
-    const std::vector<Coordinates> places = places_of(given, expression);
+    const std::vector<Place> places = places_of(given, expression);
     constexpr int most_entries = 100;  // between the first and the last
     const int last = programme_.is_of_time() ? 1 : int(programme_.end());
     const int stride = std::max(1, last / most_entries);
@@ -150,6 +150,11 @@ class Values {
   }
 
  private:
+  struct Place {
+    Coordinates at{};
+    Index point = Expression::no_point;
+  };
+
   struct Range {
     double least = infinity, most = -infinity;
     [[nodiscard]] double largest() const {
@@ -160,42 +165,43 @@ class Values {
     }
   };
 
-  [[nodiscard]] static std::vector<Coordinates> some_of(const std::vector<Coordinates>& places) {
+  [[nodiscard]] static std::vector<Place> some_of(const std::vector<Place>& places) {
     constexpr std::size_t most = 100;
     const std::size_t stride = std::max<std::size_t>(1, places.size() / most);
-    std::vector<Coordinates> some;
+    std::vector<Place> some;
     for (std::size_t k = 0; k < places.size(); k += stride) some.push_back(places[k]);
     return some;
   }
 
   /// Places to evaluate an expression at: a few thousand of the points if there are many.
-  [[nodiscard]] std::vector<Coordinates> places_of(const GivenValue& given,
-                                                   const Expression& expression) const {
-    if (!given.has_place || expression.is_constant()) return {Coordinates{}};
-    if (given.at) return {*given.at};
+  [[nodiscard]] std::vector<Place> places_of(const GivenValue& given,
+                                             const Expression& expression) const {
+    if (!given.has_place || expression.is_constant()) return {Place{}};
+    if (given.at) return {Place{*given.at}};
     const auto set = body_.points.sets.find(given.set);
     const bool is_of_set = set != body_.points.sets.end();
     const Index count = is_of_set ? Index(set->second.size()) : body_.points.own();
     constexpr Index most_places = 5000;
     const Index stride = std::max<Index>(1, count / most_places);
-    std::vector<Coordinates> places;
+    std::vector<Place> places;
     for (Index k = 0; k < count; k += stride) {
-      places.push_back(body_.points.position(is_of_set ? set->second[std::size_t(k)] : k));
+      const Index point = is_of_set ? set->second[std::size_t(k)] : k;
+      places.push_back({body_.points.position(point), point});
     }
     return places;
   }
 
   /// Range of values, leaving out places where the expression is undefined: it acts on no point
   /// there.
-  [[nodiscard]] Range range(const Expression& expression, const std::vector<Coordinates>& places,
+  [[nodiscard]] Range range(const Expression& expression, const std::vector<Place>& places,
                             double stage) const {
     std::vector<double> parameters = programme_.at(stage);
     // The load under displacement control is not known: values are given for a load of 1.
     if (body_.conditions->control() != nullptr && stage > 0.0) parameters.front() = 1.0;
     Range range;
-    for (const Coordinates& place : places) {
+    for (const auto& [at, point] : places) {
       try {
-        const double value = expression(place, parameters);
+        const double value = expression(at, parameters, point);
         range.least = std::min(range.least, value);
         range.most = std::max(range.most, value);
       } catch (const InputError&) {

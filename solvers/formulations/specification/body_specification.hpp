@@ -95,6 +95,7 @@ struct BodySpecification {
   std::vector<std::vector<double>> programme{};
   /// In the place of the tables the time `t`, up to this [s]: for a body in motion.
   std::optional<double> end_time{};
+  std::vector<TimeTable> loads_over_time{};         ///< tables of `load`, … of a body in motion
   std::vector<InitialSpecification> initial{};      ///< of a body in motion
   std::vector<AbsorbingSpecification> absorbing{};  ///< likewise
   bool has_inertia = false;                         ///< for a motion by implicit steps

@@ -85,13 +85,15 @@ struct FibreSpecification {
   std::optional<double> transverse_critical{};  ///< s_c of bonds across; none: as along
 };
 
-/// Random factor of the bonds, the mean of the factors of their two points.
+/// Factor of the bonds, the mean of the factors of their two points: random, or given at the
+/// points.
 struct ScatterSpecification {
   enum class Quantity { stiffness, strength };
   enum class Distribution { weibull };
   Quantity of = Quantity::stiffness;  ///< scales their constants, or all stretches of their law
   Distribution distribution = Distribution::weibull;
   WeibullField field{};
+  std::string factor{};  ///< expression of place and the points' columns; empty: random
 };
 
 struct MaterialSpecification {

@@ -38,6 +38,19 @@ bool are_same(const std::vector<double>& some, const std::vector<double>& others
   });
 }
 
+constexpr const char* columns_group = "/points/columns";
+
+std::string column_of(const std::string& name) { return columns_group + ("/" + name); }
+
+/// True if a group holds columns of these names, or there are none.
+bool holds_columns(const Hdf5File& file, const std::string& group, const Points& points) {
+  const std::string place = group + "/columns";
+  if (!file.has(place)) return points.columns.empty();
+  std::vector<std::string> names;
+  for (const auto& [name, values] : points.columns) names.push_back(name);
+  return file.names(place) == names;
+}
+
 std::vector<std::int32_t> neighbour_points(const Points& points) {
   std::vector<std::int32_t> ends;
   for (const NeighbourShares& pair : points.neighbours) ends.insert(ends.end(), {pair.i, pair.j});
@@ -100,6 +113,10 @@ void write_rows_of(const Points& points, const std::vector<PointCounts>& counts,
     sink.write(flags_of(name), flags(points, members), {},
                {"1", "1 where the point is in set " + name});
   }
+  for (const auto& [name, values] : points.columns) {
+    sink.write(column_of(name), values, {},
+               {"none", "column " + name + " of the file of points, in its own unit"});
+  }
   for (const PointCounts& of_points : counts) {
     std::visit(
         [&](const auto& values) {
@@ -131,6 +148,7 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
   }
   if (points.angle != 0.0) file.set_attribute("/points", "angle", points.angle);
   file.make_group("/points/sets");
+  if (!points.columns.empty()) file.make_group(columns_group);
   write_rows_of(points, counts, gathering, &file);
   std::vector<std::string> names;
   for (const auto& [name, members] : points.sets) names.push_back(name);
@@ -154,7 +172,7 @@ void send_points(const Points& points, const std::vector<PointCounts>& counts,
 
 std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts,
                        std::uint64_t rows) {
-  const std::uint64_t bytes_per_point = counts.size() * sizeof(double) +
+  const std::uint64_t bytes_per_point = (counts.size() + points.columns.size()) * sizeof(double) +
                                         (std::uint64_t(points.dimension) + 4) * sizeof(double) +
                                         sizeof(std::int32_t) + 2 * points.sets.size();
   const std::uint64_t bytes_per_pair = 2 * (sizeof(std::int32_t) + sizeof(double));
@@ -171,12 +189,15 @@ bool holds_points(const Hdf5File* file, const std::string& group, const Points& 
   const std::uint64_t rows = gathering.rows(points.volume.size());
   const bool is_outline_held = source.all_agree([&] {
     return file->names(group + "/sets") == names && holds_neighbours(*file, group, points) &&
-           file->count_of_rows(group + "/volume") == rows;
+           holds_columns(*file, group, points) && file->count_of_rows(group + "/volume") == rows;
   });
   if (!is_outline_held) return false;
   const auto d = std::size_t(points.dimension);
   bool are_held = are_same(source.read<double>(group + "/reference", d), points.reference);
   are_held = are_same(source.read<double>(group + "/volume", 1), points.volume) && are_held;
+  for (const auto& [name, values] : points.columns) {
+    are_held = are_same(source.read<double>(group + "/columns/" + name, 1), values) && are_held;
+  }
   for (const auto& [set, members] : points.sets) {
     const std::string path = group + "/sets/" + name_of_flags(set);
     are_held = source.read<std::uint8_t>(path, 1) == flags(points, members) && are_held;
