@@ -29,8 +29,11 @@ class TwoColumns {
     if (is_first) by_comma_ = text.find(',') != std::string_view::npos;
     const std::vector<std::string_view> cells =
         by_comma_ ? split(text, ',') : split_at_blanks(text);
-    std::string why_not;
-    const bool is_header = is_first && !number_in(cells.front(), why_not);
+    // A line with any number is a row, whose other fields must be numbers, too.
+    const bool is_header = is_first && std::ranges::none_of(cells, [](std::string_view cell) {
+                             std::string why_not;
+                             return number_in(cell, why_not).has_value();
+                           });
     if (is_first) choose(cells, is_header);
     if (cells.size() != columns_) {
       refuse(std::to_string(cells.size()) + " values for " + std::to_string(columns_) + " columns");

@@ -9,8 +9,8 @@ namespace peristat {
 /// A function of one variable, linear between given places: two columns of a text file.
 ///
 /// The first column has the abscissae, strictly ascending. The first line that is neither empty nor
-/// a comment (#) may name the columns. Separator is the comma if that line has one, otherwise
-/// blanks. Decimals have a point, whatever the locale.
+/// a comment (#) may name the columns; it has no number then. Separator is the comma if that line
+/// has one, otherwise blanks. Decimals have a point, whatever the locale.
 class LinearTable {
  public:
   /// @param column name of the column with the values; empty: the second of two
