@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "assembly/operators/constrained_tangent.hpp"
 #include "assembly/terms/points/point_term.hpp"
@@ -309,6 +310,11 @@ Exit check(const Case& from, int threads) {
   print_constants(from, body, threads);
   for (const auto& [set, members] : points.sets) {
     fmt::print("set         {}: {} points\n", set, members.size());
+  }
+  if (!points.columns.empty()) {
+    std::vector<std::string> names;
+    for (const auto& [name, values] : points.columns) names.push_back(name);
+    fmt::print("columns     {}\n", fmt::join(names, ", "));
   }
   print_supports(body);
   for (const std::string& line : describe_constraints(body)) {
