@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <system_error>
 
 #include "src/core/input_error.hpp"
 #include "src/core/nearest_name.hpp"
@@ -87,6 +88,10 @@ class TwoColumns {
 }  // namespace
 
 LinearTable::LinearTable(const std::filesystem::path& file, const std::string& column) {
+  // A device might never end.
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    throw InputError("file", file.string(), "no such file");
   TwoColumns columns(file, column);
   for_each_row(file, [&](std::size_t line, std::string_view text) {
     double at = 0.0, value = 0.0;

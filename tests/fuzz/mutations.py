@@ -18,7 +18,8 @@ TEXTS = ['""', '"x"', '"load"', '"free"', '"left"', '"../../etc/passwd"', '"/dev
 EXPRESSIONS = ["1/0", "0/0", "load/0", "ln(-1)", "sqrt(-load)", "1e308*10*load", "x^x^x^x", "1e-3*load", "load*load*1e-4", "rint(load)",
                "load > 0.3 ? 1 : -1", "load > 0.6 ? 1/0 : 0", "(((((load", "load)", "x x", "x = 1", "y", "z", "q", "1,5", "sin()",
                "atan2(1)", "min()", "-" * 2000 + "1", "(" * 3000 + "1" + ")" * 3000, "+".join(["x"] * 3000), "1e-400", "load#", "load;x",
-               "x = y = load", "_pi", "pi", "spacing", "1e-4*sin(300*load)", "0 < x < 1", "x ? 1", "\"", "'", "\\", "load\u00b2", "∞", "1e-3*t", "sin(300*t)/t"]  # fmt: skip
+               "x = y = load", "_pi", "pi", "spacing", "1e-4*sin(300*load)", "0 < x < 1", "x ? 1", "\"", "'", "\\", "load\u00b2", "∞", "1e-3*t", "sin(300*t)/t",
+               "table('missing.csv', load)", "table('points.csv', load)", "table(load, load)", "table('/dev/zero', x)", "table('case.toml', 'x', t)", "table('"]  # fmt: skip
 STRUCTURES = ["[]", "{}", "[[]]", "[1, 2]", "[1, 2, 3, 4]", "[1, \"a\"]", "[" * 500 + "]" * 500, "{a = {b = {c = 1}}}", "[" + "0," * 50_000 + "]",
               "{ disk = { centre = [0, 0], radius = -1 } }", "{ box = {} }", '["free", "free", "free"]', "[nan, inf]", "[[0, 0], [1, 1]]"]  # fmt: skip
 WORDS = """dimension title lattice points spacing horizon_ratio thickness area origin perturbation cell_perturbation lloyd_steps seed shape layer add subtract min max
@@ -28,7 +29,7 @@ WORDS = """dimension title lattice points spacing horizon_ratio thickness area o
     max_broken_bonds stop_below solver mode linear preconditioner tangent predictor projection relative_tolerance max_iterations fragments
     elastic_horizon_ratio relaxation iterations ramp breaking damping mass_factor quiet_iterations displacement_tolerance method flow_tolerance peak_tolerance output
     directory every count_cracks probe field other threshold control weights table table2 arc_length bifurcation region interface between
-    rule fibre angle direction transverse_modulus shear_modulus transverse_critical scatter of distribution weibull_modulus
+    rule fibre angle direction transverse_modulus shear_modulus transverse_critical scatter of factor distribution weibull_modulus
     correlation_length rigid roller at normal constraint term symmetry period gradient rotation gravity traction pressure depth eigenstrain
     strain temperature change thermal_expansion volumes neighbours dynamics end_time time_step step_share history_every initial velocity scheme
     spectral_radius absorbing degree traction_form boundary statistic expected
@@ -51,7 +52,7 @@ KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness latt
     relaxation.iterations relaxation.ramp relaxation.breaking relaxation.damping relaxation.mass_factor relaxation.max_iterations
     control[0].weights control[0].set control[1].set loading.table loading.table2 arc_length.steps arc_length.largest_step
     arc_length.bifurcation lattice.angle lattice.volumes points.neighbours material.fibre.angle material.fibre.transverse_modulus
-    material.fibre.shear_modulus material.scatter[0].weibull_modulus material.scatter[0].correlation_length material.scatter[0].seed
+    material.fibre.shear_modulus material.scatter[0].weibull_modulus material.scatter[0].factor material.scatter[0].correlation_length material.scatter[0].seed
     material.thermal_expansion material.density region[0].set region[0].material.youngs_modulus region[0].material.c1
     region[0].material.damage.critical interface[0].rule interface[0].between rigid[0].set rigid[0].centre rigid[0].displacement
     rigid[0].rotation roller[0].at roller[0].normal roller[0].displacement roller[1].normal constraint[0].displacement
