@@ -261,7 +261,8 @@ class CaseRun {
     }
     const Points& points = body_->points;
     if (const auto trapping =
-            crack_trapping(body_->specification, points.dimension, points.spacing)) {
+            crack_trapping(body_->specification, points.dimension,
+                           body_->setting.horizon / body_->horizon_ratio())) {
       progress_.say("damage law: " + description(*trapping));
     }
     const PathState* path = earlier_ ? &earlier_->checkpoint().path : nullptr;

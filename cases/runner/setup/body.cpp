@@ -87,7 +87,7 @@ Points make_points_of(const Case& from) {
       const auto& source = std::get<PointSource>(from.body);
       std::optional<NeighbourFile> neighbours;
       if (!source.neighbours.empty())
-        neighbours = {source.neighbours, source.horizon, source.cross_section};
+        neighbours = {source.neighbours, source.horizon.length, source.cross_section};
       points = read_points(source.file, from.dimension, source.cross_section, neighbours);
     }
     for (std::size_t k = 0; k < from.sets.size(); ++k) {
@@ -158,6 +158,9 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     if (!body.points.neighbours.empty())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "is for neighbours found by the search, but points.neighbours gives them");
+    if (!body.points.horizons.empty())
+      throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
+                       "is for one horizon, but points.horizon gives every point its own");
     if (from.solver.elastic_horizon_ratio * body.points.spacing < body.points.spacing.largest())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "gives a horizon smaller than the largest spacing");

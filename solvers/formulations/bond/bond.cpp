@@ -19,7 +19,8 @@ MadeModel make_bond_model(const ModelSetting& setting, Bonds bonds) {
     mixed.weigh(bonds);
   }
   CutBonds cut = cut_bonds(bonds, setting.points, of.cracks);
-  auto [potential, never_fails] = mixed.potential(bonds);
+  auto [potential, never_fails] =
+      mixed.potential(bonds, stretch_factors(setting.points, bonds, setting.bonds));
   return {Model(std::move(bonds), std::move(potential), std::move(never_fails)), std::move(cut)};
 }
 
@@ -45,7 +46,7 @@ const Formulation& bond_formulation() {
                 Option::calibration, Option::thermal_expansion, Option::fibre, Option::strength,
                 Option::softening, Option::critical_stretch, Option::volume_correction,
                 Option::horizon_shape, Option::surface_correction, Option::interfaces,
-                Option::eigenstrains, Option::given_neighbours, Option::pressures, Option::images,
+                Option::eigenstrains, Option::given_neighbours, Option::horizons, Option::pressures, Option::images,
                 Option::events},
       .part_needs_lattice = false,
       .has_quadrature_of_bonds = true,

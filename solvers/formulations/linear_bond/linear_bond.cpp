@@ -49,6 +49,7 @@ constexpr OptionSet options_of_linear_bonds{Option::plane,
                                             Option::interfaces,
                                             Option::surface_correction,
                                             Option::given_neighbours,
+                                            Option::horizons,
                                             Option::pressures,
                                             Option::images};
 
@@ -60,7 +61,8 @@ const Formulation& linear_bond_formulation() {
       .label = "\"bond\" with kinematics \"linear\"",
       .takes = options_of_linear_bonds,
       .takes_convolved =
-          options_of_linear_bonds.with({Option::convolutions}).without({Option::pressures}),
+          options_of_linear_bonds.with({Option::convolutions})
+              .without({Option::pressures, Option::horizons}),
       .part_needs_lattice = false,
       .has_quadrature_of_bonds = true,
       .has_elastic_stand_in = true,
