@@ -22,7 +22,6 @@ sys.path.insert(0, str(ROOT))
 
 from tests.reference.graded import GradedRing, errors, patch_test  # noqa: E402
 
-RATIO = 3.015
 CORRECTIONS = {"none": "", "linear": 'volume_correction = "linear"',
                "linear, energy": 'volume_correction = "linear"\nsurface_correction = "energy"'}  # fmt: skip
 
@@ -41,22 +40,22 @@ def measure(ring, horizon, quadrature, held, inside, folder):
 def main():
     if len(sys.argv) != 1:
         sys.exit(__doc__)
-    print("| corners | elements along the arc | horizon | corrections | bonds | energy density | mean | stress | displacement |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    print("| corners | elements along the arc | ratio | horizon | corrections | bonds | energy density | mean | stress | displacement |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as name:
-        for shift, along in ((0.0, 48), (0.0, 96), (0.2, 48), (0.2, 96)):
+        for shift, along, ratio in ((0.0, 48, 3.015), (0.0, 48, 4.015), (0.0, 72, 4.015), (0.2, 48, 4.015)):
             ring = GradedRing(along, shift=shift)
             sizes, largest, mean = ring.sizes, ring.sizes.max(), ring.areas.mean() ** 0.5
-            inside = ring.depth() >= 2 * RATIO * largest + sizes
-            horizons = {"per point": (f"{{ ratio = {RATIO} }}", RATIO * sizes),
-                        "of the mean size": (RATIO * mean, RATIO * mean + 0 * sizes),
-                        "of the largest size": (RATIO * largest, RATIO * largest + 0 * sizes)}  # fmt: skip
+            inside = ring.depth() >= 2 * ratio * largest + sizes
+            horizons = {"per point": (f"{{ ratio = {ratio} }}", ratio * sizes),
+                        "of the mean size": (ratio * mean, ratio * mean + 0 * sizes),
+                        "of the largest size": (ratio * largest, ratio * largest + 0 * sizes)}  # fmt: skip
             for words, (horizon, of_points) in horizons.items():
                 held = ring.depth() < 2 * of_points + sizes
                 for correction, quadrature in CORRECTIONS.items():
                     found, bonds = measure(ring, horizon, quadrature, held, inside, pathlib.Path(name))
                     energy, stress, displacement, middle = (f"{100 * value:.2f} %" for value in found)
-                    print(f"| {'shifted' if shift else 'regular'} | {along} | {words} | {correction} | {bonds} | "
+                    print(f"| {'shifted' if shift else 'regular'} | {along} | {ratio} | {words} | {correction} | {bonds} | "
                           f"{energy} | {middle} | {stress} | {displacement} |", flush=True)  # fmt: skip
 
 

@@ -240,6 +240,7 @@ void check_for_horizons(const BodySpecification& of) {
     require_absent(of.loads[k].depth == Depth::horizon, "loads[" + std::to_string(k) + "].depth",
                    "\"horizon\" is one depth for all points; take \"row\"" + with);
   }
+  require_absent(of.is_convolved(), "force_operator", "\"fft\" has one; take \"bonds\"" + with);
   require_absent(of.horizon_shape != HorizonShape::ball, "horizon_shape", "must be \"ball\"" + with);
   require_absent(Kernel{.volume_correction = of.volume_correction}.has_exact_shares(),
                  "volume_correction", "must be \"none\" or \"linear\"" + with);

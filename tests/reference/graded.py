@@ -45,7 +45,7 @@ class GradedRing:
 STRAIN = numpy.array([1e-5, -2e-6, 5e-6])
 
 
-def patch_test(points, horizon, quadrature="", material=""):
+def patch_test(points, horizon, quadrature="", material="", solver='[solver]\nlinear = "cholesky"'):
     """A ring in plane stress whose rim `held` has the displacements of STRAIN, as the text of a case."""
     xx, yy, xy = (float(component) for component in STRAIN)
     return f"""dimension = 2
@@ -62,6 +62,7 @@ youngs_modulus = 1e9
 [[support]]
 set = "held"
 displacement = ["load*({xx!r}*x + {0.5 * xy!r}*y)", "load*({0.5 * xy!r}*x + {yy!r}*y)"]
+{solver}
 [output]
 stress = true
 """

@@ -61,8 +61,7 @@ const Formulation& linear_bond_formulation() {
       .label = "\"bond\" with kinematics \"linear\"",
       .takes = options_of_linear_bonds,
       .takes_convolved =
-          options_of_linear_bonds.with({Option::convolutions})
-              .without({Option::pressures, Option::horizons}),
+          options_of_linear_bonds.with({Option::convolutions}).without({Option::pressures}),
       .part_needs_lattice = false,
       .has_quadrature_of_bonds = true,
       .has_elastic_stand_in = true,
