@@ -48,7 +48,8 @@ struct Body {
   [[nodiscard]] double horizon_ratio() const;
 };
 
-/// Makes a body of points, which get horizons of their own by horizon_per_size. It may still move freely: that is refused where it is solved.
+/// Makes a body of points, which get horizons of their own by horizon_per_size. It may still move
+/// freely: that is refused where it is solved.
 /// @param points with the sets that supports and loads name
 /// @param threads 0: as many as OpenMP takes by itself
 /// @throws InputError with the member that is wrong ("horizon", "material.youngs_modulus",

@@ -228,10 +228,12 @@ void check_for_horizons(const BodySpecification& of) {
                    "belongs to one horizon; give youngs_modulus" + with);
     require_absent(damage.law == DamageLaw::energy_density, table + "law",
                    "\"energy_density\" belongs to one horizon, that of its band of failed points; "
-                   "take a law of stretches" + with);
+                   "take a law of stretches" +
+                       with);
     if (!damage.is_by_data() || !damage.fracture_energy) return;
-    const std::string alone = "changes the shape of the law with the horizon beside fracture_energy;" +
-                              with + " give fracture_energy alone, or strength or stretches";
+    const std::string alone =
+        "changes the shape of the law with the horizon beside fracture_energy;" + with +
+        " give fracture_energy alone, or strength or stretches";
     require_absent(damage.strength.has_value(), table + "strength", alone);
     require_absent(damage.onset != 0.0, table + "onset", alone);
     require_absent(damage.peak != 0.0, table + "peak", alone);
@@ -241,7 +243,8 @@ void check_for_horizons(const BodySpecification& of) {
                    "\"horizon\" is one depth for all points; take \"row\"" + with);
   }
   require_absent(of.is_convolved(), "force_operator", "\"fft\" has one; take \"bonds\"" + with);
-  require_absent(of.horizon_shape != HorizonShape::ball, "horizon_shape", "must be \"ball\"" + with);
+  require_absent(of.horizon_shape != HorizonShape::ball, "horizon_shape",
+                 "must be \"ball\"" + with);
   require_absent(Kernel{.volume_correction = of.volume_correction}.has_exact_shares(),
                  "volume_correction", "must be \"none\" or \"linear\"" + with);
   if (of.horizon_per_size != 0.0) require_within(of.horizon_per_size, 1.0, 1000.0, "horizon");
@@ -255,8 +258,9 @@ void check_horizons_of_points(const BodySpecification& of, const Points& points)
                  "is for neighbours found by the search, but the points' neighbours are given");
   const double largest = largest_horizon(points);
   // A part of a body may lack the point with the largest one.
-  const bool is_largest = points.owned ? largest <= inclusive_radius(of.horizon)
-                                       : std::abs(largest - of.horizon) <= horizon_tolerance * largest;
+  const bool is_largest = points.owned
+                              ? largest <= inclusive_radius(of.horizon)
+                              : std::abs(largest - of.horizon) <= horizon_tolerance * largest;
   require(is_largest, "horizon", number_text(of.horizon),
           "must be the largest of the points' horizons, " + number_text(largest) + " m");
   const double cross_section = cross_section_of(of, points);

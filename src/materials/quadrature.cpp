@@ -268,9 +268,8 @@ std::vector<double> search_radii(const Points& points, const Kernel& kernel) {
   // end at least.
   std::vector<Index> ascending(horizons.size());
   std::iota(ascending.begin(), ascending.end(), Index(0));
-  std::sort(ascending.begin(), ascending.end(), [&](Index a, Index b) {
-    return horizons[std::size_t(a)] < horizons[std::size_t(b)];
-  });
+  std::sort(ascending.begin(), ascending.end(),
+            [&](Index a, Index b) { return horizons[std::size_t(a)] < horizons[std::size_t(b)]; });
   std::vector<double> radii(horizons.size());
   double largest = 0.0;
   for (std::size_t first = 0, last = 0; first < ascending.size(); first = last) {

@@ -60,8 +60,8 @@ void drop_weightless(Bonds& bonds);
 /// The same of every point if it stood inside a lattice of its own size and horizon [m3].
 [[nodiscard]] std::vector<double> whole_volumes(const Points& points, const Kernel& kernel);
 
-/// Factor of each bond's stretches of damage, relative to those of bonds of the kernel's horizon, if
-/// they follow from a fracture energy; empty without horizons of points. With a critical stretch
+/// Factor of each bond's stretches of damage, relative to those of bonds of the kernel's horizon,
+/// if they follow from a fracture energy; empty without horizons of points. With a critical stretch
 /// s_i of each direction, for which 4 G = c(delta_i) <|n_x|> m_2(delta_i) s_i^2, so that s_i^2 is
 /// proportional to 1 / delta_i, a bond that breaks releases what both of its directions release:
 ///

@@ -14,8 +14,9 @@ namespace peristat {
 /// `make_bonds` to set. The result does not depend on the number of threads.
 [[nodiscard]] Bonds search_bonds(const Points& points, double radius, int threads);
 
-/// All unique bonds no longer than the larger radius of their two points, likewise. Points are sorted
-/// into levels of nearly equal radii, so that the time stays proportional to the number of bonds.
+/// All unique bonds no longer than the larger radius of their two points, likewise. Points are
+/// sorted into levels of nearly equal radii, so that the time stays proportional to the number of
+/// bonds.
 /// @param radii per point [m]
 [[nodiscard]] Bonds search_bonds(const Points& points, std::span<const double> radii, int threads);
 

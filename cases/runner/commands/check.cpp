@@ -296,7 +296,8 @@ void print_points(const Body& body) {
   }
   fmt::print(
       ", horizons {:g} to {:g} m ({:.4g} sizes of their points)\n"
-      "horizons    constants below are those of the largest one: a horizon's micromodulus goes with "
+      "horizons    constants below are those of the largest one: a horizon's micromodulus goes "
+      "with "
       "its power -{}, stretches by fracture_energy with its power -1/2\n",
       *std::ranges::min_element(points.horizons), body.setting.horizon, body.horizon_ratio(),
       points.dimension + 1);

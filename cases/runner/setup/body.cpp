@@ -158,9 +158,6 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     if (!body.points.neighbours.empty())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "is for neighbours found by the search, but points.neighbours gives them");
-    if (!body.points.horizons.empty())
-      throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
-                       "is for one horizon, but points.horizon gives every point its own");
     if (from.solver.elastic_horizon_ratio * body.points.spacing < body.points.spacing.largest())
       throw InputError(key, number_text(from.solver.elastic_horizon_ratio),
                        "gives a horizon smaller than the largest spacing");

@@ -193,8 +193,8 @@ std::optional<BondMaterials::Strength> BondMaterials::strength(std::size_t a, st
 }
 
 bool BondMaterials::are_any_by_energy() const {
-  return std::ranges::any_of(
-      kinds_, [](const Kind& kind) { return kind.material->damage.is_by_energy; });
+  return std::ranges::any_of(kinds_,
+                             [](const Kind& kind) { return kind.material->damage.is_by_energy; });
 }
 
 bool BondMaterials::has_one_law() const {
@@ -220,8 +220,8 @@ BondMaterials::Failing BondMaterials::potential(const Bonds& bonds,
   return result;
 }
 
-BondMaterials::Failing BondMaterials::smooth_potential(
-    const Bonds& bonds, const std::vector<double>& by_energy) const {
+BondMaterials::Failing BondMaterials::smooth_potential(const Bonds& bonds,
+                                                       const std::vector<double>& by_energy) const {
   const auto fails = [](const Kind& kind) { return kind.material->damage.law != DamageLaw::none; };
   const auto failing = std::ranges::find_if(kinds_, fails);
   if (failing == kinds_.end()) return {bond_potential(*kinds_.front().material, modulus_), {}};

@@ -158,8 +158,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(RefusedAlikeWithPoints, WhatNeedsOneHorizon) {
   const std::string file = testing::TempDir() + "refused_alike_points.csv";
   std::ofstream(file) << "x, y, volume\n0, 0, 1\n1, 0, 1\n";
-  const std::string points = "dimension = 2\n[points]\nfile = \"" + file +
-                             "\"\nhorizon = { ratio = 3.015 }\n";
+  const std::string points =
+      "dimension = 2\n[points]\nfile = \"" + file + "\"\nhorizon = { ratio = 3.015 }\n";
   const auto make = [](MaterialModel model) {
     BodySpecification of;
     of.horizon_per_size = 3.015;
