@@ -46,7 +46,8 @@ struct Points {
 
   /// Further columns of the points' file by name: a value per point, in SI units.
   std::map<std::string, std::vector<double>> columns{};
-  /// Horizon of each point [m], see points.horizon of case files; empty: one horizon for all.
+  /// Horizon of each point [m], see points.horizon of case files; images have that of their
+  /// sources. Empty: one horizon for all.
   std::vector<double> horizons{};
 
   /// Places around the body that hold no point and that quadratures by collocation use, all x

@@ -18,6 +18,7 @@ from tests.acceptance.on_ranks import (
     objects,
     rows,
 )
+from tests.reference.graded import GradedRing, patch_test
 from tests.reference.program import ROOT
 
 
@@ -196,6 +197,23 @@ class Bodies(Comparison):
             self.assertEqual(list(row), list(several["points/source_row"][()]))
             places = [[float(word) for word in rows[1 + k].split(",")[:2]] for k in row]
             self.assertEqual(places, several["points/reference"][()].tolist())
+
+    def test_a_horizon_per_point(self):
+        ring = GradedRing(16)
+        ring.write(self.folder / "points.csv", ring.places[:, 1] < 3 * ring.sizes)
+        tearing = '[material.damage]\nlaw = "linear"\nfracture_energy = 1.0'
+        images = '[[symmetry]]\naxis = "x"\nat = 0'
+        for surface, more in (("volume", tearing), ("energy", images)):
+            quadrature = f'volume_correction = "linear"\nsurface_correction = "{surface}"'
+            text = patch_test("points.csv", "{ ratio = 2.515 }", quadrature, more, "")
+            one = self.compare_settings(text, 'support=[{set="held", displacement=["1e-5*load*x*y", "1e-5*load"]}]',
+                                        'set=[{name="far", where="x < 1"}]', 'load=[{set="far", body_force=["600*load", "900*load"]}]',
+                                        "loading.steps=2", ranks=(3,), solver=STORED)  # fmt: skip
+            with h5py.File(one / "results.h5") as file, h5py.File(self.folder / "on_3/results.h5") as several:
+                horizons = file["points/horizon"][()]
+                self.assertGreater(horizons.max() / horizons.min(), 3.5)
+                self.assertEqual(horizons.tolist(), several["points/horizon"][()].tolist())
+                self.assertEqual(more == tearing, file["steps/000002/damage"][()].max() > 0.01)
 
     def test_loads(self):
         side = 'load=[{side="x+", traction=["1e5*load*y", "2e5"]}]'

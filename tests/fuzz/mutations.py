@@ -22,7 +22,7 @@ EXPRESSIONS = ["1/0", "0/0", "load/0", "ln(-1)", "sqrt(-load)", "1e308*10*load",
                "table('missing.csv', load)", "table('points.csv', load)", "table(load, load)", "table('/dev/zero', x)", "table('case.toml', 'x', t)", "table('"]  # fmt: skip
 STRUCTURES = ["[]", "{}", "[[]]", "[1, 2]", "[1, 2, 3, 4]", "[1, \"a\"]", "[" * 500 + "]" * 500, "{a = {b = {c = 1}}}", "[" + "0," * 50_000 + "]",
               "{ disk = { centre = [0, 0], radius = -1 } }", "{ box = {} }", '["free", "free", "free"]', "[nan, inf]", "[[0, 0], [1, 1]]"]  # fmt: skip
-WORDS = """dimension title lattice points spacing horizon_ratio thickness area origin perturbation cell_perturbation lloyd_steps seed shape layer add subtract min max
+WORDS = """dimension title lattice points ratio spacing horizon_ratio thickness area origin perturbation cell_perturbation lloyd_steps seed shape layer add subtract min max
     centre radius axis length vertices name side where file horizon set crack from to outline quadrature form volume_correction horizon_shape normals weights
     surface_correction material model plane influence youngs_modulus micromodulus poisson_ratio calibration c1 c2 c3 density damage law onset
     critical rate peak hardening fracture_energy strength no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step
@@ -42,7 +42,7 @@ CHOICES = """rms_error max_error divergence blue_noise none linear exact exact_c
     fft bonds finite green_bond correspondence printed sines""".split()
 KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness lattice.area lattice.origin lattice.points lattice.lloyd_steps lattice.perturbation lattice.cell_perturbation lattice.seed
     lattice.shape[0].min lattice.shape[0].max lattice.shape[0].add lattice.shape[1].radius lattice.shape[9].add lattice.layer[0].thickness
-    lattice.layer[0].where points.horizon points.file set[0].where crack[0].from crack[0].to crack[0].outline quadrature.volume_correction
+    lattice.layer[0].where points.horizon points.horizon.ratio points.file set[0].where crack[0].from crack[0].to crack[0].outline quadrature.volume_correction
     quadrature.surface_correction quadrature.form quadrature.weights material.model material.plane material.influence material.youngs_modulus material.micromodulus
     material.poisson_ratio material.c1 material.c2 material.c3 material.damage material.damage.law material.damage.onset
     material.damage.critical material.damage.rate material.damage.no_fail support[0].displacement support[1].displacement support[0].set

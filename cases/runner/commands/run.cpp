@@ -266,8 +266,8 @@ class CaseRun {
       if (teeth.teeth > 0) progress_.say("damage law: a saw-tooth of " + description(teeth));
     }
     const Points& points = body_->points;
-    if (const auto trapping =
-            crack_trapping(body_->specification, points.dimension, points.spacing)) {
+    if (const auto trapping = crack_trapping(body_->specification, points.dimension,
+                                             body_->setting.horizon / body_->horizon_ratio())) {
       progress_.say("damage law: " + description(*trapping));
     }
     const PathState* path = earlier_ ? &earlier_->checkpoint().path : nullptr;

@@ -188,6 +188,35 @@ Kind<std::filesystem::path> file_beside_the_case() {
   return {read, [](auto& file, auto&) { return toml_string(file.string()); }, "an existing file"};
 }
 
+const Table<PointHorizon>& point_horizon_keys() {
+  using K = Key<PointHorizon>;
+  static const Table<PointHorizon> keys{
+      "points.horizon",
+      {K("ratio", &PointHorizon::ratio, between(1.0, 1000.0),
+         "horizon of each point over its size, the edge of a square or cube of its volume")
+           .required()
+           .on_ranks()}};
+  return keys;
+}
+
+Kind<PointHorizon> point_horizon() {
+  const Kind<double> length = positive("m");
+  const auto read = [length](const Entry& at) {
+    PointHorizon horizon;
+    if (at.from.is_table(at.key)) {
+      point_horizon_keys().read({at.from.table(at.key), "", at.so_far}, horizon);
+    } else {
+      horizon.length = length.read(at);
+    }
+    return horizon;
+  };
+  const auto text = [length](const PointHorizon& horizon, const Case& from) {
+    return horizon.ratio > 0.0 ? "{ ratio = " + toml_number(horizon.ratio) + " }"
+                               : length.text(horizon.length, from);
+  };
+  return {read, text, "positive, or `{ ratio = … }`", "m"};
+}
+
 }  // namespace
 
 Table<Case> points_keys() {
@@ -202,16 +231,24 @@ Table<Case> points_keys() {
                from.columns[name];
            })
            .on_ranks(),
-       K("horizon", in(points, &PointSource::horizon), positive("m"),
-         "horizon, the same for every point")
+       K("horizon", in(points, &PointSource::horizon), point_horizon(),
+         "horizon, the same for every point; or `{ ratio = 3.015 }`, a "
+         "[horizon per point](theory.md#horizon-per-point) of 3.015 times its size, for model "
+         "`bond` and points of different sizes")
            .moreover("at least the mean spacing; at most as many mean spacings as "
                      "`lattice.horizon_ratio` allows")
            .required()
+           .early()
+           .describes([](auto& all) { point_horizon_keys().describe(all); })
            .on_ranks(),
        K("neighbours", in(points, &PointSource::neighbours), file_beside_the_case(),
          "file with the neighbours of the points and the shares of their volumes that count, "
          "relative to the case file's folder like `file`; model `bond`")
            .written_if([](auto& from, auto&) { return !points(from).neighbours.empty(); })
+           .then([](auto& at, auto& result) {
+             if (!points(result).neighbours.empty() && points(result).horizon.ratio > 0.0)
+               at.refuse("goes with one horizon for all points, not with a ratio");
+           })
            .default_words("all points within the horizon"),
        thickness(in(points, &PointSource::cross_section)),
        area(in(points, &PointSource::cross_section))},

@@ -42,7 +42,8 @@ void resolve_size(Case& result) {
     result.cross_section = lattice->cross_section;
   } else {
     const auto& source = std::get<PointSource>(result.body);
-    result.horizon = source.horizon;
+    result.horizon = source.horizon.length;
+    result.horizon_per_size = source.horizon.ratio;
     result.cross_section = source.cross_section;
   }
 }
@@ -93,6 +94,7 @@ std::string key_of(const Case& from, std::string member) {
   if (member == "cross_section")
     return std::string(lattice != nullptr ? "lattice." : "points.") +
            (from.dimension == 1 ? "area" : "thickness");
+  if (member == "points.horizons") return "points.horizon";
   if (member == "horizon") return lattice != nullptr ? "lattice.horizon_ratio" : "points.horizon";
   if (member.starts_with("points") && lattice != nullptr) return "lattice.shape";
   if (member == "loading.mode") return "solver.mode";
@@ -154,11 +156,11 @@ Case read_case(const std::filesystem::path& file, const std::string& text,
   try {
     document_keys().read({TomlTable(document, "", result.file), "", result}, result);
     refuse_idle_tables(result);
+    resolve_size(result);
     check_materials(result, result.dimension);
   } catch (const InputError& error) {
     throw located(result, error);
   }
-  resolve_size(result);
   for (const LoadTable& table : result.loading.tables) {
     if (result.dynamics.is_asked_for) {
       result.loads_over_time.push_back(table.over_time);

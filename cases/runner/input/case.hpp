@@ -24,12 +24,18 @@
 
 namespace peristat {
 
+/// Horizon of points from a file: one length for all, or a multiple of each point's size.
+struct PointHorizon {
+  double length = 0.0;  ///< [m]
+  double ratio = 0.0;   ///< horizon / size; 0: the length
+};
+
 /// Points that come from a file instead of a lattice (table [points]).
 struct PointSource {
   std::filesystem::path file;  ///< absolute; in the case file relative to the case file's folder
   std::filesystem::path neighbours{};  ///< absolute; empty: the points within the horizon
   double cross_section = 1.0;          ///< 1D: area [m2]; 2D: thickness [m]
-  double horizon = 0.0;                ///< [m]
+  PointHorizon horizon{};
 };
 
 /// Values of a load parameter: given one by one, as an expression of the step, or over time.

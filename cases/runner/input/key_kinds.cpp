@@ -435,8 +435,11 @@ Kind<double> stretch() {
   const auto read = [=](const Entry& at) {
     if (!at.from.is_string(at.key)) return at.from.number(at.key, range);
     const auto* lattice = std::get_if<Lattice>(&at.so_far.body);
-    const double horizon = lattice != nullptr ? at.so_far.horizon_ratio * lattice->spacing
-                                              : std::get<PointSource>(at.so_far.body).horizon;
+    if (lattice == nullptr && std::get<PointSource>(at.so_far.body).horizon.ratio > 0.0)
+      at.refuse("must be a number: points.horizon gives every point its own horizon");
+    const double horizon = lattice != nullptr
+                               ? at.so_far.horizon_ratio * lattice->spacing
+                               : std::get<PointSource>(at.so_far.body).horizon.length;
     double value = 0.0;
     try {
       const Expression of(with_absolute_tables(at, at.from.string(at.key)), 0,

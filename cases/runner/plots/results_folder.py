@@ -92,7 +92,10 @@ class ResultsFolder:
         """Reach of the horizon in whole spacings; 1 if unknown."""
         lattice, points = (self.case.get(name) for name in ("lattice", "points"))
         ratio = _finite(lattice.get("horizon_ratio")) if isinstance(lattice, dict) else None
-        horizon = _finite(points.get("horizon")) if isinstance(points, dict) else None
+        horizon = points.get("horizon") if isinstance(points, dict) else None
+        if isinstance(horizon, dict):  # per point, a ratio to its size
+            ratio, horizon = _finite(horizon.get("ratio")), None
+        horizon = _finite(horizon)
         return int(max(ratio or (horizon or 0.0) / self.spacing, 1.0))
 
     @cached_property

@@ -87,7 +87,7 @@ Points make_points_of(const Case& from) {
       const auto& source = std::get<PointSource>(from.body);
       std::optional<NeighbourFile> neighbours;
       if (!source.neighbours.empty())
-        neighbours = {source.neighbours, source.horizon, source.cross_section};
+        neighbours = {source.neighbours, source.horizon.length, source.cross_section};
       points = read_points(source.file, from.dimension, source.cross_section, neighbours);
     }
     for (std::size_t k = 0; k < from.sets.size(); ++k) {

@@ -52,6 +52,9 @@ struct DamageSpecification {
   /// In the place of `onset` (of `critical` for the law critical_stretch): largest stress of the
   /// bulk under a pull, see with_stretches [Pa].
   std::optional<double> strength{};
+  /// True if the stretches were computed from a fracture energy: those of a bond then depend on the
+  /// horizons of its points, and these are for the body's horizon.
+  bool is_by_energy = false;
 
   /// True if some stretches are still to be computed from these data.
   [[nodiscard]] bool is_by_data() const {

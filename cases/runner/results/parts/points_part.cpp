@@ -106,6 +106,10 @@ void write_rows_of(const Points& points, const std::vector<PointCounts>& counts,
   sink.write("/points/reference", points.reference, {dimension},
              {"m", "reference position of each point"});
   sink.write("/points/volume", points.volume, {}, {"m3", "volume of each point"});
+  // A rank without points has no horizons, but its part in the gathering.
+  if (gathering.part().ranks().max(points.horizons.empty() ? 0.0 : 1.0) > 0.0) {
+    sink.write("/points/horizon", points.horizons, {}, {"m", "horizon of each point"});
+  }
   sink.write(
       "/points/set_ids", membership(points), {points.sets.size()},
       {"1", "1 where the point (row) is in the set (column); attribute sets names the columns"});
@@ -173,7 +177,7 @@ void send_points(const Points& points, const std::vector<PointCounts>& counts,
 std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts,
                        std::uint64_t rows) {
   const std::uint64_t bytes_per_point = (counts.size() + points.columns.size()) * sizeof(double) +
-                                        (std::uint64_t(points.dimension) + 4) * sizeof(double) +
+                                        (std::uint64_t(points.dimension) + 5) * sizeof(double) +
                                         sizeof(std::int32_t) + 2 * points.sets.size();
   const std::uint64_t bytes_per_pair = 2 * (sizeof(std::int32_t) + sizeof(double));
   return rows * bytes_per_point + points.neighbours.size() * bytes_per_pair +

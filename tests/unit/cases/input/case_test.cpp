@@ -244,7 +244,7 @@ TEST_F(CaseReader, ReadsAPointSourceRelativeToTheCaseFile) {
   const Case read_cloud = read(cloud);
   const auto& source = std::get<PointSource>(read_cloud.body);
   EXPECT_EQ(source.file, folder_ / "cloud.csv");
-  EXPECT_EQ(source.horizon, 0.3);
+  EXPECT_EQ(source.horizon.length, 0.3);
   EXPECT_EQ(source.cross_section, 0.01);
 }
 
