@@ -12,6 +12,7 @@
 
 #include "cases/runner/input/key_kinds.hpp"
 #include "cases/runner/input/shape_keys.hpp"
+#include "cases/runner/input/value_schema.hpp"
 #include "solvers/formulations/formulations.hpp"
 #include "src/core/number_text.hpp"
 #include "src/neighbourhood/optimised_weights.hpp"
@@ -162,7 +163,7 @@ Table<Case> lattice_keys() {
              if (lattice(result).shapes.empty())
                at.refuse("this array of tables is missing; a lattice needs at least one shape");
            })
-           .default_words("at least one is required")
+           .required("at least one is required")
            .on_ranks(),
        K("layer", in(lattice, &Lattice::layers), layer_keys(), "tables: points outside the body")
            .on_ranks()},
@@ -185,7 +186,8 @@ Kind<std::filesystem::path> file_beside_the_case() {
       at.refuse("no such file; searched for " + file.string());
     return file;
   };
-  return {read, [](auto& file, auto&) { return toml_string(file.string()); }, "an existing file"};
+  return {read, [](auto& file, auto&) { return toml_string(file.string()); }, text_schema(),
+          "an existing file"};
 }
 
 }  // namespace
