@@ -38,6 +38,8 @@ std::string json_string(const std::string& text) {
   for (const char character : text) {
     if (character == '"' || character == '\\') {
       json += std::string("\\") + character;
+    } else if (character == '\n') {
+      json += "\\n";
     } else if (static_cast<unsigned char>(character) < 0x20) {
       char code[8];
       std::snprintf(code, sizeof code, "\\u%04x", static_cast<unsigned>(character));
