@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "cases/runner/commands/calibrate.hpp"
+#include "cases/runner/commands/case_schema.hpp"
 #include "cases/runner/commands/check.hpp"
 #include "cases/runner/commands/check_tangent.hpp"
 #include "cases/runner/commands/key_reference.hpp"
@@ -254,6 +255,7 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads,
   if (program.got_subcommand("keys")) {
     return line.lists_keys_on_ranks ? print_keys_on_ranks() : print_keys(line.table);
   }
+  if (program.got_subcommand("schema")) return print_schema();
   if (program.got_subcommand("resume")) {
     return resume(line.results, overrides(line), run_options(line, threads), ranks);
   }
@@ -394,6 +396,7 @@ int main(int count, char** arguments) try {
       "table", line.table, "one table, such as solver or lattice.shape (default: all)");
   keys->add_flag("--ranks", line.lists_keys_on_ranks, "the keys that run on several ranks")
       ->excludes(table);
+  program.add_subcommand("schema", "JSON schema of case files, by which editors check them");
   CLI::App* const calibration = program.add_subcommand(
       "calibrate", "constants from moduli and fracture data, and back; prints JSON");
   add_calibration(*calibration, line);

@@ -13,6 +13,7 @@
 #include "cases/runner/input/case_inputs.hpp"
 #include "cases/runner/input/key_kinds.hpp"
 #include "cases/runner/input/shape_keys.hpp"
+#include "cases/runner/input/value_schema.hpp"
 #include "solvers/formulations/formulations.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -165,7 +166,7 @@ Table<Case> lattice_keys() {
              if (lattice(result).shapes.empty())
                at.refuse("this array of tables is missing; a lattice needs at least one shape");
            })
-           .default_words("at least one is required")
+           .required("at least one is required")
            .on_ranks(),
        K("layer", in(lattice, &Lattice::layers), layer_keys(), "tables: points outside the body")
            .on_ranks()},
@@ -185,7 +186,8 @@ Kind<std::filesystem::path> file_beside_the_case() {
       at.refuse(error.allowed());
     }
   };
-  return {read, [](auto& file, auto&) { return toml_string(file.string()); }, "an existing file"};
+  return {read, [](auto& file, auto&) { return toml_string(file.string()); }, text_schema(),
+          "an existing file"};
 }
 
 const Table<PointHorizon>& point_horizon_keys() {
@@ -214,7 +216,8 @@ Kind<PointHorizon> point_horizon() {
     return horizon.ratio > 0.0 ? "{ ratio = " + toml_number(horizon.ratio) + " }"
                                : length.text(horizon.length, from);
   };
-  return {read, text, "positive, or `{ ratio = … }`", "m"};
+  return {read, text, either_schema({length.schema, point_horizon_keys().schema()}),
+          "positive, or `{ ratio = … }`", "m"};
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ Table<LinearConstraintSpecification> linear_constraint_keys() {
           {K("name", &Spec::name, name(), "name under which its force is reported").required(),
            K("displacement", &Spec::displacement, expression_of_load(),
              "sum of the weighted mean displacements of all terms"),
-           K("term", &Spec::terms, term, "tables: the terms").default_words("required")},
+           K("term", &Spec::terms, term, "tables: the terms").required()},
           {},
           [](auto& at, auto& spec) {
             if (spec.terms.empty()) at.refuse("needs at least one [[constraint.term]]");

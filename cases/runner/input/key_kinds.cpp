@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "cases/runner/input/case_inputs.hpp"
+#include "cases/runner/input/value_schema.hpp"
 #include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
@@ -80,12 +81,17 @@ std::string tuples_text(const std::vector<std::array<double, count>>& tuples, co
   return array_text(tuples, [](const auto& tuple) { return array_text(tuple, toml_number); });
 }
 
+/// Corners of a polygon, each of `count` coordinates.
+JsonObject polygon_schema(std::size_t count) {
+  return list_schema(list_schema(number_schema({}, "m"), count, count), 3);
+}
+
 }  // namespace
 
 Kind<double> number(const Range& range, std::string allowed, std::string unit) {
   return {[=](const Entry& at) { return at.from.number(at.key, range); },
-          [](double value, const Case&) { return toml_number(value); }, std::move(allowed),
-          std::move(unit)};
+          [](double value, const Case&) { return toml_number(value); }, number_schema(range, unit),
+          std::move(allowed), std::move(unit)};
 }
 
 Kind<double> positive(const std::string& unit, double high) {
@@ -106,7 +112,9 @@ Kind<Spacing> spacing() {
     return spacing.is_square() ? toml_number(spacing)
                                : array_text(components_of(along, from), toml_number);
   };
-  return {read, text, "positive, or a list with one number per dimension", "m"};
+  const JsonObject one = number_schema(Range::positive("m"), "m");
+  return {read, text, either_schema({one, components_schema(one)}),
+          "positive, or a list with one number per dimension", "m"};
 }
 
 Kind<double> between(double low, double high, std::string unit) {
@@ -117,7 +125,8 @@ Kind<double> between(double low, double high, std::string unit) {
 Kind<std::int64_t> integer(std::int64_t low, std::int64_t high, std::string unit) {
   return {[=](const Entry& at) { return at.from.integer(at.key, low, high); },
           [](std::int64_t value, const Case&) { return std::to_string(value); },
-          std::to_string(low) + " to " + std::to_string(high), std::move(unit)};
+          integer_schema(low, high), std::to_string(low) + " to " + std::to_string(high),
+          std::move(unit)};
 }
 
 Kind<std::int64_t> count_from(std::int64_t low, std::string unit, std::int64_t high) {
@@ -129,17 +138,18 @@ Kind<std::int64_t> count_from(std::int64_t low, std::string unit, std::int64_t h
 Kind<bool> boolean() {
   return {[](const Entry& at) { return at.from.boolean(at.key); },
           [](bool value, const Case&) { return std::string(value ? "true" : "false"); },
-          "true, false"};
+          boolean_schema(), "true, false"};
 }
 
 Kind<std::string> text() {
-  return {[](const Entry& at) { return at.from.string(at.key); }, string_text, ""};
+  return {[](const Entry& at) { return at.from.string(at.key); }, string_text, text_schema(), ""};
 }
 
 Kind<std::string> one_of(const std::vector<std::string>& names) {
   std::string allowed;
   for (const auto& known : names) allowed += (allowed.empty() ? "`\"" : ", `\"") + known + "\"`";
-  return {[=](const Entry& at) { return at.from.one_of(at.key, names); }, string_text, allowed};
+  return {[=](const Entry& at) { return at.from.one_of(at.key, names); }, string_text,
+          choice_schema(names), allowed};
 }
 
 Kind<std::int64_t> choice_of_numbers(std::vector<Choice<std::int64_t>> choices) {
@@ -157,7 +167,7 @@ Kind<std::int64_t> choice_of_numbers(std::vector<Choice<std::int64_t>> choices) 
       if (choice.value == value) return toml_string(choice.name);
     return std::string();
   };
-  return {read, text, name.allowed};
+  return {read, text, name.schema, name.allowed};
 }
 
 namespace {
@@ -183,6 +193,7 @@ Kind<std::string> name() {
     return given;
   };
   return {read, string_text,
+          text_schema().add("pattern", "^[A-Za-z0-9_-]+$").add("maxLength", longest_name),
           "letters, digits, `_`, `-`; at most " + std::to_string(longest_name) + " characters"};
 }
 
@@ -196,7 +207,7 @@ Kind<std::string> set_name() {
                 "; sets and layers need different names");
     return given;
   };
-  return {read, string_text, any.allowed + "; no other set or layer has it"};
+  return {read, string_text, any.schema, any.allowed + "; no other set or layer has it"};
 }
 
 Kind<std::string> known_set() {
@@ -210,7 +221,7 @@ Kind<std::string> known_set() {
         "no set or layer of this name" + did_you_mean(asked, names) +
         (names.empty() ? "; the case has no sets or layers" : "  (there: " + listed(names) + ")"));
   };
-  return {read, string_text, "name of a set or layer"};
+  return {read, string_text, text_schema(), "name of a set or layer"};
 }
 
 Kind<std::vector<std::string>> known_sets() {
@@ -226,7 +237,7 @@ Kind<std::vector<std::string>> known_sets() {
           [](const auto& sets, const Case&) {
             return sets.empty() ? std::string() : array_text(sets, toml_string);
           },
-          "list of names of sets and layers"};
+          list_schema(text_schema(), 1), "list of names of sets and layers"};
 }
 
 Kind<Coordinates> coordinates(std::string unit) {
@@ -240,7 +251,7 @@ Kind<Coordinates> coordinates(std::string unit) {
           [](const Coordinates& place, const Case& from) {
             return array_text(components_of(place, from), toml_number);
           },
-          "a number per dimension", std::move(unit)};
+          components_schema(number_schema({}, unit)), "a number per dimension", std::move(unit)};
 }
 
 Kind<Coordinates> stiffnesses(const std::string& unit) {
@@ -256,7 +267,9 @@ Kind<Coordinates> stiffnesses(const std::string& unit) {
   const auto text = [any](const Coordinates& stiffness, const Case& from) {
     return any.text(stiffness, from);
   };
-  return {read, text, "numbers from 0, not all 0", unit};
+  const Range from_zero{0.0, Range().high, ""};
+  return {read, text, components_schema(number_schema(from_zero, unit)),
+          "numbers from 0, not all 0", unit};
 }
 
 Kind<Side> side() {
@@ -268,7 +281,8 @@ Kind<Side> side() {
     return Side{chosen[0] - 'x', chosen[1] == '+' ? 1 : -1};
   };
   const auto text = [](const Side& side, const Case&) { return toml_string(peristat::name(side)); };
-  return {read, text, "`\"x-\"`, `\"x+\"`, and so on for y and z"};
+  return {read, text, choice_schema({"x-", "x+", "y-", "y+", "z-", "z+"}),
+          "`\"x-\"`, `\"x+\"`, and so on for y and z"};
 }
 
 Kind<std::optional<Side>> optional_side() {
@@ -277,17 +291,17 @@ Kind<std::optional<Side>> optional_side() {
           [=](const std::optional<Side>& side, const Case& from) {
             return side ? kind.text(*side, from) : std::string();
           },
-          kind.allowed};
+          kind.schema, kind.allowed};
 }
 
 Kind<std::vector<std::array<double, 2>>> pairs() {
-  return {[](const Entry& at) { return at.from.pairs(at.key); }, tuples_text<2>,
+  return {[](const Entry& at) { return at.from.pairs(at.key); }, tuples_text<2>, polygon_schema(2),
           "3 or more pairs `[x, y]`", "m"};
 }
 
 Kind<std::vector<std::array<double, 3>>> triples() {
   return {[](const Entry& at) { return at.from.triples(at.key); }, tuples_text<3>,
-          "3 or more `[x, y, z]`", "m"};
+          polygon_schema(3), "3 or more `[x, y, z]`", "m"};
 }
 
 Kind<int> axis() {
@@ -296,7 +310,7 @@ Kind<int> axis() {
     return at.from.one_of(at.key, {axes.begin(), axes.begin() + at.so_far.dimension})[0] - 'x';
   };
   return {read, [](int axis, const Case&) { return toml_string(std::string(1, "xyz"[axis])); },
-          "`\"x\"`, `\"y\"`, `\"z\"`, as the dimension has them"};
+          choice_schema({"x", "y", "z"}), "`\"x\"`, `\"y\"`, `\"z\"`, as the dimension has them"};
 }
 
 Kind<std::string> condition() {
@@ -307,7 +321,7 @@ Kind<std::string> condition() {
       at.refuse(error.allowed());
     }
   };
-  return {read, string_text, "an expression of place"};
+  return {read, string_text, text_schema(), "an expression of place"};
 }
 
 Kind<LoadTable> load_table() {
@@ -333,6 +347,8 @@ Kind<LoadTable> load_table() {
                                     : toml_string(table.expression);
   };
   return {read, text,
+          either_schema({list_schema(number_schema({}, ""), 2),
+                         list_schema(list_schema(number_schema({}, ""), 2, 2), 2), text_schema()}),
           "at least two numbers, the first 0, or an expression of `step`, 0 at step 0; in mode "
           "`dynamics` two or more pairs `[t, value]`, from t = 0 to `end_time`, ascending"};
 }
@@ -356,6 +372,7 @@ Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
               return toml_string(component.value_or("free"));
             });
           },
+          components_schema(expression_schema()),
           "number, expression of place and `load` (mode `dynamics`: `t`), or `\"free\"`", "m"};
 }
 
@@ -380,6 +397,7 @@ Kind<std::array<std::optional<std::string>, 3>> free_components(Components kind,
               return toml_string(component.value_or("free"));
             });
           },
+          components_schema(expression_schema()),
           kind == Components::of_load ? "number, expression of `load` (`t`) alone, or `\"free\"`"
                                       : "number, expression of `load` alone, or `\"free\"`",
           unit};
@@ -399,7 +417,7 @@ Kind<std::string> expression(bool of_place, bool or_free) {
       at.refuse(error.allowed());
     }
   };
-  return {read, string_text,
+  return {read, string_text, expression_schema(),
           std::string("number, or expression of ") +
               (of_place ? "place and `load`" : "`load` alone") + (or_free ? ", or `\"free\"`" : ""),
           "m"};
@@ -424,7 +442,7 @@ Kind<std::array<std::string, 3>> components_of_place(const std::string& unit) {
           [](const auto& values, const Case& from) {
             return array_text(components_of(values, from), toml_string);
           },
-          "number or expression of place", unit};
+          components_schema(expression_schema()), "number or expression of place", unit};
 }
 
 Kind<std::string> expression_or_free() { return expression(true, true); }
@@ -453,6 +471,7 @@ Kind<double> stretch() {
     return value;
   };
   return {read, [](double value, const Case&) { return toml_number(value); },
+          either_schema({number_schema(range, "1"), text_schema()}),
           "1e-09 to 1000, or an expression of `horizon` and `spacing`", "1"};
 }
 
@@ -474,12 +493,12 @@ std::string read_field(const Entry& at, bool has_parameters) {
 }  // namespace
 
 Kind<std::string> scalar_field(const std::string& unit) {
-  return {[](const Entry& at) { return read_field(at, true); }, string_text,
+  return {[](const Entry& at) { return read_field(at, true); }, string_text, expression_schema(),
           "number or expression of place and `load` (mode `dynamics`: `t`)", unit};
 }
 
 Kind<std::string> field_of_place(const std::string& unit) {
-  return {[](const Entry& at) { return read_field(at, false); }, string_text,
+  return {[](const Entry& at) { return read_field(at, false); }, string_text, expression_schema(),
           "number or expression of place", unit};
 }
 
@@ -501,6 +520,7 @@ Kind<std::array<std::string, 3>> located_components(bool has_place, const std::s
           [](const auto& values, const Case& from) {
             return array_text(components_of(values, from), toml_string);
           },
+          components_schema(expression_schema()),
           has_place ? "number or expression of place and `load` (mode `dynamics`: `t`)"
                     : "number or expression of `load` (`t`) alone",
           unit};
@@ -526,6 +546,7 @@ Kind<std::vector<std::string>> stress_components() {
     return values;
   };
   return {read, [](const auto& values, const Case&) { return array_text(values, toml_string); },
+          list_schema(expression_schema(), 3, 6),
           "numbers or expressions of place and `load` (mode `dynamics`: `t`)", "Pa"};
 }
 
@@ -539,6 +560,7 @@ Kind<std::vector<std::string>> expected_components() {
     return values;
   };
   return {read, [](const auto& values, const Case&) { return array_text(values, toml_string); },
+          list_schema(expression_schema(), 1),
           "list of numbers or expressions of place and `load` (mode `dynamics`: `t`), one for each "
           "component of the field",
           ""};

@@ -17,13 +17,15 @@ template <class Value>
 struct Kind : UntypedKind {
   /// @param reads  function that returns the value of an Entry
   /// @param writes function that returns the TOML of a value of a case
+  /// @param schema of its values (value_schema.hpp)
   template <class Reads, class Writes>
-  Kind(Reads reads, Writes writes, std::string is_allowed, std::string has_unit = {})
+  Kind(Reads reads, Writes writes, JsonObject has_schema, std::string is_allowed,
+       std::string has_unit = {})
       : UntypedKind([=](const Entry& at, void* value) { *static_cast<Value*>(value) = reads(at); },
                     [=](const void* value, const Case& from) -> std::string {
                       return writes(*static_cast<const Value*>(value), from);
                     },
-                    std::move(is_allowed), std::move(has_unit)) {}
+                    std::move(has_schema), std::move(is_allowed), std::move(has_unit)) {}
 
   [[nodiscard]] Value read(const Entry& at) const {
     Value value{};

@@ -8,6 +8,7 @@
 
 #include "cases/runner/input/body_keys.hpp"
 #include "cases/runner/input/key_kinds.hpp"
+#include "cases/runner/input/value_schema.hpp"
 #include "solvers/formulations/formulations.hpp"
 #include "solvers/formulations/specification/check_damage.hpp"
 
@@ -438,6 +439,7 @@ Kind<std::array<std::string, 2>> two_materials() {
     return std::array{given[0], given[1]};
   };
   return {read, [](const auto& names, const Case&) { return array_text(names, toml_string); },
+          list_schema(text_schema(), 2, 2),
           "two sets of regions; `\"material\"` for the points in none"};
 }
 

@@ -5,6 +5,8 @@
 #include <tuple>
 #include <variant>
 
+#include "cases/runner/input/value_schema.hpp"
+
 namespace peristat {
 namespace {
 
@@ -137,9 +139,13 @@ Kind<Shape> shape_beside() {
     const std::string lines = shape_lines(shape, from);
     return toml_string(kind_of(shape)) + "\n" + lines.substr(0, lines.size() - 1);
   };
-  return {read, text,
-          "`\"box\"` (1D, 2D, 3D), `\"disk\"` (2D), `\"polygon\"` (2D; in 3D, where it is infinite "
-          "in z, only to subtract), `\"cylinder\"`, `\"sphere\"` (3D)"};
+  Kind<Shape> kind{
+      read, text, choice_schema(shape_kinds()),
+      "`\"box\"` (1D, 2D, 3D), `\"disk\"` (2D), `\"polygon\"` (2D; in 3D, where it is infinite "
+      "in z, only to subtract), `\"cylinder\"`, `\"sphere\"` (3D)"};
+  for_each_shape(
+      [&](const auto& shape) { kind.schemas_beside.add_missing(keys_of(shape).key_schemas()); });
+  return kind;
 }
 
 Kind<Shape> shape_inside() {
@@ -156,7 +162,10 @@ Kind<Shape> shape_inside() {
       inside.replace(end, 1, ", ");
     return "{ " + kind_of(shape) + " = { " + inside + " } }";
   };
-  return {read, text, one_of(shape_kinds()).allowed};
+  JsonObject shapes;
+  for_each_shape([&](const auto& shape) { shapes.add(kind_name(shape), keys_of(shape).schema()); });
+  return {read, text, table_schema(shapes).add("minProperties", 1).add("maxProperties", 1),
+          one_of(shape_kinds()).allowed};
 }
 
 void describe_shapes(std::vector<TableDescription>& all) {

@@ -89,7 +89,7 @@ Kind<Mode> mode() {
         ->mode;
   };
   return {read, [](const Mode& mode, const Case&) { return toml_string(std::string(mode.name)); },
-          name.allowed};
+          name.schema, name.allowed};
 }
 
 }  // namespace

@@ -1,12 +1,15 @@
 #include "cases/runner/input/untyped_keys.hpp"
 
 #include "cases/runner/input/case.hpp"
+#include "cases/runner/input/value_schema.hpp"
 
 namespace peristat {
 
-UntypedKind::UntypedKind(Read reads, Text writes, std::string is_allowed, std::string has_unit)
+UntypedKind::UntypedKind(Read reads, Text writes, JsonObject has_schema, std::string is_allowed,
+                         std::string has_unit)
     : read_into(std::move(reads)),
       text_of(std::move(writes)),
+      schema(std::move(has_schema)),
       allowed(std::move(is_allowed)),
       unit(std::move(has_unit)) {}
 UntypedKind::UntypedKind(const UntypedKind&) = default;
@@ -183,22 +186,95 @@ std::string default_text(const std::string& toml) {
 
 }  // namespace
 
-void UntypedTable::describe(std::vector<TableDescription>& all, bool is_array) const {
+/// TOML of a constant default; empty if there is none.
+std::string UntypedTable::default_of(const UntypedKey& key) const {
   static const Case no_case;
-  TableDescription own{name_, is_array, {}, {}};
+  const bool is_constant = key.description_.fallback.empty() && !key.is_one_of_;
+  return is_constant ? key.value_text(defaults_(), no_case) : "";
+}
+
+/// Descriptions of the keys with their defaults.
+std::vector<KeyDescription> UntypedTable::descriptions() const {
   std::string group;
-  for (const auto& key : keys_) {
-    own.listed.push_back(key.name());
+  for (const auto& key : keys_)
     if (key.is_one_of_) group += (group.empty() ? "`" : ", `") + key.name() + "`";
-  }
+  std::vector<KeyDescription> all;
   for (const auto& key : keys_) {
-    own.keys.push_back(key.description_);
-    std::string& fallback = own.keys.back().fallback;
+    all.push_back(key.description_);
+    std::string& fallback = all.back().fallback;
     if (key.is_one_of_) fallback = "exactly one of " + group;
-    if (fallback.empty()) fallback = default_text(key.value_text(defaults_(), no_case));
+    if (fallback.empty()) fallback = default_text(default_of(key));
   }
+  return all;
+}
+
+void UntypedTable::describe(std::vector<TableDescription>& all, bool is_array) const {
+  TableDescription own{name_, is_array, descriptions(), {}};
+  for (const auto& key : keys_) own.listed.push_back(key.name());
   all.push_back(std::move(own));
   for (const auto& key : keys_) key.describe_inside(all);
+}
+
+// ---- The schema
+
+namespace {
+
+/// A description in markdown with the words of its links alone: they lead to pages beside the
+/// reference.
+std::string without_links(std::string text) {
+  for (std::size_t middle = 0; (middle = text.find("](")) != std::string::npos;) {
+    const std::size_t begin = text.rfind('[', middle), end = text.find(')', middle);
+    text.erase(middle, end + 1 - middle).erase(begin, 1);
+  }
+  return text;
+}
+
+std::string schema_text(const KeyDescription& key) {
+  std::string text = without_links(key.meaning);
+  if (!key.unit.empty()) text += " [" + key.unit + "]";
+  const bool is_needed =
+      key.fallback.find("required") != std::string::npos || key.fallback.starts_with("exactly one");
+  if (!key.fallback.empty()) text += (is_needed ? "\n\n" : "\n\nDefault: ") + key.fallback;
+  if (!key.allowed.empty()) text += "\n\nAllowed: " + short_exponents(key.allowed);
+  return text;
+}
+
+}  // namespace
+
+JsonObject UntypedKey::value_schema() const {
+  if (!inner_) return kind_->schema;
+  return elements_ != nullptr ? list_schema(inner_->schema(), 1) : inner_->schema();
+}
+
+JsonObject UntypedTable::key_schemas() const {
+  JsonObject all;
+  const auto described = descriptions();
+  for (std::size_t k = 0; k < keys_.size(); ++k) {
+    JsonObject schema;
+    schema.add("description", schema_text(described[k]));
+    const std::string constant = default_of(keys_[k]);
+    // The length of an array may depend on the dimension.
+    if (!constant.empty() && constant.front() != '[' && constant != "inf")
+      schema.add_json("default", constant);
+    all.add(keys_[k].name(), schema.add_missing(keys_[k].value_schema()));
+  }
+  for (const auto& key : keys_)
+    if (key.kind_) all.add_missing(key.kind_->schemas_beside);
+  return all;
+}
+
+JsonObject UntypedTable::schema() const {
+  std::vector<std::string> required;
+  std::vector<JsonObject> group;
+  for (const auto& key : keys_) {
+    const std::vector<std::string> itself{key.name()};
+    if (key.is_one_of_) group.push_back(JsonObject().add("required", itself));
+    if (key.is_required_ && key.exclusions_.empty()) required.push_back(key.name());
+  }
+  JsonObject schema = table_schema(key_schemas());
+  if (!required.empty()) schema.add("required", required);
+  if (!group.empty()) schema.add("oneOf", group);
+  return schema;
 }
 
 }  // namespace peristat

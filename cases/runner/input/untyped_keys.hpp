@@ -12,6 +12,7 @@
 
 #include "cases/runner/input/case_keys.hpp"
 #include "cases/runner/input/toml_table.hpp"
+#include "src/core/json_object.hpp"
 
 /// Keys and tables work on specifications and values behind `void`, so that untyped_keys.cpp
 /// compiles them once: compiled for each type they took a minute. key_table.hpp puts the types
@@ -34,9 +35,12 @@ struct UntypedKind {
 
   Read read_into;
   Text text_of;
+  JsonObject schema;          ///< of a value
+  JsonObject schemas_beside;  ///< of keys that stand beside the value and that this kind reads
   std::string allowed, unit;
 
-  UntypedKind(Read read_into, Text text_of, std::string allowed, std::string unit);
+  UntypedKind(Read read_into, Text text_of, JsonObject schema, std::string allowed,
+              std::string unit);
   UntypedKind(const UntypedKind&);
   UntypedKind(UntypedKind&&) noexcept;
   ~UntypedKind();
@@ -137,6 +141,8 @@ class UntypedKey {
   std::string table_lines(const void* spec, const Case& from) const;
   std::string value_text(const void* spec, const Case& from) const;
   void describe_inside(std::vector<TableDescription>& all) const;
+  /// Schema of the value, without its description.
+  JsonObject value_schema() const;
 
   KeyDescription description_;
   UntypedMember member_;
@@ -165,6 +171,11 @@ class UntypedTable {
   [[nodiscard]] const std::string& name() const { return name_; }
   /// Appends this table and those in it.
   void describe(std::vector<TableDescription>& all, bool is_array = false) const;
+  /// JSON schema of the table: its keys with their descriptions, limits and constant defaults, and
+  /// those that are required, whatever the others are.
+  [[nodiscard]] JsonObject schema() const;
+  /// Schemas of the keys, by name.
+  [[nodiscard]] JsonObject key_schemas() const;
 
   void read_untyped(const Entry& at, void* spec) const;
   [[nodiscard]] std::string untyped_lines(const void* spec, const Case& from) const;
@@ -175,6 +186,9 @@ class UntypedTable {
   void set_after(Action action);
 
  private:
+  std::string default_of(const UntypedKey& key) const;
+  std::vector<KeyDescription> descriptions() const;
+
   std::string name_;
   Defaults defaults_;
   std::vector<UntypedKey> keys_;

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "cases/runner/process/output_file.hpp"
-#include "cases/runner/results/tables/summary_json.hpp"
+#include "src/core/json_object.hpp"
 
 namespace peristat {
 namespace {

@@ -1,61 +1,12 @@
 #include "cases/runner/results/tables/summary_json.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <concepts>
-#include <cstdio>
 #include <span>
-#include <stdexcept>
 #include <utility>
-#include <vector>
 
-#include "src/core/number_text.hpp"
+#include "src/core/json_object.hpp"
 
 namespace peristat {
-namespace {
-
-/// Members of a JSON object, in order.
-class Members {
- public:
-  explicit Members(int depth) : indent_(2 * depth, ' ') {}
-
-  void add_text(const std::string& key, const std::string& json) {
-    text_ += (text_.empty() ? "{\n  " : ",\n  ") + indent_ + json_string(key) + ": " + json;
-  }
-  void add(const std::string& key, const std::string& value) { add_text(key, json_string(value)); }
-  void add(const std::string& key, std::integral auto value) {
-    add_text(key, std::to_string(value));
-  }
-  void add(const std::string& key, double value) { add_text(key, finite(key, value)); }
-  void add(const std::string& key, std::span<const double> values) {
-    std::string list;
-    for (const double value : values) list += (list.empty() ? "" : ", ") + finite(key, value);
-    add_text(key, "[" + list + "]");
-  }
-  void add(const std::string& key, const std::vector<std::string>& texts) {
-    std::string list;
-    for (const std::string& text : texts) list += (list.empty() ? "" : ", ") + json_string(text);
-    add_text(key, "[" + list + "]");
-  }
-  void add(const std::string& key, const Members& members) { add_text(key, members.text()); }
-
-  [[nodiscard]] std::string text() const {
-    return text_.empty() ? "{}" : text_ + "\n" + indent_ + "}";
-  }
-
- private:
-  static std::string finite(const std::string& key, double value) {
-    if (!std::isfinite(value)) {
-      throw std::logic_error("summary.json: " + key + " is " + number_text(value));
-    }
-    return number_text(value);
-  }
-
-  std::string indent_, text_;
-};
-
-}  // namespace
-
 std::int64_t Summary::counted(const std::string& kind) const {
   return std::ranges::find(interactions, kind, &std::pair<std::string, std::int64_t>::first)
       ->second;
@@ -70,22 +21,6 @@ void Summary::count(const std::string& kind, std::int64_t interactions_of_kind) 
   interactions.emplace_back(kind, interactions_of_kind);
 }
 
-std::string json_string(const std::string& text) {
-  std::string json = "\"";
-  for (const char character : text) {
-    if (character == '"' || character == '\\') {
-      json += std::string("\\") + character;
-    } else if (static_cast<unsigned char>(character) < 0x20) {
-      char code[8];
-      std::snprintf(code, sizeof code, "\\u%04x", static_cast<unsigned>(character));
-      json += code;
-    } else {
-      json += character;
-    }
-  }
-  return json + "\"";
-}
-
 void StepTotals::add(const StepRecord& record) {
   if (record.step > 0 || record.motion) ++steps;
   newton_iterations += record.newton_iterations;
@@ -97,16 +32,16 @@ std::string summary_json(const Summary& summary, const StepTotals& totals,
                          std::int64_t peak_memory_bytes) {
   const StepRecord last = totals.last.value_or(StepRecord{});
 
-  Members energy(1);
+  JsonObject energy;
   energy.add("stored", last.stored_energy);
   energy.add("dissipated", last.dissipated_energy);
   energy.add("drained", last.drained_energy);
   energy.add("external_work", last.external_work);
   energy.add("numerical_work", last.numerical_work);
   energy.add("balance_error", last.balance_error);
-  Members reactions(1);
+  JsonObject reactions;
   for (const auto& [set, reaction] : last.reactions) reactions.add(set, std::span(reaction));
-  Members probes(1);
+  JsonObject probes;
   for (const auto& [name, values] : last.probes) {
     if (values.size() == 1) {
       probes.add(name, values.front());
@@ -114,7 +49,7 @@ std::string summary_json(const Summary& summary, const StepTotals& totals,
       probes.add(name, std::span(values));
     }
   }
-  Members seconds(1);
+  JsonObject seconds;
   seconds.add("total", summary.costs.seconds.total);
   seconds.add("neighbourhood", summary.costs.seconds.neighbourhood);
   seconds.add("assembly", summary.costs.seconds.assembly);
@@ -123,7 +58,7 @@ std::string summary_json(const Summary& summary, const StepTotals& totals,
   seconds.add("output", summary.costs.seconds.output);
   seconds.add("checkpoints", summary.costs.seconds.checkpoints);
 
-  Members all(0);
+  JsonObject all;
   all.add("status", summary.status);
   all.add("reason", summary.reason);
   all.add("points", summary.points);

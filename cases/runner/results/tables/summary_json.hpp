@@ -24,7 +24,4 @@ struct StepTotals {
 [[nodiscard]] std::string summary_json(const Summary& summary, const StepTotals& totals,
                                        std::int64_t peak_memory_bytes);
 
-/// Text as a JSON string, with the quotes.
-[[nodiscard]] std::string json_string(const std::string& text);
-
 }  // namespace peristat

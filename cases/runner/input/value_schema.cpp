@@ -1,0 +1,85 @@
+#include "cases/runner/input/value_schema.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace peristat {
+namespace {
+
+/// True if a number of this unit may be a text with a unit of its own.
+bool has_dimension(const std::string& unit) {
+  constexpr std::array without{"", "-", "1", "degrees", "rad", "per K", "spacings"};
+  return std::ranges::find(without, unit) == without.end();
+}
+
+/// Pattern of a number, and a unit behind it.
+constexpr const char* quantity = R"(^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\s\d.].*$)";
+
+void add_limits(JsonObject& schema, const Range& range) {
+  if (!range.limits_are_remote)
+    schema.add("minimum", range.low).add("maximum", range.high);
+  else if (range.low > 0.0)
+    schema.add("exclusiveMinimum", 0);
+  else if (range.low == 0.0)
+    schema.add("minimum", 0);
+}
+
+}  // namespace
+
+JsonObject number_schema(const Range& range, const std::string& unit) {
+  std::vector<std::string> types{"number"};
+  if (has_dimension(unit)) types.emplace_back("string");
+  if (std::isinf(range.high)) types.emplace_back("null");  // JSON has no infinity
+  JsonObject schema;
+  if (types.size() == 1)
+    schema.add("type", types.front());
+  else
+    schema.add("type", types);
+  add_limits(schema, range);
+  if (has_dimension(unit)) schema.add("pattern", quantity);
+  return schema;
+}
+
+JsonObject integer_schema(std::int64_t low, std::int64_t high) {
+  JsonObject schema;
+  schema.add("type", "integer").add("minimum", low);
+  constexpr std::int64_t exact = 9007199254740992;  // 2^53: editors hold numbers as doubles
+  if (high <= exact) schema.add("maximum", high);
+  return schema;
+}
+
+JsonObject boolean_schema() { return JsonObject().add("type", "boolean"); }
+
+JsonObject text_schema() { return JsonObject().add("type", "string"); }
+
+JsonObject choice_schema(const std::vector<std::string>& names) {
+  return JsonObject().add("type", "string").add("enum", names);
+}
+
+JsonObject expression_schema() {
+  return JsonObject().add("type", std::vector<std::string>{"number", "string"});
+}
+
+JsonObject list_schema(const JsonObject& item, std::size_t least, std::size_t most) {
+  JsonObject schema;
+  schema.add("type", "array").add("items", item).add("minItems", least);
+  if (most > 0) schema.add("maxItems", most);
+  return schema;
+}
+
+JsonObject components_schema(const JsonObject& component) { return list_schema(component, 1, 3); }
+
+JsonObject table_schema(const JsonObject& keys) {
+  JsonObject schema;
+  schema.add("type", "object").add("properties", keys);
+  // `false` would have taplo mark every line of the table, not only that of the unknown key.
+  return schema.add("additionalProperties",
+                    JsonObject().add("not", JsonObject().add("title", "an unknown key")));
+}
+
+JsonObject either_schema(const std::vector<JsonObject>& schemas) {
+  return JsonObject().add("anyOf", schemas);
+}
+
+}  // namespace peristat
