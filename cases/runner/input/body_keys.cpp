@@ -172,24 +172,6 @@ Table<Case> lattice_keys() {
       }};
 }
 
-namespace {
-
-Kind<std::filesystem::path> file_beside_the_case() {
-  const auto read = [](const Entry& at) {
-    const std::filesystem::path given = at.from.string(at.key);
-    if (given.empty()) at.refuse("is empty");
-    const auto folder = std::filesystem::path(at.so_far.file).parent_path();
-    const auto file = std::filesystem::absolute(folder / given).lexically_normal();
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error))
-      at.refuse("no such file; searched for " + file.string());
-    return file;
-  };
-  return {read, [](auto& file, auto&) { return toml_string(file.string()); }, "an existing file"};
-}
-
-}  // namespace
-
 Table<Case> points_keys() {
   using K = Key<Case>;
   return {

@@ -1,5 +1,6 @@
 #include "cases/runner/input/key_kinds.hpp"
 
+#include <filesystem>
 #include <map>
 #include <utility>
 #include <variant>
@@ -117,6 +118,20 @@ Kind<std::string> one_of(const std::vector<std::string>& names) {
   std::string allowed;
   for (const auto& known : names) allowed += (allowed.empty() ? "`\"" : ", `\"") + known + "\"`";
   return {[=](const Entry& at) { return at.from.one_of(at.key, names); }, string_text, allowed};
+}
+
+Kind<std::filesystem::path> file_beside_the_case() {
+  const auto read = [](const Entry& at) {
+    const std::filesystem::path given = at.from.string(at.key);
+    if (given.empty()) at.refuse("is empty");
+    const auto folder = std::filesystem::path(at.so_far.file).parent_path();
+    const auto file = std::filesystem::absolute(folder / given).lexically_normal();
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error))
+      at.refuse("no such file; searched for " + file.string());
+    return file;
+  };
+  return {read, [](auto& file, auto&) { return toml_string(file.string()); }, "an existing file"};
 }
 
 Kind<std::int64_t> choice_of_numbers(std::vector<Choice<std::int64_t>> choices) {
@@ -260,6 +275,16 @@ Kind<std::optional<Side>> optional_side() {
 Kind<std::vector<std::array<double, 2>>> pairs() {
   return {[](const Entry& at) { return at.from.pairs(at.key); }, tuples_text<2>,
           "3 or more pairs `[x, y]`", "m"};
+}
+
+Kind<std::array<double, 2>> range_of_numbers() {
+  const auto read = [](const Entry& at) {
+    const auto numbers = at.from.numbers(at.key, 2, Range{});
+    if (numbers[0] > numbers[1]) at.refuse("the second number is below the first");
+    return std::array<double, 2>{numbers[0], numbers[1]};
+  };
+  return {read, [](const auto& pair, const Case&) { return array_text(pair, toml_number); },
+          "two numbers, the second not below the first"};
 }
 
 Kind<std::vector<std::array<double, 3>>> triples() {
