@@ -18,6 +18,7 @@ from tests.acceptance.on_ranks import (
     objects,
     rows,
 )
+from tests.acceptance.surfaces import binary, sphere
 from tests.reference.graded import GradedRing, patch_test
 from tests.reference.program import ROOT
 
@@ -159,6 +160,19 @@ class Bodies(Comparison):
         self.compare_shipped("regions/bimaterial", "lattice.spacing=0.01", ranks=(2,))
         # A third solution would be of round-off, with as many iterations as that gives.
         self.compare_shipped("regions/composite", "lattice.spacing=1e-3", "solver.relative_tolerance=1e-7")
+
+    def test_ellipses_and_shapes_from_files(self):
+        shutil.copy(ROOT / "cases/regions/aggregates.png", self.folder)
+        self.compare_shipped("regions/aggregates", "lattice.spacing=2e-3")
+        self.write("outline.csv", "0.2 0.9\n0.3 0.9\n0.3 1.2\n0.2 1.2\n")
+        self.compare_settings(PLATE.replace(
+            '{ subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }',
+            '{ subtract = "ellipse", centre = [0.5, 0.7], radii = [0.3, 0.1], angle = 40, cuts_bonds = true }, '
+            '{ subtract = "polygon", file = "outline.csv" }'))  # fmt: skip
+        (self.folder / "ball.stl").write_bytes(binary(sphere(0.2, 12)))
+        self.compare_settings(CUBE_ON_ROLLERS.replace(
+            '[material]', '[[set]]\nname = "core"\nshape = { stl = { file = "ball.stl", translate = [0.3, 0.3, 0.5] } }\n[material]')
+            + '[[region]]\nset = "core"\nmaterial = { micromodulus = 1e6 }\n[[load]]\nset = "core"\nbody_force = [0, 0, "1e3*load"]\n')
 
     def test_interfaces_and_random_fields(self):
         two = ('region=[{set="corner", material={youngs_modulus=1e8, scatter=[{of="stiffness", distribution="weibull", '

@@ -10,12 +10,10 @@
 #include <variant>
 #include <vector>
 
-#include "cases/runner/input/case_inputs.hpp"
 #include "cases/runner/input/key_kinds.hpp"
 #include "cases/runner/input/shape_keys.hpp"
 #include "cases/runner/input/value_schema.hpp"
 #include "solvers/formulations/formulations.hpp"
-#include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/point_file.hpp"
 #include "src/neighbourhood/optimised_weights.hpp"
@@ -177,18 +175,6 @@ Table<Case> lattice_keys() {
 }
 
 namespace {
-
-Kind<std::filesystem::path> file_beside_the_case() {
-  const auto read = [](const Entry& at) {
-    try {
-      return absolute_beside_case(at.so_far, at.from.string(at.key));
-    } catch (const InputError& error) {
-      at.refuse(error.allowed());
-    }
-  };
-  return {read, [](auto& file, auto&) { return toml_string(file.string()); }, text_schema(),
-          "an existing file"};
-}
 
 const Table<PointHorizon>& point_horizon_keys() {
   using K = Key<PointHorizon>;

@@ -43,6 +43,13 @@ std::vector<std::filesystem::path> inputs_of(const Case& from) {
     files.push_back(points->file);
     if (!points->neighbours.empty()) files.push_back(points->neighbours);
   }
+  if (const auto* lattice = std::get_if<Lattice>(&from.body)) {
+    for (const ShapeStep& step : lattice->shapes) files.push_back(file_of(step.shape));
+  }
+  for (const SetRule& rule : from.sets) {
+    if (rule.shape) files.push_back(file_of(*rule.shape));
+  }
+  std::erase_if(files, [](const std::filesystem::path& file) { return file.empty(); });
   files.insert(files.end(), from.tables->begin(), from.tables->end());
   return files;
 }

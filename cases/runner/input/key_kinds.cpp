@@ -152,6 +152,18 @@ Kind<std::string> one_of(const std::vector<std::string>& names) {
           choice_schema(names), allowed};
 }
 
+Kind<std::filesystem::path> file_beside_the_case() {
+  const auto read = [](const Entry& at) {
+    try {
+      return absolute_beside_case(at.so_far, at.from.string(at.key));
+    } catch (const InputError& error) {
+      at.refuse(error.allowed());
+    }
+  };
+  return {read, [](auto& file, auto&) { return toml_string(file.string()); }, text_schema(),
+          "an existing file"};
+}
+
 Kind<std::int64_t> choice_of_numbers(std::vector<Choice<std::int64_t>> choices) {
   std::vector<std::string> names;
   for (const auto& choice : choices) names.emplace_back(choice.name);
@@ -297,6 +309,16 @@ Kind<std::optional<Side>> optional_side() {
 Kind<std::vector<std::array<double, 2>>> pairs() {
   return {[](const Entry& at) { return at.from.pairs(at.key); }, tuples_text<2>, polygon_schema(2),
           "3 or more pairs `[x, y]`", "m"};
+}
+
+Kind<std::array<double, 2>> range_of_numbers() {
+  const auto read = [](const Entry& at) {
+    const auto numbers = at.from.numbers(at.key, 2, Range{});
+    if (numbers[0] > numbers[1]) at.refuse("the second number is below the first");
+    return std::array<double, 2>{numbers[0], numbers[1]};
+  };
+  return {read, [](const auto& pair, const Case&) { return array_text(pair, toml_number); },
+          list_schema(number_schema({}, ""), 2, 2), "two numbers, the second not below the first"};
 }
 
 Kind<std::vector<std::array<double, 3>>> triples() {

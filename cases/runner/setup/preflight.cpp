@@ -25,7 +25,8 @@ namespace peristat {
 namespace {
 
 const char* kind_of(const Shape& shape) {
-  constexpr std::array names{"box", "disk", "cylinder", "sphere", "polygon"};
+  constexpr std::array names{"box",     "disk",    "cylinder", "sphere",
+                             "polygon", "ellipse", "image",    "stl"};
   return names[shape.index()];
 }
 
@@ -102,7 +103,7 @@ std::vector<Preflight::Opening> openings_of(const Lattice& lattice, const Body& 
   std::shared_ptr<const Bonds> bonds;
   for (std::size_t k = 0; k < lattice.shapes.size(); ++k) {
     const ShapeStep& step = lattice.shapes[k];
-    if (step.action == ShapeStep::Action::add) continue;
+    if (step.action == ShapeStep::Action::add || !has_smooth_sides(step.shape)) continue;
     Preflight::Opening opening{"lattice.shape[" + std::to_string(k) + "]", kind_of(step.shape),
                                width_of(step.shape, lattice.dimension, box), 0, step.cuts_bonds};
     constexpr double round_off = 1e-6;
