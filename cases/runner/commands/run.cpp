@@ -20,6 +20,7 @@
 #include "cases/runner/results/results.hpp"
 #include "cases/runner/results/tables/constraint_columns.hpp"
 #include "cases/runner/results/tables/crack_tip_columns.hpp"
+#include "cases/runner/results/tables/driven_sets.hpp"
 #include "cases/runner/results/tables/motion_columns.hpp"
 #include "cases/runner/setup/body.hpp"
 #include "cases/runner/setup/part_body.hpp"
@@ -125,7 +126,8 @@ class CaseRun {
         progress_(progress),
         summary_(summary),
         results_(results),
-        support_sets_(support_sets(from)) {
+        support_sets_(support_sets(from)),
+        probes_(columns_of(driven_by(from))) {
     for (const auto& probe : from.probes) {
       if (!probe.from) probes_.push_back(columns_of(probe, from.dimension));
     }
@@ -153,7 +155,7 @@ class CaseRun {
     body_ = ranks_.count() > 1 ? make_part_body(from_, ranks_, options_.threads)
                                : make_body(from_, options_.threads);
     gathering_.emplace(*body_->index_map);
-    further_ = {from_.output.stress, lines_of(from_)};
+    further_ = {from_.output.stress, lines_of(from_), !from_.controls.empty()};
     study_.emplace(*body_, study_options(from_, options_.threads),
                    [this](const std::string& reason) { recorder_->changed_solver(reason); });
     if (!gathering_->is_whole()) {

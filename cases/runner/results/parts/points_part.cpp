@@ -143,7 +143,7 @@ void write_rows_of(const Points& points, const std::vector<PointCounts>& counts,
 }  // namespace
 
 void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts,
-                  const RowGathering& gathering) {
+                  const CellsOfBody& cells, const RowGathering& gathering) {
   file.make_group("/points");
   file.set_attribute("/points", "dimension", std::int64_t{points.dimension});
   file.set_attribute("/points", "spacing", double(points.spacing));
@@ -154,6 +154,7 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
   file.make_group("/points/sets");
   if (!points.columns.empty()) file.make_group(columns_group);
   write_rows_of(points, counts, gathering, &file);
+  write_cells(&file, cells.cells, cells.sizes, gathering);
   std::vector<std::string> names;
   for (const auto& [name, members] : points.sets) names.push_back(name);
   if (!names.empty()) file.set_attribute("/points/set_ids", "sets", names);
@@ -170,17 +171,18 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
 }
 
 void send_points(const Points& points, const std::vector<PointCounts>& counts,
-                 const RowGathering& gathering) {
+                 const CellsOfBody& cells, const RowGathering& gathering) {
   write_rows_of(points, counts, gathering, nullptr);
+  write_cells(nullptr, cells.cells, cells.sizes, gathering);
 }
 
 std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts,
-                       std::uint64_t rows) {
+                       const CellSizes& cells, std::uint64_t rows) {
   const std::uint64_t bytes_per_point = (counts.size() + points.columns.size()) * sizeof(double) +
                                         (std::uint64_t(points.dimension) + 5) * sizeof(double) +
                                         sizeof(std::int32_t) + 2 * points.sets.size();
   const std::uint64_t bytes_per_pair = 2 * (sizeof(std::int32_t) + sizeof(double));
-  return rows * bytes_per_point + points.neighbours.size() * bytes_per_pair +
+  return rows * bytes_per_point + cells.bytes() + points.neighbours.size() * bytes_per_pair +
          points.images.kinds.size() * 6 * sizeof(double);
 }
 
