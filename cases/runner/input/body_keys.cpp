@@ -210,12 +210,22 @@ Kind<PointHorizon> point_horizon() {
 
 Table<Case> points_keys() {
   using K = Key<Case>;
+  constexpr auto has_mesh = [](const Case& from, const Case&) {
+    const auto* const source = std::get_if<PointSource>(&from.body);
+    return source != nullptr && source->is_mesh();
+  };
+  constexpr auto is_no_mesh = [has_mesh](const Case& from, const Case& so_far) {
+    return !has_mesh(from, so_far);
+  };
   return {
       "points",
       {K("file", in(points, &PointSource::file), file_beside_the_case(),
-         "file with comma- or blank-separated text; its path is relative to the case file's folder")
+         "file with comma- or blank-separated text, or a mesh, by the end of its name (.msh, .inp, "
+         ".vtu, .vtk, .exo, .e, .ex2, .med); its path is relative to the case file's folder")
            .required()
+           .early()
            .then([](auto&, auto& from) {
+             if (points(from).is_mesh()) return;
              for (const std::string& name : further_columns(points(from).file, from.dimension))
                from.columns[name];
            })
@@ -233,12 +243,25 @@ Table<Case> points_keys() {
        K("neighbours", in(points, &PointSource::neighbours), file_beside_the_case(),
          "file with the neighbours of the points and the shares of their volumes that count, "
          "relative to the case file's folder like `file`; model `bond`")
+           .unless(has_mesh, "is for a file of text")
            .written_if([](auto& from, auto&) { return !points(from).neighbours.empty(); })
            .then([](auto& at, auto& result) {
              if (!points(result).neighbours.empty() && points(result).horizon.ratio > 0.0)
                at.refuse("goes with one horizon for all points, not with a ratio");
            })
            .default_words("all points within the horizon"),
+       K("at", in(points, &PointSource::at),
+         choice<PointsAt>({{"elements", PointsAt::elements}, {"nodes", PointsAt::nodes}}),
+         "of a mesh: a point at the centroid of each element with its volume, or at each node with "
+         "its share of the elements around it")
+           .default_words("`\"elements\"`")
+           .unless(is_no_mesh, "is for a mesh")
+           .written_if(has_mesh),
+       K("cut_bonds", in(points, &PointSource::cut_bonds), boolean(),
+         "of a mesh: the boundary of the elements cuts the bonds that leave the body")
+           .default_words("true")
+           .unless(is_no_mesh, "is for a mesh")
+           .written_if(has_mesh),
        thickness(in(points, &PointSource::cross_section)),
        area(in(points, &PointSource::cross_section))},
       [](auto&, auto& result) { result.body = PointSource(); }};

@@ -1,6 +1,8 @@
 #include "cases/runner/input/case.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 
 #include "cases/runner/input/case_file.hpp"
 #include "cases/runner/input/given_values.hpp"
@@ -120,6 +122,13 @@ std::string key_of(const Case& from, std::string member) {
 }
 
 }  // namespace
+
+bool PointSource::is_mesh() const {
+  std::string end = file.extension().string();
+  std::ranges::transform(end, end.begin(), [](unsigned char c) { return std::tolower(c); });
+  constexpr std::array known{".msh", ".inp", ".vtu", ".vtk", ".exo", ".e", ".ex2", ".med"};
+  return std::ranges::any_of(known, [&](const char* one) { return end == one; });
+}
 
 int LoadingSpecification::steps_to_entry() const {
   const bool is_of_step = std::any_of(tables.begin(), tables.end(), [](const LoadTable& table) {

@@ -20,6 +20,7 @@
 #include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/lattice.hpp"
+#include "src/geometry/mesh_points.hpp"
 #include "src/geometry/point_set.hpp"
 
 namespace peristat {
@@ -36,6 +37,12 @@ struct PointSource {
   std::filesystem::path neighbours{};  ///< absolute; empty: the points within the horizon
   double cross_section = 1.0;          ///< 1D: area [m2]; 2D: thickness [m]
   PointHorizon horizon{};
+  PointsAt at = PointsAt::elements;  ///< of a mesh
+  bool cut_bonds = true;             ///< of a mesh: bonds must not leave it
+
+  /// True if the file is a mesh, by the end of its name: .msh, .inp, .vtu, .vtk, .exo, .e, .ex2,
+  /// .med.
+  [[nodiscard]] bool is_mesh() const;
 };
 
 /// Values of a load parameter: given one by one, as an expression of the step, or over time.

@@ -67,6 +67,11 @@ void refuse_convolutions(const Case& from) {
 void refuse_values_without_ranks(const Case& from) {
   refuse_convolutions(from);
   const bool is_lattice = std::holds_alternative<Lattice>(from.body);
+  if (const auto* const source = std::get_if<PointSource>(&from.body);
+      source != nullptr && source->is_mesh())
+    refuse("points.file", source->file.string(),
+           "`peristat points` writes the points of a mesh to a file that runs on several ranks, "
+           "without the cuts by its boundary");
   const bool has_shares = from.volume_correction != VolumeCorrection::none &&
                           from.volume_correction != VolumeCorrection::linear;
   if (formulation_of(from).part_needs_lattice && (!is_lattice || has_shares)) {

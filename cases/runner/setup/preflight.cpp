@@ -18,6 +18,9 @@
 #include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/counts_bond.hpp"
+#include "src/geometry/local_spacing.hpp"
+#include "src/geometry/mesh_body.hpp"
+#include "src/geometry/mesh_interior.hpp"
 #include "src/geometry/solid.hpp"
 #include "src/parallel/communicator.hpp"
 
@@ -365,6 +368,24 @@ void refuse_idle_cracks(const Case& from, const std::vector<Preflight::CutByCrac
   }
 }
 
+Preflight::OfMesh mesh_facts(const Body& body) {
+  const Points& points = body.points;
+  Preflight::OfMesh of;
+  of.elements = element_counts(*points.mesh);
+  const auto spacings = local_spacings(points, body.setting.horizon);
+  const auto [finest, coarsest] = std::ranges::minmax(spacings);
+  of.finest_spacing = finest;
+  of.coarsest_spacing = coarsest;
+  of.remarks = points.mesh->remarks;
+  of.cuts_bonds = points.interior != nullptr;
+  of.leaving = std::ranges::count_if(body.cut_bonds, [&](const BondEnds& bond) {
+    const auto& [i, j] = bond;
+    const auto [a, b] = std::minmax({points.position(i), points.position(j)});
+    return of.cuts_bonds && points.interior->leaves(a, b, points.images.kinds);
+  });
+  return of;
+}
+
 }  // namespace
 
 const FeatureLength* Preflight::shortest(FeatureLength::Kind kind) const {
@@ -391,6 +412,7 @@ Preflight preflight_of(const Case& from, const Body& body, const Communicator& r
   if (const auto* const lattice = std::get_if<Lattice>(&from.body)) {
     take_lattice(from, *lattice, body, ranks, of);
   }
+  if (body.points.mesh) of.mesh = mesh_facts(body);
   const Values values(from, body, ranks);
   for (const GivenValue& given : given_values(from)) {
     if (given.kind != GivenValue::Kind::expected) of.applied.push_back(values.of(given));
@@ -445,6 +467,13 @@ std::string applied_text(const Preflight& of, const Preflight::Applied& value) {
                      value.unit, begin, range_text(value.end), value.unit, end);
 }
 
+std::string mesh_text(const Preflight::OfMesh& mesh) {
+  return fmt::format("{}; spacing around a point {:.4g} to {:.4g} m; {}", mesh.elements,
+                     mesh.finest_spacing, mesh.coarsest_spacing,
+                     mesh.cuts_bonds ? fmt::format("its boundary cuts {} bonds", mesh.leaving)
+                                     : "its boundary cuts no bonds");
+}
+
 std::string zone_text(const Preflight& of, const Preflight::Fracture& fracture) {
   const double zone = fracture.characteristic_length();
   std::string text = fmt::format("{}strength {:.4g} MPa, E G/ft^2 = {:.4g} m: {:.3g} spacings",
@@ -471,6 +500,10 @@ std::vector<std::pair<std::string, std::string>> preflight_lines(const Preflight
     lines.emplace_back("opening", opening.cuts_bonds ? opening.key + " cuts the bonds that cross it"
                                                      : fmt::format("{} bonds bridge {}",
                                                                    opening.bridging, opening.key));
+  }
+  if (of.mesh) {
+    lines.emplace_back("mesh", mesh_text(*of.mesh));
+    for (const std::string& remark : of.mesh->remarks) lines.emplace_back("mesh", remark);
   }
   for (const auto& [key, bonds] : of.cracks) {
     lines.emplace_back("crack", fmt::format("{} cuts {} bonds", key, bonds));

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "src/geometry/local_spacing.hpp"
+
 namespace peristat {
 namespace {
 
@@ -54,6 +56,16 @@ void add_horizon(const Preflight& of, Warnings& warnings) {
         "spacing of {:.2g} m or less gives it three horizons",
         of.horizon, least->what, least->size, least->size * of.spacing / (3.0 * of.horizon)));
   }
+}
+
+void add_grading(const Preflight& of, Warnings& warnings) {
+  if (!of.mesh || of.mesh->coarsest_spacing <= graded_ratio * of.mesh->finest_spacing) return;
+  warnings.push_back(fmt::format(
+      "the mesh is graded: around a point its spacing is {:.3g} to {:.3g} m, a ratio above {}, so "
+      "that the horizon, {:g} m, is {:.3g} spacings where it is coarsest and {:.3g} where it is "
+      "finest; a horizon below 3 spacings resolves neither stiffness nor cracks",
+      of.mesh->finest_spacing, of.mesh->coarsest_spacing, graded_ratio, of.horizon,
+      of.horizon / of.mesh->coarsest_spacing, of.horizon / of.mesh->finest_spacing));
 }
 
 void add_bridged(const Preflight& of, Warnings& warnings) {
@@ -156,7 +168,7 @@ void add_idle(const Preflight& of, Warnings& warnings) {
 
 std::vector<std::string> warnings_of(const Preflight& of) {
   Warnings warnings;
-  for (const auto& rule : {add_divisions, add_cross_section, add_horizon, add_bridged,
+  for (const auto& rule : {add_divisions, add_cross_section, add_horizon, add_grading, add_bridged,
                            add_constant_values, add_nothing_applied, add_stiffnesses}) {
     rule(of, warnings);
   }
