@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "src/core/input_error.hpp"
-#include "src/geometry/table_text.hpp"
+#include "src/core/table_text.hpp"
 
 namespace peristat {
 
