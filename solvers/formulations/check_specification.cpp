@@ -231,10 +231,9 @@ void check_for_horizons(const BodySpecification& of) {
                    "\"energy_density\" belongs to one horizon, that of its band of failed points; "
                    "take a law of stretches" +
                        with);
-    if (!damage.is_by_data() || !damage.fracture_energy) return;
-    const std::string alone =
-        "changes the shape of the law with the horizon beside fracture_energy;" + with +
-        " give fracture_energy alone, or strength or stretches";
+    if (damage.law != DamageLaw::blended || !damage.fracture_energy) return;
+    const std::string alone = "changes the shape of \"blended\" from horizon to horizon;" + with +
+                              " give fracture_energy alone, another law, or strength or stretches";
     require_absent(damage.strength.has_value(), table + "strength", alone);
     require_absent(damage.onset != 0.0, table + "onset", alone);
     require_absent(damage.peak != 0.0, table + "peak", alone);

@@ -42,8 +42,10 @@ struct ModelName {
                                               double spacing);
 
 /// The body with stretches in the place of fracture energies and strengths.
+/// @param spacing  of points with the setting's horizon [m]
+/// @param fineness the setting's horizon over the smallest one
 /// @throws InputError as the with_stretches of a law does
 [[nodiscard]] BodySpecification with_stretches(BodySpecification of, const BondSetting& setting,
-                                               double spacing);
+                                               double spacing, double fineness = 1.0);
 
 }  // namespace peristat

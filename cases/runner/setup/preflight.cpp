@@ -423,7 +423,6 @@ Preflight preflight_of(const Case& from, const Body& body, const Communicator& r
   of.steps = from.loading.steps_to_entry() * std::max(1, int(body.conditions->programme().end()));
   if (!of.is_quasi_static) of.steps = 1;
   of.begins_moving = !from.initial.empty();
-  of.has_horizons = !body.points.horizons.empty();
   of.has_notch = !of.cracks.empty() || !of.openings.empty();
   of.idle = idle_keys(from);
   return of;

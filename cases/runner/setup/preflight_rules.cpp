@@ -143,13 +143,7 @@ void add_fracture(const Preflight& of, const Preflight::Fracture& fracture, Warn
                     name, zone, zone / of.horizon, shortest_zone,
                     of.spacing * zone / (shortest_zone * of.horizon)));
   }
-  if (!fracture.has_strength && !of.has_notch && of.has_horizons) {
-    warnings.push_back(fmt::format(
-        "there is no crack, notch or hole to start from: each horizon sets a strength "
-        "of its own{}, {:.4g} MPa the largest and more the smaller ones, so that cracks "
-        "begin where points are large; give a crack, or the stretches of all bonds",
-        name, fracture.strength * 1e-6));
-  } else if (!fracture.has_strength && !of.has_notch) {
+  if (!fracture.has_strength && !of.has_notch) {
     warnings.push_back(
         fmt::format("{}.damage.strength is missing, and there is no crack, notch or hole to start "
                     "from: the horizon sets a strength of {:.4g} MPa, and the peak grows with each "

@@ -38,6 +38,11 @@ enum class DamageLaw {
   blended
 };
 
+/// Stretches of a law of bonds; those of `critical_stretch` are equal.
+struct LawStretches {
+  double onset = 0.0, critical = 0.0;
+};
+
 struct DamageSpecification {
   DamageLaw law = DamageLaw::none;
   double onset = 0.0;                  ///< s_m, of the laws that soften
@@ -55,6 +60,8 @@ struct DamageSpecification {
   /// True if the stretches were computed from a fracture energy: those of a bond then depend on the
   /// horizons of its points, and these are for the body's horizon.
   bool is_by_energy = false;
+  /// Stretches by horizon, see stretches_of; empty: proportional to the root of 1 / horizon.
+  std::vector<LawStretches> of_horizons{};
 
   /// True if some stretches are still to be computed from these data.
   [[nodiscard]] bool is_by_data() const {

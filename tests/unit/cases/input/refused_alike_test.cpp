@@ -176,9 +176,9 @@ TEST(RefusedAlikeWithPoints, WhatNeedsOneHorizon) {
   refused.emplace_back("[material]\nmicromodulus = 1.0", make(MaterialModel::bond));
   refused.back().second.material.youngs_modulus.reset();
   refused.back().second.material.micromodulus = 1.0;
-  refused.emplace_back(damage + "law = \"linear\"\nfracture_energy = 10.0\nstrength = 1e6",
+  refused.emplace_back(damage + "law = \"blended\"\nfracture_energy = 10.0\nstrength = 1e6",
                        make(MaterialModel::bond));
-  refused.back().second.material.damage.law = DamageLaw::linear;
+  refused.back().second.material.damage.law = DamageLaw::blended;
   refused.back().second.material.damage.fracture_energy = 10.0;
   refused.back().second.material.damage.strength = 1e6;
   refused.emplace_back("[quadrature]\nvolume_correction = \"exact\"\n" + bond,
