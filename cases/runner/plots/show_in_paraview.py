@@ -71,9 +71,8 @@ def show(folder: Path, uses_vtkhdf: bool):
     view = simple.GetActiveViewOrCreate("RenderView")
     view.ViewSize = SIZE
     bodies, lines = read_grids(folder, "body"), read_grids(folder, "broken_bonds")
-    simple.GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
     last = bodies.TimestepValues[-1] if len(bodies.TimestepValues) else 0.0  # a single step is no list of times
-    simple.GetAnimationScene().AnimationTime = view.ViewTime = last
+    view.ViewTime = last
     if uses_vtkhdf:
         bodies = simple.VTKHDFReader(registrationName="body in results.vtkhdf",
                                      FileName=[str(folder / "results.vtkhdf")])  # fmt: skip
