@@ -14,7 +14,7 @@ bool has_dimension(const std::string& unit) {
 }
 
 /// Pattern of a number, and a unit behind it.
-constexpr const char* quantity = R"(^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\s\d.].*$)";
+constexpr const char* quantity = R"(^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\s\d.eE].*$)";
 
 void add_limits(JsonObject& schema, const Range& range) {
   if (!range.limits_are_remote)
