@@ -73,11 +73,10 @@ BROKEN = {
     "no dimension": ("dimension = 2\n", "", 2),
     "no radius": (", radius = 2e-3", "", 15),
     "no set of a support": ('set = "corner"\n', "", 24),
-    "no body": ("[lattice]\nspacing = 1e-3\nthickness = 1.0\n", "", 2),
+    "no body": (VALID[VALID.index("[lattice]") : VALID.index("[[set]]")], "", 2),
     "no modulus": ("youngs_modulus = 200e9\n", "", 16),
     "two moduli": ("youngs_modulus = 200e9", "youngs_modulus = 200e9\nmicromodulus = 1e20", 17),
 }
-BROKEN["no body"] = (VALID[VALID.index("[lattice]") : VALID.index("[[set]]")], "", 2)
 
 
 @functools.cache
