@@ -18,7 +18,7 @@ target_compile_features(peristat_library INTERFACE cxx_std_20)
 target_include_directories(peristat_library INTERFACE
   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_link_libraries(peristat_library
-  PRIVATE peristat_cholmod peristat_muparser peristat_voropp peristat_fftw fmt::fmt ${CMAKE_DL_LIBS}
+  PRIVATE peristat_cholmod peristat_muparser peristat_voropp peristat_fftw peristat_cgal fmt::fmt ${CMAKE_DL_LIBS}
   PUBLIC OpenMP::OpenMP_CXX)
 
 # The library calls its own functions even if a program has a weak function of the same name, possibly
@@ -47,7 +47,7 @@ endif()
 install(PROGRAMS peristat TYPE BIN)
 install(TARGETS peristat RUNTIME DESTINATION ${program_folder})
 set(tools_folder share/peristat)
-foreach(tool IN ITEMS plots sweep trust)
+foreach(tool IN ITEMS plots sweep trust meshes)
   install(DIRECTORY cases/runner/${tool} DESTINATION ${tools_folder} FILES_MATCHING PATTERN *.py)
 endforeach()
 install(DIRECTORY cases DESTINATION ${tools_folder} PATTERN runner EXCLUDE)

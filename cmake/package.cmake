@@ -22,7 +22,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
 # mpirun for --ranks; and munkres, which satisfies matplotlib's fonttools: otherwise apt installs SciPy,
 # its pythran and with that a compiler.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
-    "libopenblas0-openmp, openmpi-bin, python3, python3-munkres, python3-numpy, python3-h5py, python3-matplotlib")
+    "libopenblas0-openmp, openmpi-bin, python3, python3-munkres, python3-numpy, python3-h5py, python3-matplotlib, python3-pil, python3-meshio, python3-netcdf4")
 
 # Debian's format of the licence, with indented paragraphs.
 file(READ LICENSE BSD_3_CLAUSE)

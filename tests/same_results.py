@@ -7,7 +7,7 @@ import h5py
 import numpy
 
 TABLES = ["history.csv", "iterations.csv", "decisions.csv", "broken_bonds.csv", "convergence.csv",
-          "results.xdmf"]  # fmt: skip
+          "results.xdmf", "load_displacement.csv"]  # fmt: skip
 # Durations, and files that an interruption rewrites, are no results.
 COSTS = ["seconds", "peak_memory_bytes", "factorisations", "linear_iterations"]
 

@@ -18,6 +18,7 @@
 #include "cases/runner/commands/check.hpp"
 #include "cases/runner/commands/check_tangent.hpp"
 #include "cases/runner/commands/key_reference.hpp"
+#include "cases/runner/commands/points.hpp"
 #include "cases/runner/commands/resume.hpp"
 #include "cases/runner/commands/run.hpp"
 #include "cases/runner/commands/unknown_option.hpp"
@@ -48,6 +49,7 @@ struct CommandLine {
   CalibrationQuestion calibration;
   MaterialModel calibrated_model = MaterialModel::cpd;
   BondCalibrationQuestion bond_calibration;
+  PointsQuestion points;
   std::vector<const CLI::Option*> of_bonds;  // options of calibrate for bond-based models only
 };
 
@@ -224,6 +226,18 @@ Exit calibrate(const CommandLine& line) {
   return calibrate(asked, line.bond_calibration.material.damage);
 }
 
+void add_points(CLI::App& command, CommandLine& line) {
+  PointsQuestion& asked = line.points;
+  command.add_option("mesh", asked.mesh, "mesh: .msh, .inp, .vtu, .vtk, .exo, .e, .ex2 or .med")
+      ->required();
+  command.add_option("--dimension", asked.dimension, "2 or 3 (default: 3 if the mesh has solids)")
+      ->check(CLI::Range(2, 3));
+  command.add_option("--thickness", asked.thickness, "thickness in 2D [m] (default: 1)");
+  command.add_option("--at", asked.at, "elements (default) or nodes")
+      ->transform(names<PointsAt>({{"elements", PointsAt::elements}, {"nodes", PointsAt::nodes}}));
+  command.add_option("--output", asked.output, "file of the points, for points.file");
+}
+
 RunOptions run_options(const CommandLine& line, int threads) {
   return {threads, line.quiet, line.log_file, line.overwrite, line.steps};
 }
@@ -259,6 +273,7 @@ Exit execute(const CLI::App& program, const CommandLine& line, int threads,
   if (program.got_subcommand("resume")) {
     return resume(line.results, overrides(line), run_options(line, threads), ranks);
   }
+  if (program.got_subcommand("points")) return print_points(line.points);
   const bool is_calibration = program.got_subcommand("calibrate");
   if (is_calibration && line.case_file.empty()) {
     require_lattice(*program.get_subcommand("calibrate"));
@@ -397,6 +412,9 @@ int main(int count, char** arguments) try {
   keys->add_flag("--ranks", line.lists_keys_on_ranks, "the keys that run on several ranks")
       ->excludes(table);
   program.add_subcommand("schema", "JSON schema of case files, by which editors check them");
+  add_points(
+      *program.add_subcommand("points", "counts and sizes of a mesh, and its points as text"),
+      line);
   CLI::App* const calibration = program.add_subcommand(
       "calibrate", "constants from moduli and fracture data, and back; prints JSON");
   add_calibration(*calibration, line);

@@ -22,6 +22,7 @@
 #include "src/core/stopwatch.hpp"
 #include "src/core/threads.hpp"
 #include "src/geometry/image_kinds.hpp"
+#include "src/geometry/point_sizes.hpp"
 #include "src/neighbourhood/horizon.hpp"
 #include "src/parallel/index_map.hpp"
 
@@ -30,6 +31,7 @@ namespace {
 
 /// Refuses points so far from the origin that round-off blurs the horizon.
 void require_resolved(const Points& points, double horizon) {
+  for (const double of_point : points.horizons) horizon = std::min(horizon, of_point);
   double farthest = 0.0;
   for (const double at : points.reference) farthest = std::max(farthest, std::abs(at));
   if (farthest * std::numeric_limits<double>::epsilon() <= horizon_tolerance * horizon) return;
@@ -111,11 +113,18 @@ void store_interactions(Body& body, int threads) {
 }
 
 /// Distance up to which images are needed [m]: a partial volume reaches half a cell's diagonal
-/// beyond the horizon.
-double reach_of_images(const BodySpecification& of, const Points& points) {
-  const bool is_whole = of.volume_correction == VolumeCorrection::none;
-  return of.horizon * farthest_of(of.horizon_shape, points.dimension) +
-         (is_whole ? 0.0 : points.spacing.largest());
+/// beyond the horizon, in a cloud half the size of its largest point. Collective.
+double reach_of_images(const BodySpecification& of, const Points& points,
+                       const Communicator& ranks) {
+  double beyond = 0.0;
+  if (of.volume_correction != VolumeCorrection::none) {
+    const double cross_section = cross_section_of(of, points);
+    for (Index i = 0; i < points.count(); ++i) {
+      beyond = std::max(beyond, 0.5 * size_of_point(points, i, cross_section));
+    }
+    beyond = std::max(ranks.max(beyond), points.spacing.largest());
+  }
+  return of.horizon * farthest_of(of.horizon_shape, points.dimension) + beyond;
 }
 
 /// A quantity of the points' materials; empty if no material has it.
@@ -149,7 +158,7 @@ void take_surface(Body& body, LoadSetting& loads, int threads) {
 }
 
 LoadingProgramme programme_of(const BodySpecification& of) {
-  if (of.end_time) return LoadingProgramme::of_time(*of.end_time);
+  if (of.end_time) return LoadingProgramme::of_time(*of.end_time, of.loads_over_time);
   return of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme);
 }
 
@@ -170,11 +179,22 @@ LoadSetting load_setting(const BodySpecification& of, const Points& points,
 
 }  // namespace
 
+double Body::horizon_ratio() const {
+  return points.horizons.empty() ? setting.horizon / points.spacing
+                                 : mean_horizon_ratio(points, setting.cross_section);
+}
+
+void take_horizons(Points& points, BodySpecification& of, const Communicator& ranks) {
+  if (of.horizon_per_size == 0.0) return;
+  points.horizons = horizons_of_sizes(points, of.horizon_per_size, cross_section_of(of, points));
+  of.horizon = ranks.max(largest_horizon(points));
+}
+
 std::vector<ImageKind> kinds_of_images(const BodySpecification& of, const Points& points,
                                        const Communicator& ranks) {
   const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
   return image_kinds(points, extent_of(points, ranks), of.constraints.symmetries, periods,
-                     reach_of_images(of, points));
+                     reach_of_images(of, points, ranks));
 }
 
 BondSetting bond_setting(const BodySpecification& of, const Points& points) {
@@ -185,9 +205,7 @@ BondSetting bond_setting(const BodySpecification& of, const Points& points) {
   setting.shape = of.horizon_shape;
   setting.influence = influence_named(of.material.influence);
   setting.horizon = of.horizon;
-  setting.cross_section = points.dimension == 3     ? 1.0
-                          : of.cross_section == 0.0 ? points.cross_section()
-                                                    : of.cross_section;
+  setting.cross_section = cross_section_of(of, points);
   if (points.lattice) setting.lattice = {points.spacing, points.angle, of.surface_correction};
   return setting;
 }
@@ -264,12 +282,14 @@ double expected_bytes(const Body& body, const BodySpecification& of) {
 
 }  // namespace
 
-std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of, int threads) {
+std::unique_ptr<const Body> make_body(Points points, const BodySpecification& given, int threads) {
   threads = usable_threads(threads);
   check_points(points);
+  BodySpecification of = given;
+  take_horizons(points, of, SoleRank());
   check_specification(of, points);
   const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
-  add_images(points, of.constraints.symmetries, periods, reach_of_images(of, points));
+  add_images(points, of.constraints.symmetries, periods, reach_of_images(of, points, SoleRank()));
   auto body = std::make_unique<Body>();
   begin_body(*body, std::move(points), of);
   const Index own = body->points.own();
@@ -309,11 +329,13 @@ void refuse_without_ranks(const BodySpecification& of) {
 
 }  // namespace
 
-std::unique_ptr<const Body> make_body(Part part, const BodySpecification& of,
+std::unique_ptr<const Body> make_body(Part part, const BodySpecification& given,
                                       const Communicator& ranks, int threads) {
   threads = usable_threads(threads);
-  refuse_without_ranks(of);
+  refuse_without_ranks(given);
   part.points.owned = part.owned;
+  BodySpecification of = given;
+  take_horizons(part.points, of, ranks);
   check_specification(of, part.points);
   add_images(part.points, part.images, part.reach);
   auto body = std::make_unique<Body>();

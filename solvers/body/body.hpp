@@ -44,10 +44,12 @@ struct Body {
   double seconds_neighbourhood = 0.0;
   std::unique_ptr<const IndexMap> index_map;
 
-  [[nodiscard]] double horizon_ratio() const { return setting.horizon / points.spacing; }
+  /// Horizon over spacing; with horizons of points the mean of their ratios to the points' sizes.
+  [[nodiscard]] double horizon_ratio() const;
 };
 
-/// Makes a body of points. It may still move freely: that is refused where it is solved.
+/// Makes a body of points, which get horizons of their own by horizon_per_size. It may still move
+/// freely: that is refused where it is solved.
 /// @param points with the sets that supports and loads name
 /// @param threads 0: as many as OpenMP takes by itself
 /// @throws InputError with the member that is wrong ("horizon", "material.youngs_modulus",
@@ -55,6 +57,10 @@ struct Body {
 /// @throws MemoryError if the estimate exceeds the memory available
 [[nodiscard]] std::unique_ptr<const Body> make_body(Points points, const BodySpecification& of,
                                                     int threads = 0);
+
+/// Gives points the horizons of a specification with horizon_per_size, and the specification the
+/// largest of all ranks. Collective.
+void take_horizons(Points& points, BodySpecification& of, const Communicator& ranks);
 
 /// Returns the setting of a body's bonds, as far as it does not depend on the points of this rank.
 [[nodiscard]] BondSetting bond_setting(const BodySpecification& of, const Points& points);

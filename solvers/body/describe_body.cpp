@@ -7,6 +7,7 @@
 #include "assembly/terms/points/point_term.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "src/core/number_text.hpp"
+#include "src/neighbourhood/horizon.hpp"
 #include "src/neighbourhood/share_on_horizon.hpp"
 
 namespace peristat {
@@ -15,6 +16,20 @@ namespace {
 
 /// Fraction of the bonds above which those on the horizon are a shell of a lattice.
 constexpr double least_shell = 0.01;
+
+/// Norm of a bond; with horizons of points the larger of its ratios to those that reach it, times
+/// the setting's horizon.
+double norm_in_setting(const Body& body, Index i, Index j) {
+  const Points& points = body.points;
+  const double norm = norm_between(points, i, j, body.setting.shape);
+  if (points.horizons.empty()) return norm;
+  double largest = 0.0;
+  for (const Index end : {i, j}) {
+    const double ratio = norm / points.horizons[std::size_t(end)];
+    if (ratio <= inclusive_radius(1.0)) largest = std::max(largest, ratio);
+  }
+  return largest * body.setting.horizon;
+}
 
 }  // namespace
 
@@ -39,9 +54,9 @@ std::vector<std::string> describe_interactions(const Body& body) {
                                 storage.fits() ? "stored" : "found anew in every pass",
                                 bytes_text(storage.needed), bytes_text(storage.room)));
   }
-  const double on_horizon = share_on_horizon(
-      body.model.bonds(), body.setting,
-      [&](Index i, Index j) { return norm_between(body.points, i, j, body.setting.shape); });
+  const double on_horizon =
+      share_on_horizon(body.model.bonds(), body.setting,
+                       [&](Index i, Index j) { return norm_in_setting(body, i, j); });
   if (on_horizon > least_shell) {
     lines.push_back(
         fmt::format("{:.2g} % of the bonds are exactly as long as the horizon, so that round-off "

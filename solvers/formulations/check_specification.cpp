@@ -9,6 +9,7 @@
 #include "solvers/formulations/specification/check_damage.hpp"
 #include "solvers/formulations/specification/for_each_material.hpp"
 #include "solvers/formulations/specification/require.hpp"
+#include "src/geometry/point_sizes.hpp"
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 #include "src/neighbourhood/horizon.hpp"
 
@@ -21,6 +22,8 @@ void check_points_and_operator(const BodySpecification& of, const Points& points
   const std::string model = name_of(of.material.model);
   require_absent(!points.neighbours.empty() && !options.has(Option::given_neighbours),
                  "points.neighbours", is_for(Option::given_neighbours));
+  require_absent(!points.horizons.empty() && !options.has(Option::horizons), "points.horizons",
+                 is_for(Option::horizons));
   const bool has_images = !of.constraints.symmetries.empty() || !of.constraints.periods.empty();
   if (has_images && !options.has(Option::images)) {
     throw InputError("material.model", model,
@@ -94,12 +97,13 @@ void check_scatter(const MaterialSpecification& material, const std::string& key
   using Quantity = ScatterSpecification::Quantity;
   bool is_known[2] = {false, false};
   for (std::size_t k = 0; k < material.scatter.size(); ++k) {
-    const auto& [of, distribution, field] = material.scatter[k];
+    const auto& [of, distribution, field, factor] = material.scatter[k];
     const std::string table = key + ".scatter[" + std::to_string(k) + "]";
     require_absent(std::exchange(is_known[int(of)], true), table + ".of",
                    "another table of this material has the same quantity");
     require_absent(of == Quantity::strength && !material.damage.breaks_bonds(), table + ".of",
                    "strength needs a law of damage by stretches");
+    if (!factor.empty()) continue;
     require_within(field.modulus, 1.0, 1e3, table + ".weibull_modulus");
     require(std::isfinite(field.correlation_length) && field.correlation_length >= 0.0,
             table + ".correlation_length", number_text(field.correlation_length),
@@ -215,8 +219,66 @@ void check_corrections(const BodySpecification& of, const Points& points) {
                  "of volumes inside a body is not known; give \"energy\" or \"none\"");
 }
 
+/// Refuses settings that have one horizon only, for a body whose points have their own.
+void check_for_horizons(const BodySpecification& of) {
+  const std::string with = " with a horizon per point";
+  for_each_material(of, [&](const MaterialSpecification& material, const std::string& key) {
+    const DamageSpecification& damage = material.damage;
+    const std::string table = key + ".damage.";
+    require_absent(material.micromodulus.has_value(), key + ".micromodulus",
+                   "belongs to one horizon; give youngs_modulus" + with);
+    require_absent(damage.law == DamageLaw::energy_density, table + "law",
+                   "\"energy_density\" belongs to one horizon, that of its band of failed points; "
+                   "take a law of stretches" +
+                       with);
+    if (!damage.is_by_data() || !damage.fracture_energy) return;
+    const std::string alone =
+        "changes the shape of the law with the horizon beside fracture_energy;" + with +
+        " give fracture_energy alone, or strength or stretches";
+    require_absent(damage.strength.has_value(), table + "strength", alone);
+    require_absent(damage.onset != 0.0, table + "onset", alone);
+    require_absent(damage.peak != 0.0, table + "peak", alone);
+  });
+  for (std::size_t k = 0; k < of.loads.size(); ++k) {
+    require_absent(of.loads[k].depth == Depth::horizon, "loads[" + std::to_string(k) + "].depth",
+                   "\"horizon\" is one depth for all points; take \"row\"" + with);
+  }
+  require_absent(of.is_convolved(), "force_operator", "\"fft\" has one; take \"bonds\"" + with);
+  require_absent(of.horizon_shape != HorizonShape::ball, "horizon_shape",
+                 "must be \"ball\"" + with);
+  require_absent(Kernel{.volume_correction = of.volume_correction}.has_exact_shares(),
+                 "volume_correction", "must be \"none\" or \"linear\"" + with);
+  if (of.horizon_per_size != 0.0) require_within(of.horizon_per_size, 1.0, 1000.0, "horizon");
+}
+
+/// Refuses horizons of points that are no horizons of a cloud, or too small or large for its sizes.
+void check_horizons_of_points(const BodySpecification& of, const Points& points) {
+  const std::string key = "points.horizons";
+  require_absent(points.lattice.has_value(), key, "is for points of a file; a lattice has one");
+  require_absent(!points.neighbours.empty(), key,
+                 "is for neighbours found by the search, but the points' neighbours are given");
+  const double largest = largest_horizon(points);
+  // A part of a body may lack the point with the largest one.
+  const bool is_largest = points.owned
+                              ? largest <= inclusive_radius(of.horizon)
+                              : std::abs(largest - of.horizon) <= horizon_tolerance * largest;
+  require(is_largest, "horizon", number_text(of.horizon),
+          "must be the largest of the points' horizons, " + number_text(largest) + " m");
+  const double cross_section = cross_section_of(of, points);
+  for (Index i = 0; i < points.count(); ++i) {
+    const double horizon = points.horizons[std::size_t(i)];
+    const double size = size_of_point(points, i, cross_section);
+    require(horizon >= size * (1.0 - horizon_tolerance), key, number_text(horizon),
+            "is smaller than the size of its point at " +
+                place_text(points.position(i), points.dimension) + " m, " + number_text(size) +
+                " m");
+    require_summable(of.material, points.dimension, key, number_text(horizon), horizon / size);
+  }
+}
+
 void check_horizon(const BodySpecification& of, const Points& points) {
   require_positive(of.horizon, "horizon");
+  if (!points.horizons.empty()) return check_horizons_of_points(of, points);
   require(of.horizon >= points.spacing.largest() * (1.0 - horizon_tolerance), "horizon",
           number_text(of.horizon),
           points.spacing.is_square() ? "horizon smaller than the mean spacing of the points, " +
@@ -293,6 +355,7 @@ void check_all_materials(const BodySpecification& of, int dimension, const Optio
   }
   check_regions(of, dimension, options);
   check_mirrored_fibres(of, dimension);
+  if (of.horizon_per_size != 0.0) check_for_horizons(of);
 }
 
 }  // namespace
@@ -304,8 +367,9 @@ void check_materials(const BodySpecification& of, int dimension) {
 void check_specification(const BodySpecification& of, const Points& points) {
   check_points_and_operator(of, points);
   check_all_materials(of, points.dimension, options_of(of));
-  check_horizon(of, points);
   check_cross_section(of, points);
+  if (!points.horizons.empty()) check_for_horizons(of);
+  check_horizon(of, points);
   check_corrections(of, points);
   check_horizon_shape(of, points);
   const Formulation& formulation = formulation_of(of);

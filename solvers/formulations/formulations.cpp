@@ -125,7 +125,9 @@ void find_stretches(const Formulation& formulation, MaterialSpecification& mater
     return;
   }
   const FractureScale scale = fracture_scale_of(material, key, setting, spacing);
+  const bool is_by_energy = material.damage.fracture_energy.has_value();
   material.damage = with_stretches(material.damage, key, scale);
+  material.damage.is_by_energy = is_by_energy;
 }
 
 }  // namespace

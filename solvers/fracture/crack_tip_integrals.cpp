@@ -9,6 +9,7 @@
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/vector_verbs.hpp"
+#include "src/geometry/point_sizes.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -156,16 +157,18 @@ void CrackTipIntegrals::check_ring(const std::string& key) const {
 /// [m].
 double CrackTipIntegrals::front_length(Index points) const {
   if (points_.dimension == 2) return setting_.cross_section;
+  const bool has_sizes = !points_.horizons.empty();
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (Index i = 0; i < points; ++i) {
     const Coordinates at = frame_.components(points_.position(i));
     if (!points_.owns(i) || std::hypot(at[0], at[1]) > tip_.outer) continue;
-    least = std::min(least, at[2]);
-    most = std::max(most, at[2]);
+    const double half = has_sizes ? 0.5 * size_of_point(points_, i, setting_.cross_section) : 0.0;
+    least = std::min(least, at[2] - half);
+    most = std::max(most, at[2] + half);
   }
   least = -sums().largest_of_all(-least);
   most = sums().largest_of_all(most);
-  return most - least + double(points_.spacing);
+  return most - least + (has_sizes ? 0.0 : double(points_.spacing));
 }
 
 void CrackTipIntegrals::weigh() {

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
 
 #include "src/core/input_error.hpp"
 #include "src/geometry/lattice_frame.hpp"
+#include "src/geometry/point_sizes.hpp"
 
 namespace peristat {
 namespace {
@@ -46,21 +48,43 @@ std::array<double, 2> interval_of(std::vector<double> places, double period) {
   return interval;
 }
 
+/// Largest width of the strips nearest to a place, on a line or, with a period, a circle.
+double width_at(double place, const std::vector<double>& middles, const std::vector<double>& widths,
+                double period) {
+  double nearest = std::numeric_limits<double>::infinity(), width = 0.0;
+  for (std::size_t k = 0; k < middles.size(); ++k) {
+    double away = std::abs(middles[k] - place);
+    if (period > 0.0) away = std::abs(std::remainder(away, period));
+    if (away > nearest) continue;
+    width = away < nearest ? widths[k] : std::max(width, widths[k]);
+    nearest = away;
+  }
+  return width;
+}
+
 /// Begin and end of cracks along an axis [m]; both 0 without a crack.
 std::array<double, 2> extent(const Points& points, Members set, int axis, const CrackState& crack) {
   const double spacing = points.angle == 0.0 ? points.spacing.along(axis) : double(points.spacing);
-  std::vector<double> middles;
+  std::vector<double> middles, widths;
   for (const BondEnds& ends : crack.separated) {
     const auto [i, j] = ends;
     const double a = points.position(i)[std::size_t(axis)],
                  b = points.position(j)[std::size_t(axis)];
-    if (std::abs(b - a) <= 0.5 * spacing && touches(ends, set)) middles.push_back(0.5 * (a + b));
+    const double width = points.horizons.empty()
+                             ? spacing
+                             : 0.5 * (size_of_point(points, i, crack.cross_section) +
+                                      size_of_point(points, j, crack.cross_section));
+    if (std::abs(b - a) > 0.5 * width || !touches(ends, set)) continue;
+    middles.push_back(0.5 * (a + b));
+    widths.push_back(width);
   }
   middles = crack.of_all(std::move(middles));
+  widths = crack.of_all(std::move(widths));
   if (middles.empty()) return {0.0, 0.0};
-  const auto [begin, end] =
-      interval_of(std::move(middles), period_along(points, std::size_t(axis)));
-  return {begin - 0.5 * spacing, end + 0.5 * spacing};
+  const double period = period_along(points, std::size_t(axis));
+  const auto [begin, end] = interval_of(middles, period);
+  return {begin - 0.5 * width_at(begin, middles, widths, period),
+          end + 0.5 * width_at(end, middles, widths, period)};
 }
 
 /// Faces between the cells of a lattice. Shifted points belong to the site that they were moved

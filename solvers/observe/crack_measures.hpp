@@ -26,6 +26,7 @@ struct CrackState {
   double dissipated = 0.0;                  ///< by damage [J]
   CrackGrowth before{};                     ///< when the area through the set last grew
   const Communicator& ranks = sole_rank();  ///< with other separated bonds
+  double cross_section = 1.0;               ///< of the body, for sizes of points with own horizons
 
   /// Values of all ranks. Collective.
   [[nodiscard]] std::vector<double> of_all(std::vector<double> mine) const {
@@ -37,8 +38,9 @@ struct CrackState {
 /// have an end in the set.
 ///
 /// - crack_length [m]: extent along the axis of the midpoints of bonds that run across it, whose
-///   ends are no more than half a spacing apart along it; each represents a strip of one spacing.
-///   Inclined bonds are left out: it is not known where along them the crack passes.
+///   ends are no more than half a spacing apart along it; each represents a strip of one spacing,
+///   with horizons of points the mean size of its ends. Inclined bonds are left out: it is not
+///   known where along them the crack passes.
 /// - crack_begin, crack_end [m]: where that extent begins and ends along the axis.
 /// - crack_angle [degree], in 2D: angle from the axis to the crack, towards the other axis, -90 to
 ///   90: that of the line of least squares through the midpoints of the cell faces below, weighted

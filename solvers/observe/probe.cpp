@@ -10,9 +10,9 @@
 
 #include "solvers/observe/point_fields.hpp"
 #include "solvers/observe/probe_places.hpp"
-#include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
 #include "src/dense/least_squares.hpp"
+#include "src/geometry/expression_at_points.hpp"
 #include "src/parallel/collectives.hpp"
 #include "src/parallel/communicator.hpp"
 
@@ -125,14 +125,14 @@ double error_over_set(const ProbeSpecification& probe, const RecordedPoints& poi
                       const PointValues& fields, const LoadValues& loads) {
   std::vector<Expression> expected;
   for (const std::string& text : probe.expected) {
-    expected.emplace_back(text, points.dimension(), points.points().spacing, loads.names);
+    expected.push_back(expression_of(text, points.points(), loads.names));
   }
   const auto squared = [&](Index point) {
     const std::vector<double> values = values_at(probe, points.dimension(), fields, point);
     double sum = 0.0;
     for (std::size_t c = 0; c < values.size(); ++c) {
       const double difference =
-          values[c] - expected[c](points.points().position(point), loads.values);
+          values[c] - value_at(expected[c], points.points(), point, loads.values);
       sum += difference * difference;
     }
     return std::vector<double>{sum};

@@ -33,6 +33,7 @@ Points only_recorded(const RecordedPoints& points) {
   const auto count = std::size_t(points.count());
   kept.reference.resize(count * std::size_t(kept.dimension));
   kept.volume.resize(count);
+  for (auto& [name, values] : kept.columns) values.resize(count);
   for (auto& [name, members] : kept.sets) {
     std::erase_if(members, [&](Index point) { return std::size_t(point) >= count; });
   }

@@ -37,7 +37,8 @@ CrackState SeparatedBonds::cracks(const StepRecord& record, const CrackGrowth& b
               (record.motion ? record.motion->kinetic_energy : 0.0),
           record.dissipated_energy,
           before,
-          points_.ranks()};
+          points_.ranks(),
+          body_.setting.cross_section};
 }
 
 }  // namespace peristat

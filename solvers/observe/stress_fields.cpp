@@ -55,13 +55,13 @@ std::vector<double> symmetric_parts(const std::vector<double>& tensors, std::siz
 
 std::vector<double> missing_neighbourhood(const Body& body, const StateView& at,
                                           const std::vector<char>& is_determined) {
-  const double whole = body.setting.lattice_moment(0, body.points.spacing);
+  const std::vector<double> whole = whole_volumes(body.points, body.setting);
   const DamagedNetwork network = damaged_network(body.model, at.history);
   std::vector<double> missing =
       seen_volumes(body.points, *network.bonds, body.setting, network.broken);
   missing.resize(is_determined.size());
   for (std::size_t i = 0; i < missing.size(); ++i) {
-    missing[i] = is_determined[i] ? 1.0 - missing[i] / whole : 1.0;
+    missing[i] = is_determined[i] ? 1.0 - missing[i] / whole[i] : 1.0;
   }
   return missing;
 }

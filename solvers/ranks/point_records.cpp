@@ -29,7 +29,7 @@ PointRecords::PointRecords(const Part& like) : dimension_(like.points.dimension)
   }
   corners_ = corners_of(points);
   const std::size_t numbers = (points.sets.size() + sets_per_number - 1) / sets_per_number;
-  records_.doubles = dimension_ + 1 + 2 * corners_;
+  records_.doubles = dimension_ + 1 + 2 * corners_ + int(points.columns.size());
   records_.integers = 2 + int(numbers);
   of_sets_.assign(numbers, std::vector<long long>(points.volume.size(), 0));
   for (const auto& [name, members] : points.sets) {
@@ -49,6 +49,9 @@ void PointRecords::add(const Part& part, Index point, int owner) {
     for (const auto& corner : part.points.polygons.of(std::size_t(point))) {
       records_.values.insert(records_.values.end(), corner.begin(), corner.end());
     }
+  }
+  for (const auto& [name, values] : part.points.columns) {
+    records_.values.push_back(values[std::size_t(point)]);
   }
   records_.numbers.push_back(part.number[std::size_t(point)]);
   records_.numbers.push_back(owner);
@@ -78,6 +81,8 @@ void PointRecords::append_to(Part& part, const Records& received, bool as_ghosts
       for (auto& corner : cell) corner = {at[0], at[1]}, at += 2;
       points.polygons.append(cell);
     }
+    const double* of_column = value + dimension_ + 1 + 2 * corners_;
+    for (auto& [name, values] : points.columns) values.push_back(*of_column++);
     part.number.push_back(number[0]);
     if (as_ghosts) part.owner.push_back(int(number[1]));
   }
@@ -93,6 +98,7 @@ Part empty_part(const Part& like) {
   part.points.lattice = like.points.lattice;
   if (!like.points.polygons.empty()) part.points.polygons.offset.push_back(0);
   for (const auto& [name, members] : like.points.sets) part.points.sets[name];
+  for (const auto& [name, values] : like.points.columns) part.points.columns[name];
   part.whole = like.whole;
   return part;
 }

@@ -5,12 +5,12 @@
 
 namespace peristat {
 
-/// Points as records: position, volume, cell, number in the whole body, owner and sets.
+/// Points as records: position, volume, cell, columns, number in the whole body, owner and sets.
 class PointRecords {
  public:
   /// @param like a part whose dimension, spacing and names of sets the points share
-  /// @throws std::logic_error for points with more than positions, volumes, a lattice's cells and
-  ///         sets
+  /// @throws std::logic_error for points with more than positions, volumes, a lattice's cells,
+  ///         columns and sets
   explicit PointRecords(const Part& like);
 
   /// @param owner rank that owns the point from now on

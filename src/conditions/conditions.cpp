@@ -14,6 +14,7 @@
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/body_cells.hpp"
+#include "src/geometry/expression_at_points.hpp"
 #include "src/geometry/nearest_point.hpp"
 #include "src/measures/small_algebra.hpp"
 
@@ -81,8 +82,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
       if (!text) continue;
       const std::string key = indexed(table + ".displacement", std::size_t(c));
       prescriptions_.push_back({key, supports[k].set, &members, c, with_key(key, [&] {
-                                  return Expression(*text, points.dimension, points.spacing,
-                                                    parameters);
+                                  return expression_of(*text, points, parameters);
                                 })});
       for (Index point : members) prescribed_[std::size_t(point) * points.dimension + c] = 1;
     }
@@ -103,8 +103,9 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     for (int c = 0; c < points.dimension; ++c) {
       const std::string key = indexed(table + ".value", std::size_t(c));
       loads_.push_back({key, on, c, with_key(key, [&] {
-                          return Expression(loads[k].value[c], total ? 0 : points.dimension,
-                                            points.spacing, parameters);
+                          return total ? Expression(loads[k].value[c], 0, points.spacing,
+                                                    parameters, points.columns)
+                                       : expression_of(loads[k].value[c], points, parameters);
                         })});
     }
   }
@@ -263,8 +264,7 @@ void Conditions::add_pressure(const LoadSpecification& load, const LoadSetting& 
              [&] { add_pressed_faces(points_, load, table, pressed_, setting.index_map.ranks()); });
   const std::string key = table + ".value";
   pressures_.push_back({key, first, pressed_.face.size(), with_key(key, [&] {
-                          return Expression(load.value[0], points_.dimension, points_.spacing,
-                                            programme_.names());
+                          return expression_of(load.value[0], points_, programme_.names());
                         })});
 }
 
@@ -272,8 +272,7 @@ void Conditions::add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSe
   const auto add = [&](const std::string& key, const std::string& text, std::vector<Index> points,
                        std::vector<double> factor) {
     eigenstretches_.push_back({key, std::move(points), std::move(factor), with_key(key, [&] {
-                                 return Expression(text, points_.dimension, points_.spacing,
-                                                   programme_.names());
+                                 return expression_of(text, points_, programme_.names());
                                })});
   };
   for (std::size_t k = 0; k < eigenstrains.given.size(); ++k) {
@@ -314,7 +313,7 @@ SharedEnvironment Conditions::environment(const LoadPoint& at) const {
   for (const auto& [key, points, factor, value] : eigenstretches_) {
     with_key(key, [&] {
       for (std::size_t k = 0; k < points.size(); ++k) {
-        const double stretch = at.preload * factor[k] * value(points_.position(points[k]), loads);
+        const double stretch = at.preload * factor[k] * value_at(value, points_, points[k], loads);
         double& sum = made->eigenstretch[std::size_t(points[k])];
         sum += stretch;
         if (!(sum > -1.0)) {
@@ -396,7 +395,8 @@ void Conditions::prescribe(const LoadPoint& at, std::span<double> displacement) 
   for (const Prescription& prescription : prescriptions_) {
     with_key(prescription.key, [&] {
       for (Index point : *prescription.points) {
-        const double value = at.preload * prescription.displacement(points_.position(point), loads);
+        const double value =
+            at.preload * value_at(prescription.displacement, points_, point, loads);
         double& first = displacement[dof_of(prescription, point)];
         if (first_.empty() || first_[dof_of(prescription, point)] == &prescription) {
           first = value;
@@ -428,7 +428,8 @@ void Conditions::external_force(const LoadPoint& at, std::span<double> force) co
         const auto& [points, amount, spread_over] = *load.on;
         for (std::size_t k = 0; k < points.size(); ++k) {
           force[std::size_t(points[k]) * points_.dimension + load.component] +=
-              at.preload * load.value(points_.position(points[k]), loads) * amount[k] / spread_over;
+              at.preload * value_at(load.value, points_, points[k], loads) * amount[k] /
+              spread_over;
         }
       });
     }

@@ -5,7 +5,7 @@
 
 #include "src/conditions/points_of_set.hpp"
 #include "src/conditions/with_key.hpp"
-#include "src/core/expression.hpp"
+#include "src/geometry/expression_at_points.hpp"
 
 namespace peristat {
 namespace {
@@ -25,9 +25,9 @@ void add_field_of_place(const Points& points, const std::string& set, const std:
                         std::size_t offset, std::span<double> values) {
   const std::vector<Index> members = members_of(points, set, key + ".set");
   with_key(key + '.' + member, [&] {
-    const Expression value(text, points.dimension, points.spacing);
+    const Expression value = expression_of(text, points);
     for (const Index point : members) {
-      values[std::size_t(point) * stride + offset] += value(points.position(point));
+      values[std::size_t(point) * stride + offset] += value_at(value, points, point);
     }
   });
 }

@@ -7,8 +7,8 @@
 
 namespace peristat {
 
-/// Adds the value of an expression of x, y and z to the entries of the points of a set; of all
-/// points but images if the set is empty.
+/// Adds the value of an expression of x, y, z and the points' columns to the entries of the points
+/// of a set; of all points but images if the set is empty.
 /// @param key    of the table, for errors: "initial[0]"
 /// @param member of the table that has the expression: "velocity[1]"
 /// @param stride, offset position of a point's entry: values[point * stride + offset]

@@ -9,6 +9,7 @@
 #include "src/conditions/with_key.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/expression_at_points.hpp"
 #include "src/measures/small_algebra.hpp"
 #include "src/parallel/communicator.hpp"
 
@@ -82,10 +83,8 @@ Foundations::Foundations(const Points& points,
     Foundation made{of.name, table, springs_.size(), springs_.size() + springs.size(), {}};
     for (int c = 0; c < points.dimension; ++c) {
       const std::string key = indexed(table + ".displacement", std::size_t(c));
-      made.ground.push_back(with_key(key, [&] {
-        return Expression(of.displacement[std::size_t(c)], points.dimension, points.spacing,
-                          parameters);
-      }));
+      made.ground.push_back(with_key(
+          key, [&] { return expression_of(of.displacement[std::size_t(c)], points, parameters); }));
     }
     foundations_.push_back(std::move(made));
     springs_.insert(springs_.end(), springs.begin(), springs.end());
@@ -117,8 +116,9 @@ std::vector<double> Foundations::ground(std::span<const double> loads) const {
   for (const Foundation& foundation : foundations_) {
     for (std::size_t k = foundation.first; k < foundation.last; ++k) {
       for (std::size_t c = 0; c < foundation.ground.size(); ++c) {
-        with_key(indexed(foundation.table + ".displacement", c),
-                 [&] { ground.push_back(foundation.ground[c](place_[k], loads)); });
+        with_key(indexed(foundation.table + ".displacement", c), [&] {
+          ground.push_back(foundation.ground[c](place_[k], loads, springs_[k].point));
+        });
       }
     }
   }

@@ -26,6 +26,40 @@ void check(const std::vector<double>& table, std::size_t entries, const std::str
   }
 }
 
+void check(const TimeTable& table, double end, const std::string& key) {
+  if (table.size() < 2) throw InputError(key, "", "needs at least two pairs of a time and a value");
+  if (table.front()[0] != 0.0) {
+    throw InputError(key, number_text(table.front()[0]), "must begin at the time 0");
+  }
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    for (const double number : table[k]) {
+      if (!std::isfinite(number)) throw InputError(key, number_text(number), "must be finite");
+    }
+    if (k > 0 && !(table[k][0] > table[k - 1][0])) {
+      throw InputError(key, number_text(table[k][0]),
+                       "must be later than the time before, " + number_text(table[k - 1][0]) +
+                           " s: the times of a table ascend");
+    }
+  }
+  constexpr double round_off = 1e-9;
+  if (table.back()[0] < end * (1.0 - round_off)) {
+    throw InputError(key, number_text(table.back()[0]),
+                     "ends before the motion, which ends at " + number_text(end) +
+                         " s; add a pair for the value from there on");
+  }
+}
+
+double value_at(const TimeTable& table, double time) {
+  if (time <= table.front()[0]) return table.front()[1];
+  if (time >= table.back()[0]) return table.back()[1];
+  const auto after =
+      std::ranges::upper_bound(table, time, {}, [](const auto& pair) { return pair[0]; });
+  const auto [from, low] = *(after - 1);
+  const auto [to, high] = *after;
+  const double share = (time - from) / (to - from);
+  return (1.0 - share) * low + share * high;
+}
+
 }  // namespace
 
 LoadingProgramme::LoadingProgramme(std::vector<std::vector<double>> tables)
@@ -48,21 +82,36 @@ std::vector<std::string> LoadingProgramme::names(std::size_t parameters) {
   return names;
 }
 
-LoadingProgramme LoadingProgramme::of_time(double end) {
+LoadingProgramme LoadingProgramme::of_time(double end, std::vector<TimeTable> loads) {
   if (!(end > 0.0) || !std::isfinite(end)) {
     throw InputError("end_time", number_text(end), "must be positive and finite [s]");
   }
+  if (loads.size() > most_parameters) {
+    throw InputError("programme", std::to_string(loads.size()),
+                     "must have at most " + std::to_string(most_parameters) + " tables");
+  }
+  for (std::size_t k = 0; k < loads.size(); ++k) {
+    check(loads[k], end, "programme[" + std::to_string(k) + "]");
+  }
   LoadingProgramme programme;
   programme.end_time_ = end;
+  programme.over_time_ = std::move(loads);
   return programme;
 }
 
 std::vector<std::string> LoadingProgramme::names() const {
-  return is_of_time() ? std::vector<std::string>{"t"} : names(parameters());
+  if (!is_of_time()) return names(parameters());
+  std::vector<std::string> all = names(over_time_.size());
+  all.insert(all.begin(), "t");
+  return all;
 }
 
 std::vector<double> LoadingProgramme::at(double stage) const {
-  if (is_of_time()) return {stage};
+  if (is_of_time()) {
+    std::vector<double> values{stage};
+    for (const TimeTable& table : over_time_) values.push_back(value_at(table, stage));
+    return values;
+  }
   const double entry = std::clamp(std::floor(stage), 0.0, end() - 1.0);
   const double share = stage - entry;
   const auto before = static_cast<std::size_t>(entry);

@@ -1,14 +1,19 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 namespace peristat {
 
+/// A load parameter over time: pairs of a time [s] and the value then, linear in between.
+using TimeTable = std::vector<std::array<double, 2>>;
+
 /// The load parameters `load`, `load2`, … along a path. Each has a table of values. The *stage*
 /// runs from 0 over 1, 2, … and counts the tables' entries; between two entries a parameter varies
 /// linearly. Without tables there is one parameter, the load factor, which equals the stage and
-/// goes from 0 to 1. In a programme of time the one parameter and the stage are the time.
+/// goes from 0 to 1. In a programme of time the stage is the time `t`, the first parameter, and
+/// load parameters are given over time.
 class LoadingProgramme {
  public:
   static constexpr std::size_t most_parameters = 4;
@@ -22,9 +27,11 @@ class LoadingProgramme {
   ///         one that is not finite
   explicit LoadingProgramme(std::vector<std::vector<double>> tables);
 
-  /// Programme with the one parameter `t`, the time, which is also the stage [s].
-  /// @throws InputError ("end_time") unless the end is positive and finite
-  [[nodiscard]] static LoadingProgramme of_time(double end);
+  /// Programme with the parameter `t`, the time, which is also the stage [s].
+  /// @param loads tables of `load`, `load2`, …
+  /// @throws InputError ("end_time") unless the end is positive and finite; ("programme[k]") for
+  ///         too many tables, and one whose times do not ascend from 0 to the end
+  [[nodiscard]] static LoadingProgramme of_time(double end, std::vector<TimeTable> loads = {});
 
   /// Names of so many parameters: "load", "load2", …
   [[nodiscard]] static std::vector<std::string> names(std::size_t parameters);
@@ -34,6 +41,7 @@ class LoadingProgramme {
 
   [[nodiscard]] std::size_t parameters() const { return tables_.size(); }
   [[nodiscard]] const std::vector<std::vector<double>>& tables() const { return tables_; }
+  [[nodiscard]] const std::vector<TimeTable>& loads_over_time() const { return over_time_; }
 
   /// Values of the parameters.
   [[nodiscard]] std::vector<double> at(double stage) const;
@@ -52,7 +60,8 @@ class LoadingProgramme {
 
  private:
   std::vector<std::vector<double>> tables_;
-  double end_time_ = 0.0;  // of a programme of time [s]
+  double end_time_ = 0.0;             // of a programme of time [s]
+  std::vector<TimeTable> over_time_;  // likewise
 };
 
 }  // namespace peristat

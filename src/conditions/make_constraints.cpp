@@ -87,7 +87,8 @@ class Maker {
   void prescribe(const std::string& key, const std::string& text, std::size_t of_dof,
                  double factor = 1.0, const Coordinates* place = nullptr) {
     try {
-      Expression value(text, place ? dimension() : 0, points_.spacing, parameters_);
+      Expression value(text, place ? dimension() : 0, points_.spacing, parameters_,
+                       points_.columns);
       made_.prescriptions.push_back(
           {key, of_dof, place ? *place : Coordinates{}, factor, std::move(value)});
     } catch (const InputError& error) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "src/conditions/loaded_facets.hpp"
 #include "src/conditions/points_of_set.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/body_cells.hpp"
@@ -147,6 +148,10 @@ void add_pressed_faces(const Points& points, const LoadSpecification& load, cons
     throw InputError(key + ".side", name(*load.side), "the body has no such side");
   }
   if (load.set.empty() && !load.side) throw InputError(key, "", "needs a side or a set");
+  if (points.mesh) {
+    add_pressed_facets(points, load, key, boundary);
+    return;
+  }
   const BodyCells cells(points, ranks);
   if (points.count() > 0) {  // a part may have none
     boundary.cross_section =

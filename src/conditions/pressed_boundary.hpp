@@ -11,9 +11,9 @@
 
 namespace peristat {
 
-/// Exposed faces of the cells of a lattice body, on which pressures act. A corner moves with the
-/// body's points around it, in the same way for all faces that share it, so that these stay
-/// together as the body deforms.
+/// Exposed faces of the cells of a lattice body, or facets of a mesh, on which pressures act. A
+/// corner moves with the body's points around it, in the same way for all faces that share it, so
+/// that these stay together as the body deforms.
 struct PressedBoundary {
   std::vector<Coordinates> corner;  ///< in the reference [m]
   std::vector<std::vector<Index>>
@@ -26,7 +26,7 @@ struct PressedBoundary {
 };
 
 /// Adds to a boundary the faces of a load's `side`, or the exposed faces of the points of its `set`
-/// (on its side alone, if it has both).
+/// (on its side alone, if it has both). For a mesh see loaded_facets.hpp.
 /// @param key of the load, for errors
 /// @param ranks that have parts of the body with ghosts as far as reach_of_pressures (collective):
 ///        each rank gets the faces whose corners move with points of its own. Null: the body is

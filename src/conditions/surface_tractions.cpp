@@ -7,6 +7,7 @@
 #include "src/conditions/with_key.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/expression_at_points.hpp"
 #include "src/measures/small_algebra.hpp"
 #include "src/parallel/communicator.hpp"
 
@@ -79,8 +80,7 @@ void SurfaceTractions::add(const Points& points, const LoadSpecification& load,
                                            : "needs the components xx, yy, zz, xy, yz, xz");
   }
   for (const std::string& text : texts) {
-    with_key(made.key,
-             [&] { made.value.emplace_back(text, points.dimension, points.spacing, parameters); });
+    with_key(made.key, [&] { made.value.push_back(expression_of(text, points, parameters)); });
   }
   if (load.kind != LoadSpecification::Kind::stress) refuse_one_sided(points, made, prescribed);
   loads_.push_back(std::move(made));

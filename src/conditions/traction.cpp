@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/conditions/loaded_facets.hpp"
 #include "src/conditions/points_of_set.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/body_cells.hpp"
@@ -48,6 +49,7 @@ Face face_of(const Points& points, const BodyCells& cells, const LoadSpecificati
 
 TractionAreas traction_areas(const Points& points, const LoadSpecification& load, double horizon,
                              const std::string& key, const Communicator& ranks) {
+  if (points.mesh) return facet_areas(points, load, key);
   const BodyCells cells(points, ranks);
   const auto [row, side] = face_of(points, cells, load, key);
   const Index owned = points.owned.value_or(points.own());

@@ -22,7 +22,8 @@ struct TractionAreas {
 /// @param key of the load, for errors
 /// @param ranks that have parts of the body (collective): each rank gets the areas of the points
 ///        that it owns
-/// @throws InputError for points on no lattice, a side that the body does not have, and a set that
+/// For a mesh see loaded_facets.hpp.
+/// @throws InputError for points of a cloud, a side that the body does not have, and a set that
 ///         does not lie in exactly one plane of points on the boundary
 [[nodiscard]] TractionAreas traction_areas(const Points& points, const LoadSpecification& load,
                                            double horizon, const std::string& key,

@@ -9,6 +9,7 @@
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/counts_bond.hpp"
+#include "src/geometry/mesh_interior.hpp"
 #include "src/geometry/shape_boundary.hpp"
 #include "src/measures/small_algebra.hpp"
 
@@ -343,14 +344,14 @@ CutBonds cut_bonds(Bonds& bonds, const Points& points, const std::vector<Crack>&
     const auto [a, b] = std::minmax({points.position(i), points.position(j)});
     const Box box = box_around(a, b);
     const double slack = 2.0 * touching_tolerance * bonds.length(bond);  // more than cuts allows
-    for (std::size_t k = 0; k < cracks.size(); ++k) {
-      if (!overlap(box, boxes[k], slack) || !cuts(cracks[k], a, b)) continue;
-      removed.weight[i] += bonds.weight(bond);
-      removed.weight[j] += bonds.weight(bond);
-      removed.ends.push_back({i, j});
-      return true;
-    }
-    return false;
+    bool is_cut = points.interior && points.interior->leaves(a, b, points.images.kinds);
+    for (std::size_t k = 0; k < cracks.size() && !is_cut; ++k)
+      is_cut = overlap(box, boxes[k], slack) && cuts(cracks[k], a, b);
+    if (!is_cut) return false;
+    removed.weight[i] += bonds.weight(bond);
+    removed.weight[j] += bonds.weight(bond);
+    removed.ends.push_back({i, j});
+    return true;
   });
   return removed;
 }

@@ -76,7 +76,8 @@ struct CutBonds {
                                                           const std::vector<BondEnds>& cut,
                                                           const Points& points);
 
-/// Removes the bonds that any of the cracks cuts; the others keep their order, length and weight.
+/// Removes the bonds that any of the cracks cuts or that leave the mesh of the points; the others
+/// keep their order, length and weight.
 [[nodiscard]] CutBonds cut_bonds(Bonds& bonds, const Points& points,
                                  const std::vector<Crack>& cracks);
 

@@ -9,8 +9,10 @@
 #include <muParser.h>
 
 #include "src/core/input_error.hpp"
+#include "src/core/linear_table.hpp"
 #include "src/core/nearest_name.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/table_calls.hpp"
 
 namespace peristat {
 namespace {
@@ -18,7 +20,36 @@ namespace {
 /// muParser takes fewer than 20 000 characters.
 constexpr std::size_t longest_text = 19'999;
 
+constexpr const char* table_name = "table";
+
+bool is_identifier(const std::string& name) {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
+  const auto may_follow = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); };
+  return !name.empty() && is_letter(name.front()) && std::ranges::all_of(name, may_follow);
+}
+
 }  // namespace
+
+const Columns Expression::none;
+
+std::string why_no_column(const std::string& name) {
+  constexpr std::size_t longest = 100;
+  if (!is_identifier(name)) {
+    return "is no name that expressions can use: it must have letters, digits and _, and begin "
+           "with none of the digits";
+  }
+  if (name.size() > longest) return "has more than " + std::to_string(longest) + " characters";
+  static const std::vector<std::string> words{
+      "x",       "y",         "z",         "load",      "load2", "load3", "load4",   "t",
+      "spacing", "spacing_x", "spacing_y", "spacing_z", "pi",    "free",  table_name};
+  const bool is_function = mu::Parser().GetFunDef().contains(name);
+  if (is_function || std::ranges::count(words, name) > 0) {
+    return "is taken: it means something else in expressions; choose another name";
+  }
+  return "";
+}
 
 struct Expression::Parser {
   std::string text;
@@ -30,6 +61,17 @@ struct Expression::Parser {
   // Variables of the parser point at these; this struct therefore never moves.
   Coordinates place{};
   std::vector<double> values;  // of the parameters
+  std::vector<double> values_of_columns;
+  struct UsedColumn {
+    const std::string* name;
+    const std::vector<double>* of_points;
+    double* value;
+  };
+  std::vector<UsedColumn> used;
+  const Columns* columns = nullptr;
+  std::vector<LinearTable> tables;
+  std::vector<std::string> files;  // of the tables
+  bool is_trial = false;           // the value does not count: tables may be left
 
   [[noreturn]] void refuse(const std::string& what) const {
     throw InputError("", '"' + text + '"', what);
@@ -64,6 +106,78 @@ struct Expression::Parser {
     for (int c = 0; c < dimension; ++c) parser.DefineVar(std::string(1, "xyz"[c]), &place[c]);
     values.resize(parameters.size());
     for (std::size_t k = 0; k < values.size(); ++k) parser.DefineVar(parameters[k], &values[k]);
+    if (dimension > 0) {
+      values_of_columns.resize(columns->size());
+      double* value = values_of_columns.data();
+      for (const auto& [name, of_points] : *columns) parser.DefineVar(name, value++);
+    }
+    // Not folded in advance, so that a constant place outside a table is refused, too.
+    constexpr bool may_fold = false;
+    parser.DefineFunUserData(table_name, value_of_table, this, may_fold);
+  }
+
+  /// Called by muParser: value of a table, whose number stands in place of its name.
+  static double value_of_table(void* parser, double number, double place) {
+    const auto& of = *static_cast<const Parser*>(parser);
+    const auto k = static_cast<std::size_t>(number);
+    const LinearTable& table = of.tables[k];
+    if (!of.is_trial && !std::isnan(place) && !table.covers(place)) {
+      of.refuse("the table " + of.files[k] + " goes from " + number_text(table.first()) + " to " +
+                number_text(table.last()) + ", but its value at " + number_text(place) +
+                " is needed" + of.where(" at ") + "; add a row, or hold its ends with min and max");
+    }
+    return table(place);
+  }
+
+  /// Reads the tables of the text. Returns the text with their numbers in place of their names; it
+  /// is as long as before, so that errors have their places.
+  std::string read_tables() {
+    std::string plain = text;
+    for (const TableCall& call : table_calls(text)) {
+      try {
+        tables.emplace_back(call.file, call.column);
+      } catch (const InputError& error) {
+        refuse(error.what());
+      }
+      files.push_back(call.file);
+      const std::string number = std::to_string(files.size() - 1);
+      const std::size_t length = call.end - call.begin;
+      if (number.size() > length) refuse("has too many tables");
+      plain.replace(call.begin, length, number + std::string(length - number.size(), ' '));
+    }
+    return plain;
+  }
+
+  void find_used_columns() {
+    const mu::varmap_type& variables = parser.GetUsedVar();
+    double* value = values_of_columns.data();
+    for (const auto& [name, of_points] : *columns) {
+      if (variables.contains(name)) used.push_back({&name, &of_points, value});
+      ++value;
+    }
+  }
+
+  /// Takes the values of a point.
+  void take_columns(Index point) {
+    for (const auto& [name, of_points, value] : used) {
+      if (point < 0 || static_cast<std::size_t>(point) >= of_points->size()) {
+        refuse("column " + *name + " has a value at each point, but the value" + where(" at ") +
+               " is needed, where there is none");
+      }
+      *value = (*of_points)[static_cast<std::size_t>(point)];
+    }
+  }
+
+  /// Place and parameters of the present evaluation, after these words; or nothing.
+  [[nodiscard]] std::string where(const std::string& words) const {
+    // Without a dimension (total forces) only the parameters say where.
+    static constexpr const char* names[] = {"", "(x) = ", "(x, y) = ", "(x, y, z) = "};
+    std::string all = names[dimension];
+    if (dimension > 0) all += place_text(place, dimension);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      all += (all.empty() ? "" : ", ") + parameters[k] + " = " + number_text(values[k]);
+    }
+    return all.empty() ? all : words + all;
   }
 
   [[noreturn]] void refuse_word(const std::string& word, bool is_called) const {
@@ -71,6 +185,11 @@ struct Expression::Parser {
     variables.resize(dimension);
     variables.insert(variables.end(), parameters.begin(), parameters.end());
     variables.insert(variables.end(), constants.begin(), constants.end());
+    if (dimension > 0) {
+      for (const auto& [name, of_points] : *columns) variables.push_back(name);
+    } else if (columns->contains(word)) {
+      refuse("column " + word + " has a value at each point, but this one number is for none");
+    }
     for (const auto& [name, callback] : parser.GetFunDef()) functions.push_back(name);
 
     std::vector<std::string> allowed = is_called ? functions : variables;
@@ -89,16 +208,16 @@ struct Expression::Parser {
   /// Reads the text once for unknown words, a single '=' and a second comparison beside another
   /// one, which muParser does not report or silently accepts.
   /// @return whether a variable occurs
-  bool scan() const {
+  bool scan(const std::string& plain) const {
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
     const auto is_word = [&](char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || is_digit(c);
     };
-    const auto at = [&](std::size_t i) { return i < text.size() ? text[i] : '\0'; };
+    const auto at = [&](std::size_t i) { return i < plain.size() ? plain[i] : '\0'; };
     bool varies = false;
     std::vector<bool> compared{false};  // per open parenthesis: a comparison stands to the left
-    for (std::size_t i = 0; i < text.size();) {
-      const char c = text[i];
+    for (std::size_t i = 0; i < plain.size();) {
+      const char c = plain[i];
       if (is_digit(c) || c == '.') {
         while (is_digit(at(i)) || at(i) == '.') ++i;
         const bool is_signed = at(i + 1) == '+' || at(i + 1) == '-';
@@ -109,7 +228,7 @@ struct Expression::Parser {
         std::size_t end = i, next;
         while (is_word(at(end))) ++end;
         for (next = end; at(next) == ' ';) ++next;
-        const std::string word = text.substr(i, end - i);
+        const std::string word = plain.substr(i, end - i);
         const bool is_variable = parser.GetVar().count(word) > 0;
         if (!is_variable && !parser.GetConst().count(word) && !parser.GetFunDef().count(word)) {
           refuse_word(word, at(next) == '(');
@@ -151,18 +270,23 @@ struct Expression::Parser {
     }
     if (text.size() > longest_text) {
       refuse("an expression may have at most " + std::to_string(longest_text) +
-             " characters; this one has " + std::to_string(text.size()));
+             " characters; this one has " + std::to_string(text.size()) +
+             ". Many values are better kept in a file, as in table(\"file.csv\", x)");
     }
     // muParser stops silently at a zero character.
     if (text.find('\0') != std::string::npos)
       refuse("an expression must not hold a zero character");
-    const bool varies = scan();
+    const std::string plain = read_tables();
+    const bool varies = scan(plain);
     try {
-      parser.SetExpr(text);
+      parser.SetExpr(plain);
       int count = 0;
+      is_trial = varies;
       const double first = *parser.Eval(count);
+      is_trial = false;
       if (count != 1) refuse("an expression has one value; a decimal point is '.', not ','");
       if (!varies) constant = first;
+      find_used_columns();
     } catch (const mu::ParserError& error) {
       refuse_parse(error);
     }
@@ -179,25 +303,19 @@ struct Expression::Parser {
       refuse_parse(error);
     }
     if (!std::isfinite(result)) {
-      // Without a dimension (total forces) only the parameters say where.
-      static constexpr const char* names[] = {"", "(x) = ", "(x, y) = ", "(x, y, z) = "};
-      std::string where = names[dimension];
-      if (dimension > 0) where += place_text(place, dimension);
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        where += (where.empty() ? "" : ", ") + parameters[k] + " = " + number_text(values[k]);
-      }
-      refuse("the value at " + where + " is " + number_text(result) + "; it must be finite");
+      refuse("the value" + where(" at ") + " is " + number_text(result) + "; it must be finite");
     }
     return result;
   }
 };
 
 Expression::Expression(const std::string& text, int dimension, const Spacing& spacing,
-                       std::vector<std::string> parameters)
+                       std::vector<std::string> parameters, const Columns& columns)
     : parser_(std::make_unique<Parser>()) {
   parser_->text = text;
   parser_->dimension = dimension;
   parser_->parameters = std::move(parameters);
+  parser_->columns = &columns;
   parser_->define(spacing);
   parser_->compile();
 }
@@ -212,11 +330,13 @@ Expression::Expression(Expression&&) noexcept = default;
 Expression& Expression::operator=(Expression&&) noexcept = default;
 Expression::~Expression() = default;
 
-double Expression::operator()(const Coordinates& place, std::span<const double> parameters) const {
+double Expression::operator()(const Coordinates& place, std::span<const double> parameters,
+                              Index point) const {
   if (parser_->constant) return *parser_->constant;
   parser_->place = place;
   std::copy_n(parameters.begin(), std::min(parameters.size(), parser_->values.size()),
               parser_->values.begin());
+  parser_->take_columns(point);
   return parser_->value();
 }
 

@@ -52,6 +52,12 @@ BodyBoundary::BodyBoundary(int dimension, const std::vector<ShapeStep>& shapes,
       body_(solid_, std::move(covers), spacing),
       nudge_(nudge_of(solid_.bounds(), dimension, shapes)),
       spacing_(spacing) {
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    if (has_smooth_sides(shapes[k].shape)) continue;
+    throw InputError("shapes[" + std::to_string(k) + "].action", "",
+                     "this model acts on the faces of the body's boundary, and an image or a "
+                     "surface of triangles has none");
+  }
   if (dimension == 2) {
     faces_ = std::make_unique<BoundaryCurves>(body_, shapes, solid_.bounds(), nudge_);
   } else if (dimension == 3) {

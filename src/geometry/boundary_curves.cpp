@@ -9,6 +9,7 @@
 #include "src/core/coordinates.hpp"
 #include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
+#include "src/geometry/ellipse.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -81,24 +82,49 @@ struct Curves {
     polygon(corners, sides);
   }
 
-  void operator()(const Disk& disk) {
+  void arc(const Coordinates& centre, const Coordinates& along, double radius,
+           double other_radius) {
     Piece piece;
     piece.part = {shape, 0};
-    piece.radius = disk.radius;
-    piece.start = {disk.centre[0], disk.centre[1], 0.0};
+    piece.radius = radius;
+    piece.other_radius = other_radius;
+    piece.start = {centre[0], centre[1], 0.0};
+    piece.along = along;
     piece.to = whole_turn;
     pieces.push_back(piece);
   }
 
+  void operator()(const Disk& of) { arc(of.centre, {1.0, 0.0, 0.0}, of.radius, of.radius); }
+
+  void operator()(const Ellipse& of) { arc(of.centre, first_axis(of), of.radii[0], of.radii[1]); }
+
   void operator()(const Cylinder&) {}  // check_lattice refuses these in 2D
   void operator()(const Sphere&) {}
+  void operator()(const StlBody&) {}
+  void operator()(const PixelImage&) {}  // BodyBoundary refuses it
 };
 
-/// Appends the angles at which a circle meets the line of a segment.
-void append_angles(const Piece& circle, const Piece& line, std::vector<double>& t) {
+/// A vector's components along the axes of an arc.
+std::array<double, 2> on_axes(const Piece& arc, const Coordinates& vector) {
+  return {dot(vector, arc.along), arc.along[0] * vector[1] - arc.along[1] * vector[0]};
+}
+
+/// The place of an arc that lies farthest along a direction, and how far from its middle that is.
+struct Farthest {
+  double t, height;
+};
+
+Farthest farthest_along(const Piece& arc, const Coordinates& direction) {
+  const auto [x, y] = on_axes(arc, direction);
+  const double of_x = arc.radius * x, of_y = arc.other_radius * y;
+  return {std::atan2(of_y, of_x), std::hypot(of_x, of_y)};
+}
+
+/// Appends the angles at which an arc meets the line of a segment.
+void append_angles(const Piece& arc, const Piece& line, std::vector<double>& t) {
   const Coordinates normal = line.normal(0.0);
-  const double height = dot(minus(line.start, circle.start), normal) / circle.radius;
-  const double middle = std::atan2(normal[1], normal[0]);
+  const auto [middle, reach] = farthest_along(arc, normal);
+  const double height = dot(minus(line.start, arc.start), normal) / reach;
   t.insert(t.end(), {middle, middle + std::numbers::pi});  // where they may touch
   if (std::abs(height) > 1.0) return;
   const double half = std::acos(height);
@@ -117,25 +143,93 @@ void append_angles_of_circles(const Piece& circle, const Piece& other, std::vect
   t.insert(t.end(), {middle - half, middle + half});
 }
 
+/// Where a function that falls and then rises is least, by golden sections.
+template <class Function>
+double least_between(const Function& f, double low, double high) {
+  constexpr int sections = 80;  // down to round-off
+  const double part = 2.0 - std::numbers::phi;
+  double a = low + part * (high - low), b = high - part * (high - low);
+  double of_a = f(a), of_b = f(b);
+  for (int k = 0; k < sections; ++k) {
+    if (of_a < of_b) {
+      high = b, b = a, of_b = of_a;
+      of_a = f(a = low + part * (high - low));
+    } else {
+      low = a, a = b, of_a = of_b;
+      of_b = f(b = high - part * (high - low));
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+/// Appends the angles at which an arc may meet an ellipse, or touch it: changes of sign of its
+/// height |(x / a, y / b)| - 1 over the ellipse, and extremes of that.
+void append_angles_of_ellipse(const Piece& arc, const Piece& ellipse, std::vector<double>& t) {
+  constexpr int steps = 256;
+  const auto height = [&](double angle) {
+    const auto [x, y] = on_axes(ellipse, minus(arc.at(angle), ellipse.start));
+    return std::hypot(x / ellipse.radius, y / ellipse.other_radius) - 1.0;
+  };
+  const auto angle_of = [](int k) { return whole_turn * k / steps; };
+  std::vector<double> angles;
+  for (int k = 0; k <= steps; ++k) {
+    angles.push_back(angle_of(k));
+    for (const double sign : {1.0, -1.0}) {
+      const auto upwards = [&](double angle) { return sign * height(angle); };
+      const double before = angle_of(k - 1), at = angle_of(k), after = angle_of(k + 1);
+      if (upwards(at) > upwards(before) || upwards(at) > upwards(after)) continue;
+      angles.push_back(least_between(upwards, before, after));
+      t.push_back(angles.back());
+    }
+  }
+  std::sort(angles.begin(), angles.end());
+  for (std::size_t k = 1; k < angles.size(); ++k) {
+    double low = angles[k - 1], high = angles[k];
+    const bool is_out = height(low) > 0.0;
+    if ((height(high) > 0.0) == is_out) continue;
+    for (double at = 0.5 * (low + high); at > low && at < high; at = 0.5 * (low + high))
+      ((height(at) > 0.0) == is_out ? low : high) = at;
+    t.push_back(high);
+  }
+}
+
 }  // namespace
 
 Coordinates Piece::at(double t) const {
-  if (radius == 0.0) return {start[0] + t * along[0], start[1] + t * along[1], 0.0};
-  return {start[0] + radius * std::cos(t), start[1] + radius * std::sin(t), 0.0};
+  const double x = radius == 0.0 ? t : radius * std::cos(t), y = other_radius * std::sin(t);
+  return {start[0] + x * along[0] - y * along[1], start[1] + x * along[1] + y * along[0], 0.0};
 }
 
 Coordinates Piece::normal(double t) const {
   if (radius == 0.0) return {sign * along[1], -sign * along[0], 0.0};
-  return {sign * std::cos(t), sign * std::sin(t), 0.0};
+  const double x = other_radius * std::cos(t), y = radius * std::sin(t);
+  return scaled(sign / std::hypot(x, y),
+                {x * along[0] - y * along[1], x * along[1] + y * along[0], 0.0});
+}
+
+double Piece::speed(double t) const {
+  return radius == 0.0 ? 1.0 : std::hypot(radius * std::sin(t), other_radius * std::cos(t));
 }
 
 double Piece::nearest(const Coordinates& place) const {
   const Coordinates arm = minus(place, start);
   if (radius == 0.0) return std::clamp(dot(arm, along), from, to);
-  double t = from + std::fmod(std::atan2(arm[1], arm[0]) - from, whole_turn);
+  const auto [x, y] = on_axes(*this, arm);
+  const bool is_circle = radius == other_radius;
+  const double anywhere = is_circle ? std::atan2(y, x) : nearest_angle(radius, other_radius, x, y);
+  double t = from + std::fmod(anywhere - from, whole_turn);
   if (t < from) t += whole_turn;
   if (t <= to) return t;
-  return t - to < from + whole_turn - t ? to : from;
+  if (is_circle) return t - to < from + whole_turn - t ? to : from;
+  // On the rest of an ellipse the distance may have another minimum between the ends.
+  constexpr int steps = 64;
+  const auto away = [&](double angle) { return length(minus(at(angle), place)); };
+  const auto angle_of = [&](int k) { return from + (to - from) * std::clamp(k, 0, steps) / steps; };
+  int best = 0;
+  for (int k = 1; k <= steps; ++k)
+    if (away(angle_of(k)) < away(angle_of(best))) best = k;
+  const double inside = least_between(away, angle_of(best - 1), angle_of(best + 1));
+  return away(inside) < away(angle_of(best)) ? inside : angle_of(best);
 }
 
 BoundaryCurves::BoundaryCurves(const CollaredBody& body, const std::vector<ShapeStep>& shapes,
@@ -177,12 +271,18 @@ void BoundaryCurves::append_cuts(const Piece& whole, std::vector<double>& t) con
     std::visit(curves, shapes_[k].shape);
     for (const Piece& other : curves.pieces) {
       if (whole.radius == 0.0) {
-        // Where edges on the same line begin and end, and where a circle may touch it.
-        t.push_back(dot(minus(other.start, whole.start), whole.along));
+        // Where edges on the same line begin and end, and where an arc may touch it.
+        const double touching =
+            other.radius == 0.0 ? 0.0 : farthest_along(other, whole.normal(0.0)).t;
+        for (const double angle : {touching, touching + std::numbers::pi})
+          if (angle == 0.0 || other.radius > 0.0)
+            t.push_back(dot(minus(other.at(angle), whole.start), whole.along));
       } else if (other.radius == 0.0) {
         append_angles(whole, other, t);
-      } else {
+      } else if (whole.radius == whole.other_radius && other.radius == other.other_radius) {
         append_angles_of_circles(whole, other, t);
+      } else {
+        append_angles_of_ellipse(whole, other, t);
       }
     }
   }
@@ -233,12 +333,12 @@ void BoundaryCurves::add_pieces_of(const Piece& whole) {
   cuts.insert(cuts.end(), {whole.from, whole.to});
   std::sort(cuts.begin(), cuts.end());
   // A piece shorter than this has no middle at which its sides can be tested.
-  const double least = 8.0 * nudge_ / (is_arc ? whole.radius : 1.0);
+  const double least = 8.0 * nudge_;
   std::vector<Piece> found;
   double begin = cuts.front();
   for (std::size_t k = 1; k < cuts.size(); ++k) {
     const double end = cuts[k];
-    if (end - begin < least) continue;
+    if ((end - begin) * whole.speed(0.5 * (begin + end)) < least) continue;
     const double sign = exposure(whole, 0.5 * (begin + end));
     if (sign != 0.0 && !found.empty() && found.back().to == begin && found.back().sign == sign) {
       found.back().to = end;
@@ -291,7 +391,10 @@ bool BoundaryCurves::belong_together(const Piece& a, const Piece& b) const {
         std::abs(dot(minus(b.start, a.start), of_a)) < 4.0 * nudge_)
       return true;
   } else if (a.radius > 0.0 && b.radius > 0.0 && a.sign == b.sign &&
-             std::abs(a.radius - b.radius) + length(minus(a.start, b.start)) < 4.0 * nudge_) {
+             std::abs(a.radius - b.radius) + std::abs(a.other_radius - b.other_radius) +
+                     std::abs(a.radius - a.other_radius) * length(cross(a.along, b.along)) +
+                     length(minus(a.start, b.start)) <
+                 4.0 * nudge_) {
     return true;
   }
   const double smooth = std::cos(smooth_angle * std::numbers::pi / 180.0);
@@ -343,14 +446,13 @@ std::optional<double> BoundaryCurves::outermost(const Side& side) const {
   const auto axis = std::size_t(side.axis);
   double farthest = -infinity, flat = -infinity;
   for (const Piece& piece : pieces_) {
-    const double middle = side.axis == 0 ? (side.sign > 0 ? 0.0 : std::numbers::pi)
-                                         : (side.sign > 0 ? 0.5 : 1.5) * std::numbers::pi;
     double of_piece = -infinity;
     for (const double t : {piece.from, piece.to})
       of_piece = std::max(of_piece, side.sign * piece.at(t)[axis]);
-    if (piece.radius > 0.0 &&
-        ((middle >= piece.from && middle <= piece.to) || middle + whole_turn <= piece.to))
-      of_piece = side.sign * piece.start[axis] + piece.radius;
+    const auto [t, height] = farthest_along(piece, along_axis(side, 1.0));
+    for (const double turned : {t, t + whole_turn, t + 2.0 * whole_turn})
+      if (piece.radius > 0.0 && turned >= piece.from && turned <= piece.to)
+        of_piece = side.sign * piece.start[axis] + height;
     farthest = std::max(farthest, of_piece);
     if (piece.radius == 0.0 && piece.normal(0.0)[axis] * side.sign > 1.0 - 1e-9)
       flat = std::max(flat, of_piece);

@@ -22,18 +22,21 @@ class BoundaryCurves : public BoundaryFaces {
                    std::vector<Foot>& feet) const override;
   [[nodiscard]] std::optional<double> outermost(const Side& side) const override;
 
-  /// The places start + t along of a segment, or start + radius (cos t, sin t) of an arc, for t
-  /// between `from` and `to`.
+  /// The places start + t along of a segment, or start + radius cos t along + other_radius sin t
+  /// across of an arc, for t between `from` and `to`; across is along turned by 90 degrees.
   struct Piece {
     ShapeSide part{};
     double radius = 0.0;          ///< 0: a segment [m]
+    double other_radius = 0.0;    ///< of an arc; the same but for ellipses [m]
     Coordinates start{};          ///< of a segment; of an arc its centre [m]
-    Coordinates along{};          ///< of a segment
+    Coordinates along{};          ///< of length 1
     double from = 0.0, to = 0.0;  ///< [m]; arcs: angles, from < to <= from + 2 pi
     double sign = 1.0;            ///< of the normal out of the body relative to the shape's
     std::size_t face = 0;
 
     [[nodiscard]] Coordinates at(double t) const;
+    /// Way per t.
+    [[nodiscard]] double speed(double t) const;
     /// Out of the body.
     [[nodiscard]] Coordinates normal(double t) const;
     /// The t of the nearest place.

@@ -12,7 +12,7 @@ namespace peristat {
 
 /// A part of a shape's boundary. Boxes: 0 to 5 for x-, x+, y-, y+, z-, z+; polygons: the edge from
 /// the vertex of this number; cylinders: 0 round, 1 and 2 the ends against and along the axis;
-/// disks and spheres: 0.
+/// disks, ellipses and spheres: 0.
 struct ShapeSide {
   std::size_t shape = 0, side = 0;
   bool operator==(const ShapeSide&) const = default;

@@ -97,7 +97,10 @@ struct Surfaces {
 
   void operator()(const Sphere& of) { round(Kind::sphere, of.centre, {}, of.radius); }
 
-  void operator()(const Disk&) {}  // check_lattice refuses it in 3D
+  void operator()(const Disk&) {}  // check_lattice refuses these in 3D
+  void operator()(const Ellipse&) {}
+  void operator()(const PixelImage&) {}
+  void operator()(const StlBody&) {}  // BodyBoundary refuses it
 };
 
 /// True if both are the same places with the body on the same side.

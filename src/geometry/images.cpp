@@ -55,6 +55,7 @@ void add_images(Points& points, const std::vector<ImageKind>& kinds, double reac
         points.images.kind.push_back(kind);
         points.reference.insert(points.reference.end(), at.begin(), at.begin() + points.dimension);
         points.volume.push_back(points.volume[std::size_t(i)]);
+        if (!points.horizons.empty()) points.horizons.push_back(points.horizons[std::size_t(i)]);
       }
     }
   };
@@ -78,6 +79,7 @@ Points without_images(const Points& points) {
   Points own = points;
   own.images = {points.images.kinds, {}, {}};
   own.volume.resize(std::size_t(points.own()));
+  if (!own.horizons.empty()) own.horizons.resize(std::size_t(points.own()));
   own.reference.resize(std::size_t(points.own()) * std::size_t(points.dimension));
   return own;
 }

@@ -32,6 +32,21 @@ void check_shape_step(const Lattice& lattice, std::size_t number) {
     throw InputError(table + ".action", "", "the first shape must be added");
   }
   check_shape(step.shape, lattice.dimension, table, table + ".action");
+  const bool is_image = std::holds_alternative<PixelImage>(step.shape);
+  const bool is_measured = has_smooth_sides(step.shape) || (is_image && lattice.angle == 0.0);
+  if (lattice.volumes == CellVolumes::fractional && !is_measured) {
+    throw InputError(table + ".action", "",
+                     is_image ? "parts of cells are measured along pixels only: with volumes = "
+                                "\"fractional\" angle must be 0"
+                              : "parts of cells in a surface of triangles are not measured; leave "
+                                "volumes out");
+  }
+  if (lattice.arrangement == Arrangement::blue_noise && !has_smooth_sides(step.shape)) {
+    throw InputError(
+        table + ".action", "",
+        "points of blue noise need shapes with smooth sides, not an image or a surface "
+        "of triangles");
+  }
   const Box box = bounds(step.shape);
   for (int c = 0; c < lattice.dimension && adds; ++c) {
     if (std::isfinite(box.min[c]) && std::isfinite(box.max[c])) continue;

@@ -8,8 +8,8 @@
 
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/table_text.hpp"
 #include "src/geometry/squared_distance.hpp"
-#include "src/geometry/table_text.hpp"
 
 namespace peristat {
 namespace {

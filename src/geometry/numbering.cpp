@@ -76,7 +76,13 @@ Points renumbered(const Points& points, const std::vector<Index>& order) {
     const auto first = points.reference.begin() + std::ptrdiff_t(old) * points.dimension;
     result.reference.insert(result.reference.end(), first, first + points.dimension);
     result.volume.push_back(points.volume[old]);
+    if (!points.horizons.empty()) result.horizons.push_back(points.horizons[std::size_t(old)]);
     if (!points.polygons.empty()) result.polygons.append(points.polygons.of(std::size_t(old)));
+  }
+  for (const auto& [name, values] : points.columns) {
+    std::vector<double>& new_values = result.columns[name];
+    new_values.reserve(order.size());
+    for (const Index old : order) new_values.push_back(values[std::size_t(old)]);
   }
   for (NeighbourShares pair : points.neighbours) {
     pair.i = new_number[pair.i];

@@ -11,58 +11,25 @@
 #include <string_view>
 #include <utility>
 
+#include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/nearest_name.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/table_text.hpp"
+#include "src/geometry/coincident_points.hpp"
 #include "src/geometry/numbering.hpp"
-#include "src/geometry/table_text.hpp"
 #include "src/parallel/communicator.hpp"
 
 namespace peristat {
 namespace {
-
-/// Part of the spacing within which two points stand at one place.
-constexpr double same_place_tolerance = 1e-9;
-
-/// Finds two points whose coordinates differ by no more than the tolerance, the first read in
-/// front.
-///
-/// Points are sorted by coarse cells of four tolerances, once with the cells as they are and once
-/// shifted by half a cell in each combination of directions: one of these sortings puts such a pair
-/// into one cell. A cell cannot hold many points that are further apart, so this is O(n log n).
-std::optional<std::pair<Index, Index>> points_at_one_place(const Points& points, double tolerance) {
-  using Key = std::pair<std::array<double, 3>, Index>;
-  const int dimension = points.dimension;
-  std::vector<Key> keys(points.count());
-  for (int shifted = 0; shifted < 1 << dimension; ++shifted) {
-    for (Index point = 0; point < points.count(); ++point) {
-      const Coordinates place = points.position(point);
-      keys[point] = {{}, point};
-      for (int c = 0; c < dimension; ++c) {
-        const double shift = shifted >> c & 1 ? 0.5 : 0.0;
-        keys[point].first[c] = std::floor(place[c] / (4 * tolerance) + shift);
-      }
-    }
-    std::sort(keys.begin(), keys.end());
-    for (std::size_t a = 0; a < keys.size(); ++a) {
-      for (std::size_t b = a + 1; b < keys.size() && keys[b].first == keys[a].first; ++b) {
-        const Coordinates one = points.position(keys[a].second);
-        const Coordinates other = points.position(keys[b].second);
-        double distance = 0.0;
-        for (int c = 0; c < 3; ++c) distance = std::max(distance, std::abs(one[c] - other[c]));
-        if (distance <= tolerance) return std::pair(keys[a].second, keys[b].second);
-      }
-    }
-  }
-  return std::nullopt;
-}
 
 /// A point as the file has it.
 struct PointRow {
   std::size_t line = 0;
   Coordinates place{};
   double volume = 0.0;
-  std::string_view sets{};  ///< names joined by |
+  std::string_view sets{};        ///< names joined by |
+  std::vector<double> further{};  ///< values of the further columns, in their order
 };
 
 class PointReader {
@@ -73,6 +40,7 @@ class PointReader {
   /// Calls visit(row) for every point, in the order of the file.
   void for_each_point(const std::function<void(const PointRow&)>& visit) {
     columns_.clear();
+    further_.clear();
     count_ = 0;
     for_each_row(file_, [&](std::size_t line, std::string_view text) {
       line_ = line;
@@ -83,6 +51,19 @@ class PointReader {
   }
 
   [[nodiscard]] Index count() const { return count_; }
+  /// Names of the further columns, in their order; known once the points have been read.
+  [[nodiscard]] const std::vector<std::string>& further() const { return further_; }
+
+  /// Reads no more than the names of the columns.
+  void read_names() {
+    columns_.clear();
+    further_.clear();
+    first_row(file_, [&](std::size_t line, std::string_view text) {
+      line_ = line;
+      read_header(text);
+    });
+    if (columns_.empty()) refuse_file("no line names the columns, which are " + allowed_columns());
+  }
 
   [[noreturn]] void refuse(std::size_t line, const std::string& what) const {
     throw InputError("", "", what, file_.string() + ":" + std::to_string(line));
@@ -105,7 +86,7 @@ class PointReader {
   std::string allowed_columns() const {
     std::string all;
     for (const std::string& name : required_columns()) all += name + ", ";
-    return all + "and optionally set";
+    return all + "and optionally set and columns of your own";
   }
 
   std::vector<std::string_view> fields(std::string_view text) const {
@@ -125,13 +106,7 @@ class PointReader {
     for (const std::string_view field : fields(text)) {
       const std::string name(field);
       const bool known = name == "set" || std::count(required.begin(), required.end(), name) > 0;
-      if (!known) {
-        std::vector<std::string> candidates = required;
-        candidates.push_back("set");
-        const std::string nearest = nearest_name(name, candidates);
-        refuse("unknown column '" + name + "'; the columns are " + allowed_columns() +
-               (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
-      }
+      if (!known) add_further(name);
       if (std::count(columns_.begin(), columns_.end(), name)) {
         refuse("column '" + name + "' appears twice");
       }
@@ -139,8 +114,21 @@ class PointReader {
     }
     for (const std::string& name : required) {
       if (std::count(columns_.begin(), columns_.end(), name)) continue;
-      refuse("column '" + name + "' is missing; the columns are " + allowed_columns());
+      const std::string nearest = nearest_name(name, further_);
+      refuse("column '" + name + "' is missing; the columns are " + allowed_columns() +
+             (nearest.empty() ? "" : "; did you mean it by '" + nearest + "'?"));
     }
+  }
+
+  void add_further(const std::string& name) {
+    const bool is_axis = name == "y" || name == "z";
+    if (is_axis) {
+      refuse("column '" + name + "' is for a higher dimension than " + std::to_string(dimension_) +
+             "; the columns are " + allowed_columns());
+    }
+    const std::string why_not = why_no_column(name);
+    if (!why_not.empty()) refuse("the name '" + name + "' of a column " + why_not);
+    further_.push_back(name);
   }
 
   PointRow read_point(std::string_view text) {
@@ -162,8 +150,10 @@ class PointReader {
       } else if (column == "volume") {
         row.volume = number(column, cells[k]);
         if (!(row.volume > 0)) refuse("volume = " + std::string(cells[k]) + " must be positive");
-      } else {
+      } else if (column == "x" || column == "y" || column == "z") {
         row.place[std::size_t(column[0] - 'x')] = number(column, cells[k]);
+      } else {
+        row.further.push_back(number(column, cells[k]));
       }
     }
     ++count_;
@@ -194,6 +184,7 @@ class PointReader {
   Index count_ = 0;
   bool by_comma_ = false;
   std::vector<std::string> columns_;
+  std::vector<std::string> further_;  // of them, those that expressions alone use
 };
 
 /// Points of a file, all or some of them.
@@ -201,6 +192,12 @@ class Collection {
  public:
   explicit Collection(int dimension) { points.dimension = dimension; }
 
+  /// Names the further columns, also for a part without points.
+  void name_columns(const std::vector<std::string>& names) {
+    for (const std::string& name : names) points.columns[name];
+    columns_.clear();
+    for (const std::string& name : names) columns_.push_back(&points.columns[name]);
+  }
   void add(const PointRow& row) {
     name_sets(row);
     for (const std::string_view name : split(row.sets, '|')) {
@@ -211,6 +208,7 @@ class Collection {
     points.reference.insert(points.reference.end(), row.place.begin(),
                             row.place.begin() + points.dimension);
     points.volume.push_back(row.volume);
+    for (std::size_t k = 0; k < columns_.size(); ++k) columns_[k]->push_back(row.further[k]);
     lines_.push_back(row.line);
   }
   /// Registers the sets of a point that is not added: all ranks know all names.
@@ -233,7 +231,8 @@ class Collection {
   Points points;
 
  private:
-  std::vector<std::size_t> lines_;  // per point
+  std::vector<std::size_t> lines_;             // per point
+  std::vector<std::vector<double>*> columns_;  // in the order of the file
 };
 
 double spacing_of(double mean_volume, double cross_section, int dimension,
@@ -295,11 +294,19 @@ std::vector<std::int32_t> source_rows(const std::filesystem::path& file, const P
   return rows;
 }
 
+std::vector<std::string> further_columns(const std::filesystem::path& file, int dimension) {
+  PointReader reader(file, dimension);
+  reader.read_names();
+  return reader.further();
+}
+
 Points read_points(const std::filesystem::path& file, int dimension, double cross_section,
                    const std::optional<NeighbourFile>& neighbours) {
   check_cross_section(cross_section);
   PointReader reader(file, dimension);
+  reader.read_names();
   Collection read(dimension);
+  read.name_columns(reader.further());
   reader.for_each_point([&](const PointRow& row) { read.add(row); });
   Points& points = read.points;
   double mean = 0.0;
@@ -320,6 +327,7 @@ Part read_slab(const std::filesystem::path& file, int dimension, double cross_se
   const double first = std::floor(rows * ranks.rank() / ranks.count());
   const double last = std::floor(rows * (ranks.rank() + 1) / ranks.count());
   Collection read(dimension);
+  read.name_columns(reader.further());
   read.points.spacing = whole.spacing;
   // Includes the points of the adjacent rows, which may coincide with its own.
   reader.for_each_point([&](const PointRow& row) {

@@ -1,7 +1,7 @@
 #include "src/geometry/point_set.hpp"
 
-#include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
+#include "src/geometry/expression_at_points.hpp"
 
 namespace peristat {
 
@@ -13,13 +13,11 @@ std::vector<Index> select(const Points& points, const SetRule& rule) {
 
   std::vector<Index> members;
   try {
-    const Expression where = rule.where.empty()
-                                 ? Expression(1.0)
-                                 : Expression(rule.where, points.dimension, points.spacing);
+    const Expression where =
+        rule.where.empty() ? Expression(1.0) : expression_of(rule.where, points);
     for (Index point = 0; point < points.count(); ++point) {
-      const Coordinates place = points.position(point);
-      if (rule.shape && !contains(*rule.shape, place)) continue;
-      if (where(place) != 0.0) members.push_back(point);
+      if (rule.shape && !contains(*rule.shape, points.position(point))) continue;
+      if (value_at(where, points, point) != 0.0) members.push_back(point);
     }
   } catch (const InputError& error) {
     throw InputError("where", error.value(), error.allowed());

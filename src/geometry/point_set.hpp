@@ -9,8 +9,9 @@
 
 namespace peristat {
 
-/// Rule that selects points for a named set: an expression of x, y, z (true where not zero) or a
-/// shape; a point must satisfy all that are given. Points of fictitious layers are candidates too.
+/// Rule that selects points for a named set: an expression of x, y, z and the points' columns (true
+/// where not zero) or a shape; a point must satisfy all that are given. Points of fictitious layers
+/// are candidates too.
 struct SetRule {
   std::string name{};
   std::string where{};

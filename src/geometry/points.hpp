@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +15,9 @@
 #include "src/geometry/mesh_elements.hpp"
 
 namespace peristat {
+
+class MeshInterior;
+struct MeshBody;
 
 /// Two neighbouring points, and the share of each other's volume that they count.
 struct NeighbourShares {
@@ -43,10 +48,17 @@ struct Points {
   /// boundary, or if there are none.
   CellPolygons polygons{};
   MeshElements elements{};  ///< of points at the centroids of a mesh's elements; or empty
+  /// Mesh that the points were made of; null: they were made otherwise.
+  std::shared_ptr<const MeshBody> mesh{};
+  /// Inside of the mesh, which bonds must not leave; null: they may cross anything.
+  std::shared_ptr<const MeshInterior> interior{};
+  /// Number of each point's element or node in the mesh's file, from 0; empty without a mesh.
+  std::vector<std::int32_t> source_row{};
 
   /// Further columns of the points' file by name: a value per point, in SI units.
   std::map<std::string, std::vector<double>> columns{};
-  /// Horizon of each point [m], see points.horizon of case files; empty: one horizon for all.
+  /// Horizon of each point [m], see points.horizon of case files; images have that of their
+  /// sources. Empty: one horizon for all.
   std::vector<double> horizons{};
 
   /// Places around the body that hold no point and that quadratures by collocation use, all x

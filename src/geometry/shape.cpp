@@ -8,6 +8,9 @@
 #include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/closed_surface.hpp"
+#include "src/geometry/ellipse.hpp"
+#include "src/geometry/pixels.hpp"
 
 namespace peristat {
 namespace {
@@ -86,6 +89,22 @@ bool inside(const Polygon& polygon, const Coordinates& place) {
   return odd;
 }
 
+/// With rho = |(x / a, y / b)|, the distance outside is (rho - 1) rho / |(x / a^2, y / b^2)| to
+/// first order.
+bool inside(const Ellipse& ellipse, const Coordinates& place) {
+  const auto [a, b, none] = ellipse.radii;
+  const auto [x, y, height] = along_axes(ellipse, minus(place, ellipse.centre));
+  const double rho = std::hypot(x / a, y / b);
+  const double slack = tolerance(std::max(a, b), magnitude(ellipse.centre));
+  return rho <= 1.0 || (rho - 1.0) * rho <= slack * std::hypot(x / (a * a), y / (b * b));
+}
+
+bool inside(const PixelImage& image, const Coordinates& place) {
+  return inside(Box{image.min, image.max}, {place[0], place[1], 0.0}) && is_in_pixel(image, place);
+}
+
+bool inside(const StlBody& body, const Coordinates& place) { return body.surface->contains(place); }
+
 // ---- bounding boxes ----
 
 Box box_around(const Box& box) { return box; }
@@ -130,6 +149,20 @@ Box box_around(const Polygon& polygon) {
   return box;
 }
 
+Box box_around(const Ellipse& ellipse) {
+  const auto [c, s, none] = first_axis(ellipse);
+  const auto [a, b, depth] = ellipse.radii;
+  const double x = std::hypot(a * c, b * s), y = std::hypot(a * s, b * c);
+  return {{ellipse.centre[0] - x, ellipse.centre[1] - y, -infinity},
+          {ellipse.centre[0] + x, ellipse.centre[1] + y, infinity}};
+}
+
+Box box_around(const PixelImage& image) {
+  return {{image.min[0], image.min[1], -infinity}, {image.max[0], image.max[1], infinity}};
+}
+
+Box box_around(const StlBody& body) { return body.surface->bounds(); }
+
 // ---- checks ----
 
 struct Checker {
@@ -140,7 +173,7 @@ struct Checker {
   void kind(const char* name, bool fits, const char* dimensions) const {
     if (fits) return;
     throw InputError(kind_key, name,
-                     "a " + std::string(name) + " needs dimension " + dimensions +
+                     "the shape " + std::string(name) + " needs dimension " + dimensions +
                          ", but this case has dimension " + std::to_string(dimension));
   }
 
@@ -191,6 +224,35 @@ struct Checker {
     radius(sphere.radius);
   }
 
+  void operator()(const Ellipse& ellipse) const {
+    kind("ellipse", dimension == 2, "2");
+    finite("centre", ellipse.centre);
+    const auto [a, b, none] = ellipse.radii;
+    for (const double radius : {a, b})
+      number("radii", radius, std::isfinite(radius) && radius > 0, "must be positive and finite");
+    number("radii", std::min(a, b), std::min(a, b) >= thinnest_ellipse * std::max(a, b),
+           "must be at least a millionth of the other radius; a thinner ellipse is a [[crack]]");
+    number("angle", ellipse.angle, std::isfinite(ellipse.angle), "must be finite");
+  }
+
+  void operator()(const PixelImage& image) const {
+    kind("image", dimension == 2, "2");
+    finite("min", image.min);
+    finite("max", image.max);
+    (*this)(Box{image.min, image.max});
+    const auto [low, high] = image.grey;
+    number("grey", low, std::isfinite(low) && std::isfinite(high) && low <= high,
+           "must be two finite numbers, the second not below the first");
+    const auto& in = image.pixels->is_inside;
+    if (std::find(in.begin(), in.end(), 1) != in.end()) return;
+    throw InputError(table + ".grey", "",
+                     "no pixel has such a value; the image has values from " +
+                         number_text(image.pixels->extremes[0]) + " to " +
+                         number_text(image.pixels->extremes[1]));
+  }
+
+  void operator()(const StlBody&) const { kind("stl", dimension == 3, "3"); }
+
   void operator()(const Polygon& polygon) const {
     kind("polygon", dimension >= 2, "2 or 3");
     double twice_area = 0.0, size = 0.0;
@@ -218,6 +280,15 @@ struct Checker {
 void check_shape(const Shape& shape, int dimension, const std::string& table,
                  const std::string& kind_key) {
   std::visit(Checker{dimension, table, kind_key}, shape);
+}
+
+std::filesystem::path file_of(const Shape& shape) {
+  return std::visit(
+      [](const auto& kind) -> std::filesystem::path {
+        if constexpr (requires { kind.file; }) return kind.file;
+        return {};
+      },
+      shape);
 }
 
 bool contains(const Shape& shape, const Coordinates& place) {

@@ -5,6 +5,9 @@
 #include <cstddef>
 
 #include "src/core/coordinates.hpp"
+#include "src/geometry/closed_surface.hpp"
+#include "src/geometry/ellipse.hpp"
+#include "src/geometry/pixels.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
@@ -61,6 +64,26 @@ struct Crossings {
     append_plane(height + 0.5 * cylinder.length, slope, t);
   }
 
+  void operator()(const PixelImage& image) const {
+    for (std::size_t c = 0; c < 2; ++c) {
+      for (const double border : borders_along(image, c))
+        append_plane(line.from[c] - border, line.along[c], t);
+    }
+  }
+
+  void operator()(const StlBody& body) const { body.surface->append_crossings(line, t); }
+
+  /// The ellipse is the unit circle in coordinates stretched along its axes.
+  void operator()(const Ellipse& ellipse) const {
+    Coordinates from = along_axes(ellipse, minus(line.from, ellipse.centre));
+    Coordinates along = along_axes(ellipse, line.along);
+    for (std::size_t c = 0; c < 2; ++c) {
+      from[c] /= ellipse.radii[c];
+      along[c] /= ellipse.radii[c];
+    }
+    round(from, along, 1.0);
+  }
+
   void operator()(const Polygon& polygon) const {
     for (std::size_t k = 0; k < polygon.vertices.size(); ++k) {
       const auto& a = polygon.vertices[k];
@@ -113,6 +136,21 @@ struct Levels {
     around(cylinder.centre, half - across);
   }
 
+  void operator()(const PixelImage& image) const {
+    for (std::size_t c = 0; c < 2; ++c) {
+      if (direction[1 - c] != 0.0) continue;
+      for (const double border : borders_along(image, c)) levels.push_back(direction[c] * border);
+    }
+  }
+
+  /// Where it begins and ends along an axis.
+  void operator()(const StlBody& body) const { (*this)(body.surface->bounds()); }
+
+  void operator()(const Ellipse& ellipse) const {
+    const Coordinates along = along_axes(ellipse, direction);
+    around(ellipse.centre, std::hypot(ellipse.radii[0] * along[0], ellipse.radii[1] * along[1]));
+  }
+
   void operator()(const Polygon& polygon) const {
     for (const auto& vertex : polygon.vertices) {
       levels.push_back(direction[0] * vertex[0] + direction[1] * vertex[1]);
@@ -149,6 +187,18 @@ struct Distance {
     const double across = length(minus(from, scaled(height, axis)));
     return std::abs(std::max(across - cylinder.radius, std::abs(height) - 0.5 * cylinder.length));
   }
+
+  /// Anywhere in the rectangle a pixel may end.
+  double operator()(const PixelImage& image) const {
+    double outside = 0.0;
+    for (std::size_t c = 0; c < 2; ++c)
+      outside = std::max({outside, image.min[c] - place[c], place[c] - image.max[c]});
+    return outside;
+  }
+
+  double operator()(const StlBody& body) const { return body.surface->distance(place); }
+
+  double operator()(const Ellipse& ellipse) const { return distance_to(ellipse, place); }
 
   double operator()(const Polygon& polygon) const {
     double nearest = std::numeric_limits<double>::infinity();

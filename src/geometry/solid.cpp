@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "src/core/infinity.hpp"
+#include "src/geometry/pixels.hpp"
 
 namespace peristat {
 
@@ -33,6 +34,13 @@ void Solid::append_levels(const Coordinates& direction, std::vector<double>& lev
 
 bool Solid::append_planes(std::array<std::vector<double>, 3>& at) const {
   return std::all_of(steps_.begin(), steps_.end(), [&](const ShapeStep* step) {
+    if (const auto* const image = std::get_if<PixelImage>(&step->shape)) {
+      for (std::size_t c = 0; c < 2; ++c) {
+        const std::vector<double> borders = borders_along(*image, c);
+        at[c].insert(at[c].end(), borders.begin(), borders.end());
+      }
+      return true;
+    }
     const Box* box = std::get_if<Box>(&step->shape);
     for (int c = 0; c < dimension_ && box != nullptr; ++c) {
       at[c].push_back(box->min[c]);
@@ -63,7 +71,7 @@ Solid Solid::near(const Coordinates& place, double distance) const {
 bool Solid::holds_hull_of(const std::vector<Coordinates>& places) const {
   if (steps_.size() != 1 || steps_.front()->action != ShapeStep::Action::add) return false;
   const Shape& shape = steps_.front()->shape;
-  return !std::holds_alternative<Polygon>(shape) &&
+  return is_convex(shape) &&
          std::all_of(places.begin(), places.end(),
                      [&](const Coordinates& place) { return peristat::contains(shape, place); });
 }

@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <string>
 
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/point_sizes.hpp"
 #include "src/geometry/squared_distance.hpp"
 #include "src/neighbourhood/lattice_kernel.hpp"
 #include "src/neighbourhood/polygon_kernel.hpp"
@@ -16,11 +18,6 @@
 
 namespace peristat {
 namespace {
-
-/// Edge of the cell that a point's volume fills [m].
-double cell_size(const Points& points, Index point, double cross_section) {
-  return std::pow(points.volume[point] / cross_section, 1.0 / points.dimension);
-}
 
 /// Vector from a point to another along the lattice's axes [m].
 Coordinates arm_along_lattice(const Points& points, Index i, Index j) {
@@ -111,6 +108,12 @@ Bonds given_bonds(const Points& points) {
   return bonds;
 }
 
+Bonds find_bonds(const Points& points, const Kernel& kernel, int threads) {
+  if (!points.neighbours.empty()) return given_bonds(points);
+  if (points.horizons.empty()) return search_bonds(points, search_radius(points, kernel), threads);
+  return search_bonds(points, search_radii(points, kernel), threads);
+}
+
 /// Factors that the kernel gives the bonds of a body.
 class BondShares {
  public:
@@ -128,11 +131,22 @@ class BondShares {
   [[nodiscard]] double operator()(Index i, Index j, double length) const {
     if (lattice_) return lattice_->factor(step_between(points_, i, j));
     if (polygons_) return polygons_->factor(i, j, length);
+    if (!points_.horizons.empty()) return 0.5 * (directed(i, j, length) + directed(j, i, length));
     if (kernel_.shape == HorizonShape::ball) {
       return mean_share(i, j, length) * kernel_.influence_at(length);
     }
     const double norm = norm_between(points_, i, j, kernel_.shape);
     return kernel_.partial_volume(norm, points_.spacing) * kernel_.influence_at(norm);
+  }
+
+  /// Share of the volume of j that i counts within its own horizon, times influence and kappa_i:
+  /// that of the kernel's horizon at lengths scaled by delta / delta_i.
+  [[nodiscard]] double directed(Index i, Index j, double length) const {
+    const double scale = kernel_.horizon / points_.horizons[std::size_t(i)];
+    const double size = size_of_point(points_, j, kernel_.cross_section);
+    const double share = kernel_.partial_volume(scale * length, scale * size);
+    if (share == 0.0) return 0.0;
+    return std::pow(scale, kernel_.dimension + 1) * share * kernel_.influence_at(scale * length);
   }
 
  private:
@@ -146,8 +160,8 @@ class BondShares {
       return 0.5 * (given->of_j + given->of_i);
     }
     if (kernel_.volume_correction == VolumeCorrection::none) return 1.0;
-    const double size_i = cell_size(points_, i, kernel_.cross_section);
-    const double size_j = cell_size(points_, j, kernel_.cross_section);
+    const double size_i = size_of_point(points_, i, kernel_.cross_section);
+    const double size_j = size_of_point(points_, j, kernel_.cross_section);
     return 0.5 * (kernel_.partial_volume(length, size_i) + kernel_.partial_volume(length, size_j));
   }
 
@@ -194,8 +208,9 @@ void apply_volume_method(Bonds& bonds, const Points& points, const Kernel& kerne
     neighbourhood[j] += bonds.weight(bond) / points.volume[j];
   });
   gather_images(points, neighbourhood, [](double& sum, double more) { sum += more; });
-  // A cloud of points uses a lattice of its mean spacing.
-  const double bulk = kernel.lattice_moment(0, points.spacing);
+  const std::vector<double> whole = whole_volumes(points, kernel);
+  const double bulk = whole.empty() ? 1.0 : whole.front();
+  for (std::size_t i = 0; i < whole.size(); ++i) neighbourhood[i] *= bulk / whole[i];
   bonds.set_weights([&](Index i, Offset bond) {
     const double both = neighbourhood[i] + neighbourhood[bonds.partner[bond]];
     return bonds.weight(bond) * 2.0 * bulk / both;
@@ -246,6 +261,29 @@ void apply_energy_method(Bonds& bonds, const Points& points, const BondSetting& 
 
 }  // namespace
 
+std::vector<double> search_radii(const Points& points, const Kernel& kernel) {
+  const std::vector<double>& horizons = points.horizons;
+  if (kernel.volume_correction == VolumeCorrection::none) return horizons;
+  // Half the size of the largest point with the same or a smaller horizon is half that of either
+  // end at least.
+  std::vector<Index> ascending(horizons.size());
+  std::iota(ascending.begin(), ascending.end(), Index(0));
+  std::sort(ascending.begin(), ascending.end(),
+            [&](Index a, Index b) { return horizons[std::size_t(a)] < horizons[std::size_t(b)]; });
+  std::vector<double> radii(horizons.size());
+  double largest = 0.0;
+  for (std::size_t first = 0, last = 0; first < ascending.size(); first = last) {
+    const double horizon = horizons[std::size_t(ascending[first])];
+    for (; last < ascending.size() && horizons[std::size_t(ascending[last])] == horizon; ++last) {
+      largest = std::max(largest, size_of_point(points, ascending[last], kernel.cross_section));
+    }
+    for (std::size_t k = first; k < last; ++k) {
+      radii[std::size_t(ascending[k])] = horizon + 0.5 * largest;
+    }
+  }
+  return radii;
+}
+
 double search_radius(const Points& points, const Kernel& kernel) {
   if (kernel.has_exact_shares()) {
     return points.polygons.empty() ? kernel.search_radius(points.spacing)
@@ -253,7 +291,7 @@ double search_radius(const Points& points, const Kernel& kernel) {
   }
   double largest = 0.0;
   for (Index i = 0; i < points.count(); ++i) {
-    largest = std::max(largest, cell_size(points, i, kernel.cross_section));
+    largest = std::max(largest, size_of_point(points, i, kernel.cross_section));
   }
   return kernel.search_radius(largest);
 }
@@ -268,11 +306,9 @@ void drop_weightless(Bonds& bonds) {
 
 Bonds make_bonds(const Points& points, SurfaceCorrection surface, const BondSetting& setting,
                  int threads) {
-  Bonds bonds = points.neighbours.empty()
-                    ? search_bonds(points, search_radius(points, setting), threads)
-                    : given_bonds(points);
+  Bonds bonds = find_bonds(points, setting, threads);
   weigh_volumes(bonds, points, setting);
-  if (setting.may_be_weightless()) drop_weightless(bonds);
+  if (setting.may_be_weightless() || !points.horizons.empty()) drop_weightless(bonds);
   share_with_images(bonds, points);
   if (surface == SurfaceCorrection::volume) {
     apply_volume_method(bonds, points, setting);
@@ -298,6 +334,41 @@ std::vector<double> seen_volumes(const Points& points, const Bonds& bonds, const
   });
   gather_images(points, seen, [](double& sum, double more) { sum += more; });
   return seen;
+}
+
+std::vector<double> whole_volumes(const Points& points, const Kernel& kernel) {
+  // A cloud of points uses a lattice of its mean spacing.
+  if (points.horizons.empty()) {
+    return std::vector(points.volume.size(), kernel.lattice_moment(0, points.spacing));
+  }
+  std::vector<double> whole;
+  double spacing = 0.0, moment = 0.0;
+  for (Index i = 0; i < points.count(); ++i) {
+    const double scale = kernel.horizon / points.horizons[std::size_t(i)];
+    const double scaled = scale * size_of_point(points, i, kernel.cross_section);
+    if (!(std::abs(scaled - spacing) <= horizon_tolerance * spacing)) {  // mostly one ratio for all
+      spacing = scaled;
+      moment = kernel.lattice_moment(0, spacing);
+    }
+    whole.push_back(scale * moment);
+  }
+  return whole;
+}
+
+std::vector<double> stretch_factors(const Points& points, const Bonds& bonds,
+                                    const Kernel& kernel) {
+  if (points.horizons.empty()) return {};
+  const BondShares share(points, kernel);
+  std::vector<double> factors(std::size_t(bonds.count()), 1.0);
+  for_each_bond(bonds, [&](Index i, Offset bond) {
+    const Index j = bonds.partner[bond];
+    const double of_i = share.directed(i, j, bonds.length(bond));
+    const double of_j = share.directed(j, i, bonds.length(bond));
+    const double squares = of_i * kernel.horizon / points.horizons[std::size_t(i)] +
+                           of_j * kernel.horizon / points.horizons[std::size_t(j)];
+    factors[std::size_t(bond)] = std::sqrt(squares / (of_i + of_j));
+  });
+  return factors;
 }
 
 double confined_energy_error(const Points& points, const Bonds& bonds, const BondSetting& setting) {

@@ -16,6 +16,10 @@ namespace peristat {
 /// Longest distance at which points may have a bond [m].
 [[nodiscard]] double search_radius(const Points& points, const Kernel& kernel);
 
+/// For points with horizons of their own, a radius for each: two of them may have a bond if their
+/// distance is at most the larger radius [m].
+[[nodiscard]] std::vector<double> search_radii(const Points& points, const Kernel& kernel);
+
 /// Removes bonds of weight 0.
 void drop_weightless(Bonds& bonds);
 
@@ -36,15 +40,34 @@ void drop_weightless(Bonds& bonds);
 ///            mu = (sum_a (n_a / gbar_a)^2)^(-1/2), gbar the mean of its points' factors (Madenci
 ///            and Oterkus 2014, sec. 4.2). Iterating this until the corrected energies are
 ///            classical was tried: it makes bending softer again, not better.
+///
+/// Points with horizons of their own (Points::horizons) have bonds in two directions, i to j if
+/// delta_i and j to i if delta_j reaches the other. With c(delta_i) the micromodulus of a horizon,
+/// that of the setting the largest one, and nu_ij and omega_ij those of horizon delta_i,
+///
+///   w_ij = 1/2 V_i V_j (kappa_i nu_ij omega_ij + kappa_j nu_ji omega_ji) mu_ij,
+///   kappa_i = c(delta_i) / c(delta) = (delta / delta_i)^(d+1).
 [[nodiscard]] Bonds make_bonds(const Points& points, SurfaceCorrection surface,
                                const BondSetting& setting, int threads);
 
 /// Volume that every point sees through its bonds, sum_j 1/2 (nu_ij + nu_ji) omega_ij V_j [m3]: for
-/// a point inside a lattice `setting.lattice_moment(0, spacing)`. Images have that of their
-/// sources.
+/// a point inside a lattice that of whole_volumes. With horizons of points the two directions count
+/// kappa_i nu_ij omega_ij and kappa_j nu_ji omega_ji. Images have that of their sources.
 /// @param broken per bond, 1 if it does not count; empty: all count
 [[nodiscard]] std::vector<double> seen_volumes(const Points& points, const Bonds& bonds,
                                                const Kernel& kernel, std::span<const char> broken);
+
+/// The same of every point if it stood inside a lattice of its own size and horizon [m3].
+[[nodiscard]] std::vector<double> whole_volumes(const Points& points, const Kernel& kernel);
+
+/// Factor of each bond's stretches of damage, relative to those of bonds of the kernel's horizon,
+/// if they follow from a fracture energy; empty without horizons of points. With a critical stretch
+/// s_i of each direction, for which 4 G = c(delta_i) <|n_x|> m_2(delta_i) s_i^2, so that s_i^2 is
+/// proportional to 1 / delta_i, a bond that breaks releases what both of its directions release:
+///
+///   (w_i + w_j) s^2 = w_i s_i^2 + w_j s_j^2,   w_i and w_j the two terms of its weight.
+[[nodiscard]] std::vector<double> stretch_factors(const Points& points, const Bonds& bonds,
+                                                  const Kernel& kernel);
 
 /// Largest deviation from 1 of (discrete energy density / classical) over points and axes under a
 /// confined unit strain: the error of the quadrature, or its rest after a surface correction.

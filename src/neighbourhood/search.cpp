@@ -16,8 +16,8 @@ namespace {
 /// with cells as large as the radius.
 constexpr int cells_per_radius = 2;
 
-/// Cells of at least radius / cells_per_radius; the last direction is the fastest. Points of a cell
-/// are contiguous, in ascending order.
+/// Some points in cells of at least radius / cells_per_radius; the last direction is the fastest.
+/// Points of a cell are contiguous, in the order of `members`.
 template <int D>
 struct CellList {
   std::array<double, D> lower{};
@@ -27,13 +27,13 @@ struct CellList {
   std::vector<Index> point;                     // points in the order of their cells
   std::vector<std::array<double, D>> position;  // their positions in this order
 
-  CellList(const Points& points, double radius) {
+  CellList(const Points& points, const std::vector<Index>& members, double radius) {
     std::array<double, D> upper;
     lower.fill(std::numeric_limits<double>::infinity());
     upper.fill(-std::numeric_limits<double>::infinity());
-    const Index count = points.count();
+    const auto count = static_cast<Index>(members.size());
     const double* reference = points.reference.data();
-    for (Index i = 0; i < count; ++i) {
+    for (const Index i : members) {
       for (int c = 0; c < D; ++c) {
         lower[c] = std::min(lower[c], reference[std::size_t(i) * D + c]);
         upper[c] = std::max(upper[c], reference[std::size_t(i) * D + c]);
@@ -61,24 +61,24 @@ struct CellList {
       extent[c] = static_cast<int>(wanted[c]);
       cells_per_length[c] = span > 0.0 ? extent[c] / span : 0.0;
     }
-    std::vector<Index> cell(count);
+    std::vector<Index> cell(members.size());
     begin.assign(cells + 1, 0);
-    for (Index i = 0; i < count; ++i) {
+    for (Index k = 0; k < count; ++k) {
       std::size_t flat = 0;
       for (int c = 0; c < D; ++c) {
-        flat = flat * extent[c] + coordinate(reference[std::size_t(i) * D + c], c);
+        flat = flat * extent[c] + coordinate(reference[std::size_t(members[k]) * D + c], c);
       }
-      cell[i] = static_cast<Index>(flat);
+      cell[k] = static_cast<Index>(flat);
       ++begin[flat + 1];
     }
     for (std::size_t k = 0; k < cells; ++k) begin[k + 1] += begin[k];
     std::vector<Index> next(begin.begin(), begin.end() - 1);
     point.resize(count);
     position.resize(count);
-    for (Index i = 0; i < count; ++i) {
-      const Index place = next[cell[i]]++;
-      point[place] = i;
-      for (int c = 0; c < D; ++c) position[place][c] = reference[std::size_t(i) * D + c];
+    for (Index k = 0; k < count; ++k) {
+      const Index place = next[cell[k]]++;
+      point[place] = members[k];
+      for (int c = 0; c < D; ++c) position[place][c] = reference[std::size_t(members[k]) * D + c];
     }
   }
 
@@ -129,12 +129,45 @@ struct Candidate {
   double squared;
 };
 
+std::vector<Index> all_of(const Points& points) {
+  std::vector<Index> all(points.volume.size());
+  std::iota(all.begin(), all.end(), Index(0));
+  return all;
+}
+
 template <int D>
-Bonds search(const Points& points, double radius, int threads) {
-  const CellList<D> cells(points, radius);
+std::array<double, D> place_of(const Points& points, Index i) {
+  std::array<double, D> at;
+  for (int c = 0; c < D; ++c) at[c] = points.reference[std::size_t(i) * D + c];
+  return at;
+}
+
+/// Adds the points above `i` that are near it to the first `kept` candidates of its row; returns
+/// how many there are then.
+/// @param is_near of a place in the list and its squared distance
+template <int D, class IsNear>
+std::size_t scan(const CellList<D>& cells, const std::array<double, D>& at, Index i, double radius,
+                 std::vector<Candidate>& row, std::size_t kept, const IsNear& is_near) {
+  cells.for_each_run(at, radius, [&](Index begin, Index end) {
+    if (row.size() < kept + std::size_t(end - begin)) row.resize(kept + std::size_t(end - begin));
+    for (Index place = begin; place < end; ++place) {
+      double squared = 0.0;
+      for (int c = 0; c < D; ++c) {
+        const double step = cells.position[place][c] - at[c];
+        squared += step * step;
+      }
+      row[kept] = {cells.point[place], squared};
+      kept += std::size_t(is_near(place, squared) & (cells.point[place] > i));
+    }
+  });
+  return kept;
+}
+
+/// Bonds of all rows.
+/// @param find_row puts the partners of a point in front of a row; returns how many there are
+template <class FindRow>
+Bonds bonds_of_rows(const Points& points, int threads, const FindRow& find_row) {
   const Index count = points.count();
-  const double longest = inclusive_radius(radius);
-  const double squared_longest = longest * longest;
   Bonds bonds;
   bonds.offset.assign(std::size_t(count) + 1, 0);
   const Index parts = (count + rows_per_part - 1) / rows_per_part;
@@ -147,22 +180,7 @@ Bonds search(const Points& points, double radius, int threads) {
     Found& mine = found[std::size_t(part)];
     std::vector<Candidate> row;
     for (Index i = first; i < last; ++i) {
-      std::array<double, D> at;
-      for (int c = 0; c < D; ++c) at[c] = points.reference[std::size_t(i) * D + c];
-      std::size_t kept = 0;
-      cells.for_each_run(at, longest, [&](Index begin, Index end) {
-        if (row.size() < kept + std::size_t(end - begin))
-          row.resize(kept + std::size_t(end - begin));
-        for (Index place = begin; place < end; ++place) {
-          double squared = 0.0;
-          for (int c = 0; c < D; ++c) {
-            const double step = cells.position[place][c] - at[c];
-            squared += step * step;
-          }
-          row[kept] = {cells.point[place], squared};
-          kept += std::size_t((squared <= squared_longest) & (cells.point[place] > i));
-        }
-      });
+      const std::size_t kept = find_row(i, row);
       std::sort(row.begin(), row.begin() + std::ptrdiff_t(kept),
                 [](const Candidate& a, const Candidate& b) { return a.partner < b.partner; });
       for (std::size_t k = 0; k < kept; ++k) {
@@ -187,15 +205,81 @@ Bonds search(const Points& points, double radius, int threads) {
 }
 
 template <int D>
+Bonds search(const Points& points, double radius, int threads) {
+  const CellList<D> cells(points, all_of(points), radius);
+  const double longest = inclusive_radius(radius);
+  const double squared_longest = longest * longest;
+  return bonds_of_rows(points, threads, [&](Index i, std::vector<Candidate>& row) {
+    return scan<D>(cells, place_of<D>(points, i), i, longest, row, 0,
+                   [&](Index, double squared) { return squared <= squared_longest; });
+  });
+}
+
+/// Points whose radii differ by less than a factor of two.
+template <int D>
+struct Level {
+  double largest;  // inclusive radius
+  CellList<D> cells;
+  std::vector<double> squared;  // inclusive radii in the order of the list
+
+  Level(const Points& points, const std::vector<Index>& members, std::span<const double> radii)
+      : largest(largest_of(members, radii)), cells(points, members, largest) {
+    for (const Index i : cells.point) {
+      const double radius = inclusive_radius(radii[std::size_t(i)]);
+      squared.push_back(radius * radius);
+    }
+  }
+
+  static double largest_of(const std::vector<Index>& members, std::span<const double> radii) {
+    double most = 0.0;
+    for (const Index i : members) most = std::max(most, radii[std::size_t(i)]);
+    return inclusive_radius(most);
+  }
+};
+
+template <int D>
+std::vector<Level<D>> levels_of(const Points& points, std::span<const double> radii) {
+  constexpr int most_levels = 16;  // radii below 2^-15 of the largest share the last one
+  std::vector<std::vector<Index>> members(most_levels);
+  const std::vector<Index> all = all_of(points);
+  const double largest = Level<D>::largest_of(all, radii);
+  for (const Index i : all) {
+    const double octaves = std::floor(std::log2(largest / radii[std::size_t(i)]));
+    members[std::size_t(std::clamp(octaves, 0.0, most_levels - 1.0))].push_back(i);
+  }
+  std::vector<Level<D>> levels;
+  for (const std::vector<Index>& of_level : members) {
+    if (!of_level.empty()) levels.emplace_back(points, of_level, radii);
+  }
+  return levels;
+}
+
+template <int D>
+Bonds search(const Points& points, std::span<const double> radii, int threads) {
+  const std::vector<Level<D>> levels = levels_of<D>(points, radii);
+  return bonds_of_rows(points, threads, [&](Index i, std::vector<Candidate>& row) {
+    const std::array<double, D> at = place_of<D>(points, i);
+    const double own = inclusive_radius(radii[std::size_t(i)]), squared_own = own * own;
+    std::size_t kept = 0;
+    for (const Level<D>& level : levels) {
+      kept = scan<D>(level.cells, at, i, std::max(own, level.largest), row, kept,
+                     [&](Index place, double squared) {
+                       return squared <= std::max(squared_own, level.squared[std::size_t(place)]);
+                     });
+    }
+    return kept;
+  });
+}
+
+template <int D>
 std::vector<std::int32_t> count(const Points& points, Index first, double radius, int threads) {
-  const CellList<D> cells(points, radius);
+  const CellList<D> cells(points, all_of(points), radius);
   const double longest = inclusive_radius(radius);
   const double squared_longest = longest * longest;
   std::vector<std::int32_t> neighbours(static_cast<std::size_t>(first), 0);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 1024)
   for (Index i = 0; i < first; ++i) {
-    std::array<double, D> at;
-    for (int c = 0; c < D; ++c) at[c] = points.reference[std::size_t(i) * D + c];
+    const std::array<double, D> at = place_of<D>(points, i);
     cells.for_each_run(at, longest, [&](Index begin, Index end) {
       for (Index place = begin; place < end; ++place) {
         double squared = 0.0;
@@ -220,6 +304,17 @@ Bonds search_bonds(const Points& points, double radius, int threads) {
       return search<2>(points, radius, threads);
     default:
       return search<3>(points, radius, threads);
+  }
+}
+
+Bonds search_bonds(const Points& points, std::span<const double> radii, int threads) {
+  switch (points.dimension) {
+    case 1:
+      return search<1>(points, radii, threads);
+    case 2:
+      return search<2>(points, radii, threads);
+    default:
+      return search<3>(points, radii, threads);
   }
 }
 

@@ -18,6 +18,8 @@ from tests.acceptance.on_ranks import (
     objects,
     rows,
 )
+from tests.acceptance.surfaces import binary, sphere
+from tests.reference.graded import GradedRing, patch_test
 from tests.reference.program import ROOT
 
 
@@ -159,6 +161,19 @@ class Bodies(Comparison):
         # A third solution would be of round-off, with as many iterations as that gives.
         self.compare_shipped("regions/composite", "lattice.spacing=1e-3", "solver.relative_tolerance=1e-7")
 
+    def test_ellipses_and_shapes_from_files(self):
+        shutil.copy(ROOT / "cases/regions/aggregates.png", self.folder)
+        self.compare_shipped("regions/aggregates", "lattice.spacing=2e-3")
+        self.write("outline.csv", "0.2 0.9\n0.3 0.9\n0.3 1.2\n0.2 1.2\n")
+        self.compare_settings(PLATE.replace(
+            '{ subtract = "disk", centre = [0.5, 0.7], radius = 0.2 }',
+            '{ subtract = "ellipse", centre = [0.5, 0.7], radii = [0.3, 0.1], angle = 40, cuts_bonds = true }, '
+            '{ subtract = "polygon", file = "outline.csv" }'))  # fmt: skip
+        (self.folder / "ball.stl").write_bytes(binary(sphere(0.2, 12)))
+        self.compare_settings(CUBE_ON_ROLLERS.replace(
+            '[material]', '[[set]]\nname = "core"\nshape = { stl = { file = "ball.stl", translate = [0.3, 0.3, 0.5] } }\n[material]')
+            + '[[region]]\nset = "core"\nmaterial = { micromodulus = 1e6 }\n[[load]]\nset = "core"\nbody_force = [0, 0, "1e3*load"]\n')
+
     def test_interfaces_and_random_fields(self):
         two = ('region=[{set="corner", material={youngs_modulus=1e8, scatter=[{of="stiffness", distribution="weibull", '
                'weibull_modulus=5, correlation_length=0.2, seed=3}]}}]',)  # fmt: skip
@@ -196,6 +211,23 @@ class Bodies(Comparison):
             self.assertEqual(list(row), list(several["points/source_row"][()]))
             places = [[float(word) for word in rows[1 + k].split(",")[:2]] for k in row]
             self.assertEqual(places, several["points/reference"][()].tolist())
+
+    def test_a_horizon_per_point(self):
+        ring = GradedRing(16)
+        ring.write(self.folder / "points.csv", ring.places[:, 1] < 3 * ring.sizes)
+        tearing = '[material.damage]\nlaw = "linear"\nfracture_energy = 1.0'
+        images = '[[symmetry]]\naxis = "x"\nat = 0'
+        for surface, more in (("volume", tearing), ("energy", images)):
+            quadrature = f'volume_correction = "linear"\nsurface_correction = "{surface}"'
+            text = patch_test("points.csv", "{ ratio = 2.515 }", quadrature, more, "")
+            one = self.compare_settings(text, 'support=[{set="held", displacement=["1e-5*load*x*y", "1e-5*load"]}]',
+                                        'set=[{name="far", where="x < 1"}]', 'load=[{set="far", body_force=["600*load", "900*load"]}]',
+                                        "loading.steps=2", ranks=(3,), solver=STORED)  # fmt: skip
+            with h5py.File(one / "results.h5") as file, h5py.File(self.folder / "on_3/results.h5") as several:
+                horizons = file["points/horizon"][()]
+                self.assertGreater(horizons.max() / horizons.min(), 3.5)
+                self.assertEqual(horizons.tolist(), several["points/horizon"][()].tolist())
+                self.assertEqual(more == tearing, file["steps/000002/damage"][()].max() > 0.01)
 
     def test_loads(self):
         side = 'load=[{side="x+", traction=["1e5*load*y", "2e5"]}]'

@@ -18,30 +18,31 @@ TEXTS = ['""', '"x"', '"load"', '"free"', '"left"', '"../../etc/passwd"', '"/dev
 EXPRESSIONS = ["1/0", "0/0", "load/0", "ln(-1)", "sqrt(-load)", "1e308*10*load", "x^x^x^x", "1e-3*load", "load*load*1e-4", "rint(load)",
                "load > 0.3 ? 1 : -1", "load > 0.6 ? 1/0 : 0", "(((((load", "load)", "x x", "x = 1", "y", "z", "q", "1,5", "sin()",
                "atan2(1)", "min()", "-" * 2000 + "1", "(" * 3000 + "1" + ")" * 3000, "+".join(["x"] * 3000), "1e-400", "load#", "load;x",
-               "x = y = load", "_pi", "pi", "spacing", "1e-4*sin(300*load)", "0 < x < 1", "x ? 1", "\"", "'", "\\", "load\u00b2", "∞", "1e-3*t", "sin(300*t)/t"]  # fmt: skip
+               "x = y = load", "_pi", "pi", "spacing", "1e-4*sin(300*load)", "0 < x < 1", "x ? 1", "\"", "'", "\\", "load\u00b2", "∞", "1e-3*t", "sin(300*t)/t",
+               "table('missing.csv', load)", "table('points.csv', load)", "table(load, load)", "table('/dev/zero', x)", "table('case.toml', 'x', t)", "table('"]  # fmt: skip
 STRUCTURES = ["[]", "{}", "[[]]", "[1, 2]", "[1, 2, 3, 4]", "[1, \"a\"]", "[" * 500 + "]" * 500, "{a = {b = {c = 1}}}", "[" + "0," * 50_000 + "]",
               "{ disk = { centre = [0, 0], radius = -1 } }", "{ box = {} }", '["free", "free", "free"]', "[nan, inf]", "[[0, 0], [1, 1]]"]  # fmt: skip
-WORDS = """dimension title lattice points spacing horizon_ratio thickness area origin perturbation cell_perturbation lloyd_steps seed shape layer add subtract min max
-    centre radius axis length vertices name side where file horizon set crack from to outline quadrature form volume_correction horizon_shape normals weights
+WORDS = """dimension title lattice points ratio spacing horizon_ratio thickness area origin perturbation cell_perturbation lloyd_steps seed shape layer add subtract min max
+    centre radius radii grey scale translate axis length vertices name side where file horizon set crack from to outline quadrature form volume_correction horizon_shape normals weights
     surface_correction material model plane influence youngs_modulus micromodulus poisson_ratio calibration c1 c2 c3 density damage law onset
     critical rate peak hardening fracture_energy strength no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step
     max_broken_bonds stop_below solver mode linear preconditioner tangent predictor projection relative_tolerance max_iterations fragments
     elastic_horizon_ratio relaxation iterations ramp breaking damping mass_factor quiet_iterations displacement_tolerance method flow_tolerance peak_tolerance output
     directory every count_cracks probe field other threshold control weights table table2 arc_length bifurcation region interface between
-    rule fibre angle direction transverse_modulus shear_modulus transverse_critical scatter of distribution weibull_modulus
+    rule fibre angle direction transverse_modulus shear_modulus transverse_critical scatter of factor distribution weibull_modulus
     correlation_length rigid roller at normal constraint term symmetry period gradient rotation gravity traction pressure depth eigenstrain
     strain temperature change thermal_expansion volumes neighbours dynamics end_time time_step step_share history_every initial velocity scheme
     spectral_radius absorbing degree traction_form boundary statistic expected
     kinematics operator stabilisation foundation""".split()
 CHOICES = """rms_error max_error divergence blue_noise none linear exact exact_centroids volume energy mean bulk bond cpd lps collocation full paper surface stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended piecewise_constant cubic quintic septic gaussian inverse newton
     relaxation adaptive flow dynamic auto cholesky pcg minres gmres lu bicgstab local_operator jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
-    matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk polygon
+    matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk ellipse image stl polygon
     cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length crack_angle
     arc_length dynamics verlet newmark branch straight cells fractional harmonic arithmetic weaker stiffness strength weibull row horizon x y z
     fft bonds finite green_bond correspondence printed sines""".split()
 KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness lattice.area lattice.origin lattice.points lattice.lloyd_steps lattice.perturbation lattice.cell_perturbation lattice.seed
     lattice.shape[0].min lattice.shape[0].max lattice.shape[0].add lattice.shape[1].radius lattice.shape[9].add lattice.layer[0].thickness
-    lattice.layer[0].where points.horizon points.file set[0].where crack[0].from crack[0].to crack[0].outline quadrature.volume_correction
+    lattice.layer[0].where points.horizon points.horizon.ratio points.file set[0].where crack[0].from crack[0].to crack[0].outline quadrature.volume_correction
     quadrature.surface_correction quadrature.form quadrature.weights material.model material.plane material.influence material.youngs_modulus material.micromodulus
     material.poisson_ratio material.c1 material.c2 material.c3 material.damage material.damage.law material.damage.onset
     material.damage.critical material.damage.rate material.damage.no_fail support[0].displacement support[1].displacement support[0].set
@@ -51,7 +52,7 @@ KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness latt
     relaxation.iterations relaxation.ramp relaxation.breaking relaxation.damping relaxation.mass_factor relaxation.max_iterations
     control[0].weights control[0].set control[1].set loading.table loading.table2 arc_length.steps arc_length.largest_step
     arc_length.bifurcation lattice.angle lattice.volumes points.neighbours material.fibre.angle material.fibre.transverse_modulus
-    material.fibre.shear_modulus material.scatter[0].weibull_modulus material.scatter[0].correlation_length material.scatter[0].seed
+    material.fibre.shear_modulus material.scatter[0].weibull_modulus material.scatter[0].factor material.scatter[0].correlation_length material.scatter[0].seed
     material.thermal_expansion material.density region[0].set region[0].material.youngs_modulus region[0].material.c1
     region[0].material.damage.critical interface[0].rule interface[0].between rigid[0].set rigid[0].centre rigid[0].displacement
     rigid[0].rotation roller[0].at roller[0].normal roller[0].displacement roller[1].normal constraint[0].displacement

@@ -156,7 +156,7 @@ class Body:
 
     def __init__(self, case, reference, volume, horizon_ratio=None, sets=None, factors=None):
         self.case, self.dimension = case, case.dimension
-        self.horizon = case.horizon(horizon_ratio)
+        self.horizon = case.horizon(horizon_ratio, volume)
         self.spacing = case.spacing(volume)
         self.cross_section = case.cross_section
         self.is_cpd = case["material"]["model"] == "cpd"
@@ -203,6 +203,7 @@ class Body:
             self.constants = {1: material["youngs_modulus"] * factor}
         self.youngs_modulus = self.constants[1] / factor
         size = (self.volume / self.cross_section) ** (1 / self.dimension)
+        own_ratio = self.case.ratio_to_sizes
         linear = quadrature["volume_correction"] == "linear"
         given = self._given_pairs()
         exact = quadrature["volume_correction"].startswith("exact")
@@ -233,6 +234,8 @@ class Body:
         if shape != "ball":
             mean_share = mean_share * (counted <= 1 + HORIZON_TOLERANCE)
         mean_share = mean_share * influence(name, counted)
+        if own_ratio:
+            mean_share = self._directed_shares(i, j, length, size, own_ratio, linear)
         weight = self.volume[i] * self.volume[j] * mean_share
         keep = weight > 0
         pairs, arm, length, weight, mean_share = (a[keep] for a in (pairs, arm, length, weight, mean_share))
@@ -245,6 +248,21 @@ class Body:
             own = self.materials.bond_constants(pairs, arm / length[:, None], factor)
             weight = weight * own / self.constants[1]
         self.tuples[1], self.weight[1] = pairs, weight
+
+    def _directed_shares(self, i, j, length, size, ratio, linear):
+        """Mean over the two directions of a pair, each within the horizon of its first point, in micromoduli of the
+        largest horizon."""
+        both = 0.0
+        for of, other in ((i, j), (j, i)):
+            horizon = ratio * size[of]
+            if linear:
+                inside = numpy.clip((horizon + size[other] / 2 - length) / size[other], 0, 1)
+                inside = numpy.where(inside < HORIZON_TOLERANCE, 0, inside)
+            else:
+                inside = length <= horizon * (1 + HORIZON_TOLERANCE)
+            omega = influence(self.case["material"]["influence"], length / horizon)
+            both = both + numpy.where(inside > 0, inside * omega, 0) * (self.horizon / horizon) ** (self.dimension + 1)
+        return both / 2
 
     def _given_pairs(self):
         """Neighbours from a file and the means of their shares, by the numbers of these points."""
@@ -259,15 +277,20 @@ class Body:
     def _volume_correction(self, pairs, share):
         i, j = pairs.T
         own = self._sum_over(i, share * self.volume[j]) + self._sum_over(j, share * self.volume[i])
+        if self.case.ratio_to_sizes:  # that of a lattice of each point's size and horizon
+            size = self.case.sizes(self.volume)
+            own = own / (self.horizon / (self.case.ratio_to_sizes * size)) ** (self.dimension + 1) / size**self.dimension
+            return 2 * self._bulk_volume(self.case.ratio_to_sizes) / self.spacing**self.dimension / (own[i] + own[j])
         return 2 * self._bulk_volume() / (own[i] + own[j])
 
-    def _bulk_volume(self):
+    def _bulk_volume(self, ratio=None):
         """V_H of a point inside the lattice; for a cloud, of a lattice with its mean spacing."""
         correction, name = self.case["quadrature"]["volume_correction"], self.case["material"]["influence"]
-        ratio = self.horizon / self.spacing
+        ratio = ratio or self.horizon / self.spacing
         edges = self.case.spacings / self.spacing if self.case.is_lattice else 1.0
         shape = self.case["quadrature"].get("horizon_shape", "ball")
-        ball = lattice_ball(self.dimension, self.farthest / self.spacing + (0.0 if correction == "none" else 1.0), edges)
+        farthest = ratio * self.farthest / self.horizon
+        ball = lattice_ball(self.dimension, farthest + (0.0 if correction == "none" else 1.0), edges)
         if shape != "ball":
             ball = ball[shape_norm(shape, ball) <= ratio * (1 + HORIZON_TOLERANCE)]
         distance = numpy.sqrt((ball**2).sum(axis=1)) if shape == "ball" else shape_norm(shape, ball)

@@ -66,7 +66,19 @@ class Case:
             return float(numpy.prod(self.spacings) ** (1 / self.dimension))
         return float((numpy.mean(volume) / self.cross_section) ** (1 / self.dimension))
 
-    def horizon(self, ratio=None):
+    @property
+    def ratio_to_sizes(self):
+        """Horizon of each point over its size; None: there is one horizon."""
+        horizon = None if self.is_lattice else self["points"]["horizon"]
+        return float(horizon["ratio"]) if isinstance(horizon, dict) else None
+
+    def sizes(self, volume):
+        return (numpy.asarray(volume, float) / self.cross_section) ** (1 / self.dimension)
+
+    def horizon(self, ratio=None, volume=None):
+        """The horizon, of points with their own the largest one."""
+        if self.ratio_to_sizes:
+            return self.ratio_to_sizes * self.sizes(volume).max()
         if not self.is_lattice:
             return float(self["points"]["horizon"])
         lattice = self["lattice"]

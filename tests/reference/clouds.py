@@ -60,14 +60,14 @@ def write_points(path, reference, volume, sets):
     path.write_text("\n".join(lines) + "\n")
 
 
-def random_cloud(random, folder, dimension, *, count, horizon, **tables):
+def random_cloud(random, folder, dimension, *, count, horizon, volumes=(0.7, 1.4), **tables):
     """Writes cloud.csv and cloud.toml into a folder; returns the path of the case.
 
     The first points along x are the set `left`, the last ones `right`, the others `middle`.
     """
     reference = random_places(random, count, dimension)
     cross_section = 1.0 if dimension == 3 else random.uniform(0.5, 2)
-    volume = random.uniform(0.7, 1.4, count) * cross_section
+    volume = random.uniform(*volumes, count) * cross_section
     held = dimension + 1
     order = reference[:, 0].argsort()
     sets = {name: numpy.zeros(count, bool) for name in ("left", "right", "middle")}

@@ -65,8 +65,11 @@ class Generator:
         if self.dimension > 1 and self.chance(0.35):
             centre = [self.between(0.3, 0.7) * side for side in self.size]
             radius = self.between(0.1, 0.3) * min(self.size)
-            kind = self.choice("disk") if self.dimension == 2 else self.choice("sphere", "cylinder")
-            shapes.append({"subtract": kind, "centre": centre, "radius": radius})
+            kind = self.choice("disk", "ellipse") if self.dimension == 2 else self.choice("sphere", "cylinder")
+            size = {"radius": radius}
+            if kind == "ellipse":
+                size = {"radii": [radius, self.between(0.3, 1) * radius], "angle": self.between(-180, 180)}
+            shapes.append({"subtract": kind, "centre": centre} | size)
         thickness = int(self.random.integers(1, 4))
         layers = [{"name": name, "side": side, "thickness": thickness} for name, side in (("left", "x-"), ("right", "x+"))]
         lattice = {"spacing": self.spacing, "horizon_ratio": self.horizon_ratio(), "shape": shapes, "layer": layers}

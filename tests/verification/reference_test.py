@@ -89,6 +89,23 @@ class Clouds(Folder):
         self.assertEqual(compared, 4 * 6 * len(LAWS))
         self.assertGreater(min(seen[kind] for kind in ("stretched", "compressed", "broken", "softening")), 100)
 
+    def test_bonds_with_a_horizon_per_point(self):
+        compared = 0
+        corrections = itertools.product(("none", "linear"), ("none", "volume", "energy"))
+        for (dimension, (volume, surface)), name in zip(itertools.product((1, 2, 3), corrections),
+                                                        itertools.cycle(("constant", "linear", "inverse", "gaussian", "septic"))):  # fmt: skip
+            with self.subTest(dimension=dimension, influence=name, volume=volume, surface=surface):
+                material = {"youngs_modulus": 3e3, "influence": name, "damage": {**LAWS["tanh"], "no_fail": ["left"]}}
+                path = random_cloud(self.random, self.folder, dimension, count=(9, 24, 30)[dimension - 1],
+                                    horizon={"ratio": self.random.uniform(2.2, 3.2)}, volumes=(0.1, 2.0), material=material,
+                                    quadrature={"volume_correction": volume, "surface_correction": surface},
+                                    )  # fmt: skip
+                mechanics, displacement = self.compare(path, 0.07, 6.0)
+                if surface == "energy":
+                    self.assert_forces_are_derivatives(mechanics, displacement)
+                compared += 1
+        self.assertEqual(compared, 3 * 6)
+
     def test_bonds_with_every_influence(self):
         compared = 0
         for dimension, name in itertools.product((1, 2, 3), (*POWERS, "gaussian")):

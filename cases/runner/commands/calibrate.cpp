@@ -189,6 +189,10 @@ void check_place(const CalibrationQuestion& where, const BondCalibrationQuestion
 Exit calibrate_bonds(const Case& from, bool with_strengths) {
   const auto body = make_body(from, 1);
   located_errors(from, [&] {
+    if (!body->points.horizons.empty())
+      throw InputError("points.horizon", "",
+                       "is a ratio, so that the constants differ from point to point; calibrate "
+                       "with the horizon of one size, a length");
     const PointMaterials materials(body->specification, body->points);
     const auto all = all_materials(body->specification, materials);
     for (std::size_t k = 0; k < all.size(); ++k) {
@@ -329,7 +333,7 @@ Exit calibrate(const Case& from, bool with_strengths) {
     if (from.dimension == 2) question.thickness = lattice->cross_section;
   } else {
     const auto& source = std::get<PointSource>(from.body);
-    question.horizon_ratio = source.horizon / points.spacing;
+    question.horizon_ratio = source.horizon.length / points.spacing;
     if (from.dimension == 2) question.thickness = source.cross_section;
   }
   BondSetting setting;

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "assembly/operators/constrained_tangent.hpp"
 #include "assembly/terms/points/point_term.hpp"
@@ -177,7 +178,8 @@ void print_constants(const Case& from, const Body& body, int threads) {
   const BondFailure* const bonds = body.model.failing_bonds();
   const ToothedStrength teeth = bonds ? toothed_strength(bonds->potential()) : ToothedStrength();
   if (teeth.teeth > 0) fmt::print("saw-tooth   {}\n", description(teeth));
-  if (const auto trapping = crack_trapping(of, body.points.dimension, body.points.spacing)) {
+  const double size = body.setting.horizon / body.horizon_ratio();
+  if (const auto trapping = crack_trapping(of, body.points.dimension, size)) {
     fmt::print("crack       {}\n", description(*trapping));
   }
 }
@@ -285,6 +287,23 @@ NeighbourCounts neighbours_of(const Body& body) {
           2.0 * double(count_of_bonds(body)) / double(of_point.size())};
 }
 
+void print_points(const Body& body) {
+  const Points& points = body.points;
+  fmt::print("points      {} in {}D, spacing {}", points.own(), points.dimension,
+             spacing_text(points));
+  if (points.horizons.empty()) {
+    fmt::print(", horizon {:g} m ({:.4g} spacings)\n", body.setting.horizon, body.horizon_ratio());
+    return;
+  }
+  fmt::print(
+      ", horizons {:g} to {:g} m ({:.4g} sizes of their points)\n"
+      "horizons    constants below are those of the largest one: a horizon's micromodulus goes "
+      "with "
+      "its power -{}, stretches by fracture_energy with its power -1/2\n",
+      *std::ranges::min_element(points.horizons), body.setting.horizon, body.horizon_ratio(),
+      points.dimension + 1);
+}
+
 }  // namespace
 
 Exit check(const Case& from, int threads) {
@@ -293,8 +312,7 @@ Exit check(const Case& from, int threads) {
   const Points& points = body.points;
   const NeighbourCounts neighbours = neighbours_of(body);
   fmt::print("case        {}\n", from.title.empty() ? from.file : from.title);
-  fmt::print("points      {} in {}D, spacing {}, horizon {:g} m ({:.4g} spacings)\n", points.own(),
-             points.dimension, spacing_text(points), body.setting.horizon, body.horizon_ratio());
+  print_points(body);
   const Preflight preflight =
       located_errors(from, [&] { return preflight_of(from, body, SoleRank()); });
   for (const auto& [label, text] : preflight_lines(preflight)) {
@@ -309,6 +327,11 @@ Exit check(const Case& from, int threads) {
   print_constants(from, body, threads);
   for (const auto& [set, members] : points.sets) {
     fmt::print("set         {}: {} points\n", set, members.size());
+  }
+  if (!points.columns.empty()) {
+    std::vector<std::string> names;
+    for (const auto& [name, values] : points.columns) names.push_back(name);
+    fmt::print("columns     {}\n", fmt::join(names, ", "));
   }
   print_supports(body);
   for (const std::string& line : describe_constraints(body)) {

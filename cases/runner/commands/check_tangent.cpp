@@ -15,10 +15,10 @@
 #include "solvers/motion/newmark.hpp"
 #include "solvers/study/linear_systems.hpp"
 #include "solvers/study/motion.hpp"
-#include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/vector_verbs.hpp"
+#include "src/geometry/expression_at_points.hpp"
 
 namespace peristat {
 namespace {
@@ -43,7 +43,7 @@ std::vector<double> displacement_of(const std::string& deformation, const Points
   std::vector<Expression> component;
   std::istringstream parts(deformation);
   for (std::string part; std::getline(parts, part, ';');) {
-    component.emplace_back(part, points.dimension, points.spacing);
+    component.push_back(expression_of(part, points));
   }
   if (component.size() != std::size_t(points.dimension)) {
     throw InputError("", '"' + deformation + '"',
@@ -54,7 +54,7 @@ std::vector<double> displacement_of(const std::string& deformation, const Points
   for (Index i = 0; i < points.count(); ++i) {
     for (int c = 0; c < points.dimension; ++c) {
       const std::size_t dof = std::size_t(i) * points.dimension + c;
-      displacement[dof] = component[c](points.position(i)) - points.reference[dof];
+      displacement[dof] = value_at(component[c], points, i) - points.reference[dof];
     }
   }
   return displacement;

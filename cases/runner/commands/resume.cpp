@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "cases/runner/commands/run_facts.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/input/case_difference.hpp"
+#include "cases/runner/input/case_inputs.hpp"
 #include "cases/runner/input/case_keys.hpp"
 #include "cases/runner/input/toml_text.hpp"
 #include "cases/runner/process/progress.hpp"
@@ -59,8 +61,43 @@ std::string case_text(const EarlierRun& earlier, const Settings& settings) {
 }
 
 LoadingProgramme programme_of(const Case& from) {
-  if (from.end_time) return LoadingProgramme::of_time(*from.end_time);
+  if (from.end_time) return LoadingProgramme::of_time(*from.end_time, from.loads_over_time);
   return from.programme.empty() ? LoadingProgramme() : LoadingProgramme(from.programme);
+}
+
+/// Refuses load tables over time that differ from the run's up to the time that it has reached.
+void require_same_loads(const LoadingProgramme& then, const LoadingProgramme& now, double time) {
+  std::vector<double> times{0.0, time};
+  for (const LoadingProgramme* const programme : {&then, &now}) {
+    for (const TimeTable& table : programme->loads_over_time()) {
+      for (const auto& pair : table) times.push_back(std::min(pair[0], time));
+    }
+  }
+  for (const double at : times) {
+    if (then.at(at) == now.at(at)) continue;
+    throw InputError(
+        "--set", "loading.table",
+        fmt::format("the loads at {:.6g} s have changed, but the run has used them to "
+                    "reach {:.6g} s; a run is resumed with tables that begin as before",
+                    at, time));
+  }
+}
+
+/// Refuses files of tables that have changed since the run began.
+void require_same_tables(const EarlierRun& earlier, const Case& now) {
+  const std::string found = fingerprints_of_tables(now);
+  if (found == earlier.tables()) return;
+  std::string file = "a file";
+  std::istringstream lines(found);
+  for (std::string line; std::getline(lines, line);) {
+    const bool is_same = earlier.tables().find(line + "\n") != std::string::npos;
+    if (!is_same) file = line.substr(line.find(' ') + 1);
+  }
+  throw InputError("", "",
+                   file +
+                       " of a table has changed since the run began. Undo the change to "
+                       "resume, or start again with `run`",
+                   earlier.case_file().string());
 }
 
 /// Refuses load tables that differ from the run's up to the stage that it has reached.
@@ -68,7 +105,10 @@ void require_same_beginning(const LoadingProgramme& then, const LoadingProgramme
                             const PathState& path) {
   const double stage = path.accepted.stage, reached = std::ceil(stage);
   if (then.is_of_time()) {
-    if (now.is_of_time() && stage <= now.end()) return;
+    if (now.is_of_time() && stage <= now.end()) {
+      require_same_loads(then, now, stage);
+      return;
+    }
     throw InputError("--set", "dynamics.end_time",
                      fmt::format("the run has already reached {:.6g} s, beyond this time", stage));
   }
@@ -115,6 +155,7 @@ Exit resume(const std::filesystem::path& directory, const Settings& settings,
   if (ranks.count() > 1) refuse_keys_without_ranks(from);
   require_same_beginning(programme_of(then), programme_of(from), earlier.checkpoint().path);
   require_stand_in(earlier.checkpoint().path, from);
+  require_same_tables(earlier, then);
   if (std::any_of(settings.begin(), settings.end(),
                   [](const auto& setting) { return setting.first.starts_with("solver."); })) {
     earlier.forget_solvers();

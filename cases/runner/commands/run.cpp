@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "cases/runner/commands/run_facts.hpp"
+#include "cases/runner/input/case_inputs.hpp"
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/interruption.hpp"
 #include "cases/runner/process/ranks_environment.hpp"
@@ -19,6 +20,7 @@
 #include "cases/runner/results/results.hpp"
 #include "cases/runner/results/tables/constraint_columns.hpp"
 #include "cases/runner/results/tables/crack_tip_columns.hpp"
+#include "cases/runner/results/tables/driven_sets.hpp"
 #include "cases/runner/results/tables/motion_columns.hpp"
 #include "cases/runner/setup/body.hpp"
 #include "cases/runner/setup/part_body.hpp"
@@ -124,7 +126,8 @@ class CaseRun {
         progress_(progress),
         summary_(summary),
         results_(results),
-        support_sets_(support_sets(from)) {
+        support_sets_(support_sets(from)),
+        probes_(columns_of(driven_by(from))) {
     for (const auto& probe : from.probes) {
       if (!probe.from) probes_.push_back(columns_of(probe, from.dimension));
     }
@@ -152,7 +155,7 @@ class CaseRun {
     body_ = ranks_.count() > 1 ? make_part_body(from_, ranks_, options_.threads)
                                : make_body(from_, options_.threads);
     gathering_.emplace(*body_->index_map);
-    further_ = {from_.output.stress, lines_of(from_)};
+    further_ = {from_.output.stress, lines_of(from_), !from_.controls.empty()};
     study_.emplace(*body_, study_options(from_, options_.threads),
                    [this](const std::string& reason) { recorder_->changed_solver(reason); });
     if (!gathering_->is_whole()) {
@@ -222,8 +225,13 @@ class CaseRun {
 
   void open_results() {
     Assembler& assembler = study_->equations().assembler();
-    const CaseText text{from_.as_read, from_.as_resolved,    from_.title,
-                        versions(),    identity(from_.file), from_.settings};
+    const CaseText text{from_.as_read,
+                        from_.as_resolved,
+                        from_.title,
+                        versions(),
+                        identity(from_.file),
+                        from_.settings,
+                        fingerprints_of_tables(from_)};
     const Points points = only_recorded({body_->points, *body_->index_map});
     if (earlier_) {
       results_.emplace(*earlier_, earlier_results_, points, text, support_sets_, probes_, further_,
@@ -260,8 +268,8 @@ class CaseRun {
       if (teeth.teeth > 0) progress_.say("damage law: a saw-tooth of " + description(teeth));
     }
     const Points& points = body_->points;
-    if (const auto trapping =
-            crack_trapping(body_->specification, points.dimension, points.spacing)) {
+    if (const auto trapping = crack_trapping(body_->specification, points.dimension,
+                                             body_->setting.horizon / body_->horizon_ratio())) {
       progress_.say("damage law: " + description(*trapping));
     }
     const PathState* path = earlier_ ? &earlier_->checkpoint().path : nullptr;

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "cases/runner/input/case_inputs.hpp"
 #include "cases/runner/process/output_file.hpp"
 #include "cases/runner/results/folder/results_folder.hpp"
 #include "cases/runner/results/tables/constraint_columns.hpp"
@@ -34,20 +35,11 @@ std::filesystem::path resolved(const std::filesystem::path& path) {
   return error ? std::filesystem::absolute(path).lexically_normal() : found;
 }
 
-std::vector<std::filesystem::path> inputs(const Case& from) {
-  std::vector<std::filesystem::path> files{from.file};
-  if (const auto* points = std::get_if<PointSource>(&from.body)) {
-    files.push_back(points->file);
-    if (!points->neighbours.empty()) files.push_back(points->neighbours);
-  }
-  return files;
-}
-
 }  // namespace
 
 void keep_inputs_and_log_apart(const Case& from, const std::string& log_file) {
   const std::filesystem::path results = resolved(from.output.directory);
-  for (const std::filesystem::path& file : inputs(from)) {
+  for (const std::filesystem::path& file : inputs_of(from)) {
     if (is_name_of_results(resolved(file), results)) {
       throw InputError("directory", from.output.directory.string(),
                        file.string() +
@@ -111,8 +103,11 @@ std::vector<PointCounts> constant_fields_of(const Case& from, const Body& body) 
   std::vector<PointCounts> counts;
   if (const auto* const source = std::get_if<PointSource>(&from.body)) {
     const Index own = body.points.owned.value_or(body.points.own());
-    counts.push_back({"source_row", "number of each point in the file's order, from 0",
-                      source_rows(source->file, body.points, own)});
+    counts.push_back(
+        {"source_row",
+         body.points.mesh ? "number of each point's element or node in the file, from 0"
+                          : "number of each point in the file's order, from 0",
+         body.points.mesh ? body.points.source_row : source_rows(source->file, body.points, own)});
   }
   const auto own = [&](auto values) {
     values.resize(std::size_t(body.points.owned.value_or(body.points.own())));

@@ -15,6 +15,7 @@
 #include "cases/runner/input/value_schema.hpp"
 #include "solvers/formulations/formulations.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/point_file.hpp"
 #include "src/neighbourhood/optimised_weights.hpp"
 
 namespace peristat {
@@ -175,42 +176,92 @@ Table<Case> lattice_keys() {
 
 namespace {
 
-Kind<std::filesystem::path> file_beside_the_case() {
-  const auto read = [](const Entry& at) {
-    const std::filesystem::path given = at.from.string(at.key);
-    if (given.empty()) at.refuse("is empty");
-    const auto folder = std::filesystem::path(at.so_far.file).parent_path();
-    const auto file = std::filesystem::absolute(folder / given).lexically_normal();
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error))
-      at.refuse("no such file; searched for " + file.string());
-    return file;
+const Table<PointHorizon>& point_horizon_keys() {
+  using K = Key<PointHorizon>;
+  static const Table<PointHorizon> keys{
+      "points.horizon",
+      {K("ratio", &PointHorizon::ratio, between(1.0, 1000.0),
+         "horizon of each point over its size, the edge of a square or cube of its volume")
+           .required()
+           .on_ranks()}};
+  return keys;
+}
+
+Kind<PointHorizon> point_horizon() {
+  const Kind<double> length = positive("m");
+  const auto read = [length](const Entry& at) {
+    PointHorizon horizon;
+    if (at.from.is_table(at.key)) {
+      point_horizon_keys().read({at.from.table(at.key), "", at.so_far}, horizon);
+    } else {
+      horizon.length = length.read(at);
+    }
+    return horizon;
   };
-  return {read, [](auto& file, auto&) { return toml_string(file.string()); }, text_schema(),
-          "an existing file"};
+  const auto text = [length](const PointHorizon& horizon, const Case& from) {
+    return horizon.ratio > 0.0 ? "{ ratio = " + toml_number(horizon.ratio) + " }"
+                               : length.text(horizon.length, from);
+  };
+  return {read, text, either_schema({length.schema, point_horizon_keys().schema()}),
+          "positive, or `{ ratio = … }`", "m"};
 }
 
 }  // namespace
 
 Table<Case> points_keys() {
   using K = Key<Case>;
+  constexpr auto has_mesh = [](const Case& from, const Case&) {
+    const auto* const source = std::get_if<PointSource>(&from.body);
+    return source != nullptr && source->is_mesh();
+  };
+  constexpr auto is_no_mesh = [has_mesh](const Case& from, const Case& so_far) {
+    return !has_mesh(from, so_far);
+  };
   return {
       "points",
       {K("file", in(points, &PointSource::file), file_beside_the_case(),
-         "file with comma- or blank-separated text; its path is relative to the case file's folder")
+         "file with comma- or blank-separated text, or a mesh, by the end of its name (.msh, .inp, "
+         ".vtu, .vtk, .exo, .e, .ex2, .med); its path is relative to the case file's folder")
            .required()
+           .early()
+           .then([](auto&, auto& from) {
+             if (points(from).is_mesh()) return;
+             for (const std::string& name : further_columns(points(from).file, from.dimension))
+               from.columns[name];
+           })
            .on_ranks(),
-       K("horizon", in(points, &PointSource::horizon), positive("m"),
-         "horizon, the same for every point")
+       K("horizon", in(points, &PointSource::horizon), point_horizon(),
+         "horizon, the same for every point; or `{ ratio = 3.015 }`, a "
+         "[horizon per point](theory.md#horizon-per-point) of 3.015 times its size, for model "
+         "`bond` and points of different sizes")
            .moreover("at least the mean spacing; at most as many mean spacings as "
                      "`lattice.horizon_ratio` allows")
            .required()
+           .early()
+           .describes([](auto& all) { point_horizon_keys().describe(all); })
            .on_ranks(),
        K("neighbours", in(points, &PointSource::neighbours), file_beside_the_case(),
          "file with the neighbours of the points and the shares of their volumes that count, "
          "relative to the case file's folder like `file`; model `bond`")
+           .unless(has_mesh, "is for a file of text")
            .written_if([](auto& from, auto&) { return !points(from).neighbours.empty(); })
+           .then([](auto& at, auto& result) {
+             if (!points(result).neighbours.empty() && points(result).horizon.ratio > 0.0)
+               at.refuse("goes with one horizon for all points, not with a ratio");
+           })
            .default_words("all points within the horizon"),
+       K("at", in(points, &PointSource::at),
+         choice<PointsAt>({{"elements", PointsAt::elements}, {"nodes", PointsAt::nodes}}),
+         "of a mesh: a point at the centroid of each element with its volume, or at each node with "
+         "its share of the elements around it")
+           .default_words("`\"elements\"`")
+           .unless(is_no_mesh, "is for a mesh")
+           .written_if(has_mesh),
+       K("cut_bonds", in(points, &PointSource::cut_bonds), boolean(),
+         "of a mesh: the boundary of the elements cuts the bonds that leave the body")
+           .default_words("true")
+           .unless(is_no_mesh, "is for a mesh")
+           .written_if(has_mesh),
        thickness(in(points, &PointSource::cross_section)),
        area(in(points, &PointSource::cross_section))},
       [](auto&, auto& result) { result.body = PointSource(); }};

@@ -1,6 +1,8 @@
 #include "cases/runner/input/case.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 
 #include "cases/runner/input/case_file.hpp"
 #include "cases/runner/input/given_values.hpp"
@@ -42,7 +44,8 @@ void resolve_size(Case& result) {
     result.cross_section = lattice->cross_section;
   } else {
     const auto& source = std::get<PointSource>(result.body);
-    result.horizon = source.horizon;
+    result.horizon = source.horizon.length;
+    result.horizon_per_size = source.horizon.ratio;
     result.cross_section = source.cross_section;
   }
 }
@@ -93,6 +96,7 @@ std::string key_of(const Case& from, std::string member) {
   if (member == "cross_section")
     return std::string(lattice != nullptr ? "lattice." : "points.") +
            (from.dimension == 1 ? "area" : "thickness");
+  if (member == "points.horizons") return "points.horizon";
   if (member == "horizon") return lattice != nullptr ? "lattice.horizon_ratio" : "points.horizon";
   if (member.starts_with("points") && lattice != nullptr) return "lattice.shape";
   if (member == "loading.mode") return "solver.mode";
@@ -119,6 +123,13 @@ std::string key_of(const Case& from, std::string member) {
 
 }  // namespace
 
+bool PointSource::is_mesh() const {
+  std::string end = file.extension().string();
+  std::ranges::transform(end, end.begin(), [](unsigned char c) { return std::tolower(c); });
+  constexpr std::array known{".msh", ".inp", ".vtu", ".vtk", ".exo", ".e", ".ex2", ".med"};
+  return std::ranges::any_of(known, [&](const char* one) { return end == one; });
+}
+
 int LoadingSpecification::steps_to_entry() const {
   const bool is_of_step = std::any_of(tables.begin(), tables.end(), [](const LoadTable& table) {
     return !table.expression.empty();
@@ -131,7 +142,10 @@ std::vector<std::string> LoadingSpecification::parameters() const {
 }
 
 std::vector<std::string> Case::parameters() const {
-  return dynamics.is_asked_for ? std::vector<std::string>{"t"} : loading.parameters();
+  if (!dynamics.is_asked_for) return loading.parameters();
+  std::vector<std::string> all = LoadingProgramme::names(loading.tables.size());
+  all.insert(all.begin(), "t");
+  return all;
 }
 
 Case read_case(const std::filesystem::path& file, const Settings& overrides) {
@@ -150,13 +164,19 @@ Case read_case(const std::filesystem::path& file, const std::string& text,
   collect_locations(document, "", result.locations);
   try {
     document_keys().read({TomlTable(document, "", result.file), "", result}, result);
-    if (!result.dynamics.is_asked_for) refuse_idle_tables(result);
+    refuse_idle_tables(result);
+    resolve_size(result);
     check_materials(result, result.dimension);
   } catch (const InputError& error) {
     throw located(result, error);
   }
-  resolve_size(result);
-  for (const LoadTable& table : result.loading.tables) result.programme.push_back(table.entries);
+  for (const LoadTable& table : result.loading.tables) {
+    if (result.dynamics.is_asked_for) {
+      result.loads_over_time.push_back(table.over_time);
+    } else {
+      result.programme.push_back(table.entries);
+    }
+  }
   if (result.dynamics.is_asked_for) result.end_time = result.dynamics.end_time;
   result.has_inertia = result.dynamics.is_implicit();
   result.as_resolved = document_keys().lines(result, result);

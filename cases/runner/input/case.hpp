@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -15,24 +17,39 @@
 #include "solvers/fracture/crack_tip.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
 #include "solvers/observe/probe_specification.hpp"
+#include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/lattice.hpp"
+#include "src/geometry/mesh_points.hpp"
 #include "src/geometry/point_set.hpp"
 
 namespace peristat {
+
+/// Horizon of points from a file: one length for all, or a multiple of each point's size.
+struct PointHorizon {
+  double length = 0.0;  ///< [m]
+  double ratio = 0.0;   ///< horizon / size; 0: the length
+};
 
 /// Points that come from a file instead of a lattice (table [points]).
 struct PointSource {
   std::filesystem::path file;  ///< absolute; in the case file relative to the case file's folder
   std::filesystem::path neighbours{};  ///< absolute; empty: the points within the horizon
   double cross_section = 1.0;          ///< 1D: area [m2]; 2D: thickness [m]
-  double horizon = 0.0;                ///< [m]
+  PointHorizon horizon{};
+  PointsAt at = PointsAt::elements;  ///< of a mesh
+  bool cut_bonds = true;             ///< of a mesh: bonds must not leave it
+
+  /// True if the file is a mesh, by the end of its name: .msh, .inp, .vtu, .vtk, .exo, .e, .ex2,
+  /// .med.
+  [[nodiscard]] bool is_mesh() const;
 };
 
-/// Values of a load parameter: given one by one, or as an expression of the step.
+/// Values of a load parameter: given one by one, as an expression of the step, or over time.
 struct LoadTable {
   std::vector<double> entries;
   std::string expression;
+  TimeTable over_time;  ///< of a motion
 };
 
 struct LoadingSpecification {
@@ -49,7 +66,7 @@ struct LoadingSpecification {
   /// Number of equal steps from one entry to the next; 1 for an expression, which has an entry for
   /// each step.
   [[nodiscard]] int steps_to_entry() const;
-  /// Load parameters that expressions may use.
+  /// Load parameters that expressions may use in a quasi-static mode.
   [[nodiscard]] std::vector<std::string> parameters() const;
 };
 
@@ -113,6 +130,8 @@ struct Case : BodySpecification {
   int dimension = 2;
   std::variant<Lattice, PointSource> body;
   double horizon_ratio = 3.015;  ///< horizon / spacing, for a lattice
+  /// Names of further data of points from a file, which expressions may use; without values.
+  Columns columns;
   std::vector<SetRule> sets;
   LoadingSpecification loading;
   SolverSpecification solver;
@@ -122,8 +141,13 @@ struct Case : BodySpecification {
   std::vector<ProbeSpecification> probes;
   std::vector<CrackTipSpecification> crack_tips;
 
-  /// Parameters that expressions of supports and loads may use: of the loading, or the time.
+  /// Parameters that expressions of supports and loads may use: those of the loading, and the time
+  /// of a motion.
   [[nodiscard]] std::vector<std::string> parameters() const;
+
+  /// Files of the tables in expressions, absolute; grows while the keys are read.
+  std::shared_ptr<std::set<std::filesystem::path>> tables =
+      std::make_shared<std::set<std::filesystem::path>>();
 
   std::string file;         ///< as given by the person
   std::string as_read;      ///< text of the file

@@ -101,7 +101,9 @@ Table<Case> all_keys() {
        K("absorbing", &Case::absorbing, absorbing_keys(), "tables: layers that absorb waves")
            .on_ranks(),
        K("loading", &Case::loading, loading_keys(), "table: the path of the loads, and its steps")
-           .written_if(searches)
+           .written_if([](auto& result, auto&) {
+             return !result.dynamics.is_asked_for || !result.loading.tables.empty();
+           })
            .early(),
        K("solver", &Case::solver, solver_keys(), "table: search for equilibrium"),
        K("relaxation", &Case::relaxation, relaxation_keys(), "table: steps by dynamic relaxation")

@@ -4,7 +4,9 @@
 #include <cctype>
 #include <cstddef>
 
+#include "src/conditions/loading_programme.hpp"
 #include "src/core/input_error.hpp"
+#include "src/core/table_calls.hpp"
 #include "src/geometry/side.hpp"
 
 namespace peristat {
@@ -146,8 +148,12 @@ class Collection {
   std::vector<GivenValue> values_;
 };
 
-/// True if a name occurs in an expression by itself, not as a part of a longer one.
-bool has_word(const std::string& text, const std::string& word) {
+/// True if a name occurs in an expression by itself, not as a part of a longer one or in quotes.
+bool has_word(std::string text, const std::string& word) {
+  for (const TableCall& call : table_calls(text)) {
+    std::fill(text.begin() + std::ptrdiff_t(call.begin), text.begin() + std::ptrdiff_t(call.end),
+              ' ');
+  }
   const auto belongs = [&](std::size_t at) {
     return at < text.size() &&
            (std::isalnum(static_cast<unsigned char>(text[at])) || text[at] == '_');
@@ -163,7 +169,8 @@ bool has_word(const std::string& text, const std::string& word) {
 std::vector<GivenValue> given_values(const Case& from) { return Collection(from).all(); }
 
 void refuse_idle_tables(const Case& from) {
-  const std::vector<std::string> parameters = from.parameters();
+  const std::vector<std::string> parameters =
+      LoadingProgramme::names(std::max<std::size_t>(from.loading.tables.size(), 1));
   std::vector<bool> is_used(parameters.size(), false);
   is_used.front() = !from.controls.empty();  // the controlled displacement uses its table
   for (const GivenValue& value : given_values(from)) {
@@ -171,8 +178,9 @@ void refuse_idle_tables(const Case& from) {
       is_used[k] = is_used[k] || has_word(value.text, parameters[k]);
     }
   }
-  // The first table may be needed for those that follow it.
-  is_used.front() = std::ranges::find(is_used, true) != is_used.end();
+  // In statics the first table may be needed for those that follow it.
+  if (!from.dynamics.is_asked_for)
+    is_used.front() = std::ranges::find(is_used, true) != is_used.end();
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const std::string key = "loading.table" + (k > 0 ? std::to_string(k + 1) : std::string());
     if (is_used[k] || !from.locations.contains(key)) continue;

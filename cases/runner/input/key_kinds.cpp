@@ -1,13 +1,16 @@
 #include "cases/runner/input/key_kinds.hpp"
 
+#include <filesystem>
 #include <map>
 #include <utility>
 #include <variant>
 
+#include "cases/runner/input/case_inputs.hpp"
 #include "cases/runner/input/value_schema.hpp"
 #include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/table_calls.hpp"
 
 namespace peristat {
 namespace {
@@ -41,11 +44,31 @@ std::map<std::string, std::string> set_names(const Case& from) {
 /// True if names of sets are not all known before a file of points is read.
 bool has_sets_from_file(const Case& from) { return std::holds_alternative<PointSource>(from.body); }
 
-/// Refuses a component that is no expression of load and, in `dimension` > 0, of place.
-void check_component(const Entry& at, std::size_t component, const std::string& text,
-                     int dimension) {
+/// Text of an expression whose tables have absolute paths, as all files in a resolved case.
+std::string with_absolute_tables(const Entry& at, const std::string& text) {
+  return with_table_files(text, [&](const std::string& name) {
+    const std::filesystem::path file = absolute_beside_case(at.so_far, name);
+    at.so_far.tables->insert(file);
+    return file.string();
+  });
+}
+
+/// Checks an expression of parameters and, in `dimension` > 0, of place and columns.
+/// @returns its text with absolute paths
+/// @throws InputError as Expression does
+std::string checked(const Entry& at, const std::string& text, int dimension,
+                    const std::vector<std::string>& parameters) {
+  std::string resolved = with_absolute_tables(at, text);
+  static_cast<void>(
+      Expression(resolved, dimension, spacing_of(at.so_far), parameters, at.so_far.columns));
+  return resolved;
+}
+
+/// The same for a component, of the parameters of loads.
+std::string checked_component(const Entry& at, std::size_t component, const std::string& text,
+                              int dimension) {
   try {
-    Expression(text, dimension, spacing_of(at.so_far), at.so_far.parameters());
+    return checked(at, text, dimension, at.so_far.parameters());
   } catch (const InputError& error) {
     at.from.refuse(at.key, component, error.allowed());
   }
@@ -127,6 +150,18 @@ Kind<std::string> one_of(const std::vector<std::string>& names) {
   for (const auto& known : names) allowed += (allowed.empty() ? "`\"" : ", `\"") + known + "\"`";
   return {[=](const Entry& at) { return at.from.one_of(at.key, names); }, string_text,
           choice_schema(names), allowed};
+}
+
+Kind<std::filesystem::path> file_beside_the_case() {
+  const auto read = [](const Entry& at) {
+    try {
+      return absolute_beside_case(at.so_far, at.from.string(at.key));
+    } catch (const InputError& error) {
+      at.refuse(error.allowed());
+    }
+  };
+  return {read, [](auto& file, auto&) { return toml_string(file.string()); }, text_schema(),
+          "an existing file"};
 }
 
 Kind<std::int64_t> choice_of_numbers(std::vector<Choice<std::int64_t>> choices) {
@@ -276,6 +311,16 @@ Kind<std::vector<std::array<double, 2>>> pairs() {
           "3 or more pairs `[x, y]`", "m"};
 }
 
+Kind<std::array<double, 2>> range_of_numbers() {
+  const auto read = [](const Entry& at) {
+    const auto numbers = at.from.numbers(at.key, 2, Range{});
+    if (numbers[0] > numbers[1]) at.refuse("the second number is below the first");
+    return std::array<double, 2>{numbers[0], numbers[1]};
+  };
+  return {read, [](const auto& pair, const Case&) { return array_text(pair, toml_number); },
+          list_schema(number_schema({}, ""), 2, 2), "two numbers, the second not below the first"};
+}
+
 Kind<std::vector<std::array<double, 3>>> triples() {
   return {[](const Entry& at) { return at.from.triples(at.key); }, tuples_text<3>,
           polygon_schema(3), "3 or more `[x, y, z]`", "m"};
@@ -292,28 +337,42 @@ Kind<int> axis() {
 
 Kind<std::string> condition() {
   const auto read = [](const Entry& at) {
-    const std::string selection = at.from.string(at.key);
     try {
-      Expression(selection, at.so_far.dimension, spacing_of(at.so_far));
+      return checked(at, at.from.string(at.key), at.so_far.dimension, {});
     } catch (const InputError& error) {
       at.refuse(error.allowed());
     }
-    return selection;
   };
   return {read, string_text, text_schema(), "an expression of place"};
 }
 
 Kind<LoadTable> load_table() {
-  const auto read = [](const Entry& at) {
-    return at.from.is_string(at.key) ? LoadTable{{}, at.from.string(at.key)}
-                                     : LoadTable{at.from.numbers(at.key, Range()), {}};
+  const auto read = [](const Entry& at) -> LoadTable {
+    if (at.so_far.dynamics.is_asked_for) {
+      if (at.from.is_string(at.key)) {
+        at.refuse(
+            "in mode dynamics a table has pairs [time, value]; an expression of t may stand "
+            "in the supports and loads themselves");
+      }
+      return LoadTable{{}, {}, at.from.pairs(at.key)};
+    }
+    if (!at.from.is_string(at.key)) return LoadTable{at.from.numbers(at.key, Range()), {}, {}};
+    try {
+      return LoadTable{{}, with_absolute_tables(at, at.from.string(at.key)), {}};
+    } catch (const InputError& error) {
+      at.refuse(error.allowed());
+    }
   };
-  const auto text = [](const LoadTable& table, const Case&) {
+  const auto text = [](const LoadTable& table, const Case& from) {
+    if (!table.over_time.empty()) return tuples_text(table.over_time, from);
     return table.expression.empty() ? array_text(table.entries, toml_number)
                                     : toml_string(table.expression);
   };
-  return {read, text, either_schema({list_schema(number_schema({}, ""), 2), text_schema()}),
-          "at least two numbers, the first 0, or an expression of `step`, 0 at step 0"};
+  return {read, text,
+          either_schema({list_schema(number_schema({}, ""), 2),
+                         list_schema(list_schema(number_schema({}, ""), 2, 2), 2), text_schema()}),
+          "at least two numbers, the first 0, or an expression of `step`, 0 at step 0; in mode "
+          "`dynamics` two or more pairs `[t, value]`, from t = 0 to `end_time`, ascending"};
 }
 
 Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
@@ -324,8 +383,7 @@ Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
     for (std::size_t c = 0; c < components.size(); ++c) {
       if (components[c] == "free") continue;
       all_free = false;
-      check_component(at, c, components[c], at.so_far.dimension);
-      prescribed[c] = components[c];
+      prescribed[c] = checked_component(at, c, components[c], at.so_far.dimension);
     }
     if (all_free) at.refuse("every component is \"free\", so this supports nothing");
     return prescribed;
@@ -351,8 +409,7 @@ Kind<std::array<std::optional<std::string>, 3>> free_components(Components kind,
     const auto components = at.from.components(at.key, count(at.so_far));
     for (std::size_t c = 0; c < components.size(); ++c) {
       if (components[c] == "free") continue;
-      check_component(at, c, components[c], 0);
-      prescribed[c] = components[c];
+      prescribed[c] = checked_component(at, c, components[c], 0);
     }
     return prescribed;
   };
@@ -377,12 +434,10 @@ Kind<std::string> expression(bool of_place, bool or_free) {
                                  : number_text(at.from.number(at.key, Range()));
     if (or_free && text == "free") return text;
     try {
-      Expression(text, of_place ? at.so_far.dimension : 0, spacing_of(at.so_far),
-                 at.so_far.parameters());
+      return checked(at, text, of_place ? at.so_far.dimension : 0, at.so_far.parameters());
     } catch (const InputError& error) {
       at.refuse(error.allowed());
     }
-    return text;
   };
   return {read, string_text, expression_schema(),
           std::string("number, or expression of ") +
@@ -398,11 +453,10 @@ Kind<std::array<std::string, 3>> components_of_place(const std::string& unit) {
     const auto components = at.from.components(at.key, dimension_of(at.so_far));
     for (std::size_t c = 0; c < components.size(); ++c) {
       try {
-        Expression(components[c], at.so_far.dimension, spacing_of(at.so_far));
+        values[c] = checked(at, components[c], at.so_far.dimension, {});
       } catch (const InputError& error) {
         at.from.refuse(at.key, c, error.allowed());
       }
-      values[c] = components[c];
     }
     return values;
   };
@@ -421,11 +475,14 @@ Kind<double> stretch() {
   const auto read = [=](const Entry& at) {
     if (!at.from.is_string(at.key)) return at.from.number(at.key, range);
     const auto* lattice = std::get_if<Lattice>(&at.so_far.body);
-    const double horizon = lattice != nullptr ? at.so_far.horizon_ratio * lattice->spacing
-                                              : std::get<PointSource>(at.so_far.body).horizon;
+    if (lattice == nullptr && std::get<PointSource>(at.so_far.body).horizon.ratio > 0.0)
+      at.refuse("must be a number: points.horizon gives every point its own horizon");
+    const double horizon = lattice != nullptr
+                               ? at.so_far.horizon_ratio * lattice->spacing
+                               : std::get<PointSource>(at.so_far.body).horizon.length;
     double value = 0.0;
     try {
-      const Expression of(at.from.string(at.key), 0,
+      const Expression of(with_absolute_tables(at, at.from.string(at.key)), 0,
                           lattice != nullptr ? lattice->spacing : Spacing(), {"horizon"});
       value = of({}, std::array{horizon});
     } catch (const InputError& error) {
@@ -448,12 +505,11 @@ std::string read_field(const Entry& at, bool has_parameters) {
                                 ? at.from.string(at.key)
                                 : toml_number(at.from.number(at.key, Range()));
   try {
-    Expression(given, at.so_far.dimension, spacing_of(at.so_far),
-               has_parameters ? at.so_far.parameters() : std::vector<std::string>());
+    return checked(at, given, at.so_far.dimension,
+                   has_parameters ? at.so_far.parameters() : std::vector<std::string>());
   } catch (const InputError& error) {
     at.refuse(error.allowed());
   }
-  return given;
 }
 
 }  // namespace
@@ -478,8 +534,7 @@ Kind<std::array<std::string, 3>> located_components(bool has_place, const std::s
     const auto components = at.from.components(at.key, dimension_of(at.so_far));
     for (std::size_t c = 0; c < components.size(); ++c) {
       if (components[c] == "free") at.from.refuse(at.key, c, against_free);
-      check_component(at, c, components[c], has_place ? at.so_far.dimension : 0);
-      values[c] = components[c];
+      values[c] = checked_component(at, c, components[c], has_place ? at.so_far.dimension : 0);
     }
     return values;
   };
@@ -508,7 +563,7 @@ Kind<std::vector<std::string>> stress_components() {
     std::vector<std::string> values = at.from.components(at.key, entries);
     for (std::size_t c = 0; c < values.size(); ++c) {
       if (values[c] == "free") at.from.refuse(at.key, c, "write 0 for no stress");
-      check_component(at, c, values[c], at.so_far.dimension);
+      values[c] = checked_component(at, c, values[c], at.so_far.dimension);
     }
     return values;
   };
@@ -522,7 +577,7 @@ Kind<std::vector<std::string>> expected_components() {
     constexpr std::size_t any = 0;
     std::vector<std::string> values = at.from.components(at.key, any);
     for (std::size_t c = 0; c < values.size(); ++c) {
-      check_component(at, c, values[c], at.so_far.dimension);
+      values[c] = checked_component(at, c, values[c], at.so_far.dimension);
     }
     return values;
   };

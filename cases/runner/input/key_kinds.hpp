@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -31,6 +32,9 @@ namespace peristat {
 [[nodiscard]] Kind<std::string> text();
 /// A string out of a list.
 [[nodiscard]] Kind<std::string> one_of(const std::vector<std::string>& names);
+
+/// An existing file; its path is relative to the case file's folder, and becomes absolute.
+[[nodiscard]] Kind<std::filesystem::path> file_beside_the_case();
 
 /// A value of an enumeration, and its name.
 template <class Value>
@@ -64,6 +68,8 @@ template <class Value>
 /// A component per dimension.
 [[nodiscard]] Kind<Coordinates> coordinates(std::string unit = "m");
 [[nodiscard]] Kind<std::vector<std::array<double, 2>>> pairs();
+/// Two numbers, the second not below the first.
+[[nodiscard]] Kind<std::array<double, 2>> range_of_numbers();
 [[nodiscard]] Kind<std::vector<std::array<double, 3>>> triples();
 /// A side of the body by its name, such as "x-".
 [[nodiscard]] Kind<Side> side();

@@ -74,11 +74,11 @@ Table<LoadSpecification> load_keys() {
                   "acceleration per component, multiplied by `material.density`; layers have no "
                   "weight unless `set` names them"),
        load_value(Kind::traction, "Pa",
-                  "force per area per component on a flat part of the boundary; its direction "
-                  "stays fixed; on a lattice only"),
+                  "force per area per component on a flat part of the boundary, or on facets of "
+                  "a mesh; its direction stays fixed; on a lattice or mesh"),
        K("pressure", pressure, scalar_field("Pa"),
          "pressure on the exposed faces of the cells of the set's points, or of a side; it follows "
-         "the faces as they deform, and pushes if it is positive; on a lattice only")
+         "the faces as they deform, and pushes if it is positive; on a lattice or mesh")
            .then([](auto&, auto& load) { load.kind = Kind::pressure; })
            .written_if([](auto& load, auto&) { return load.kind == Kind::pressure; })
            .one_of()

@@ -1,5 +1,6 @@
 #include "cases/runner/input/loading_keys.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <type_traits>
@@ -35,10 +36,26 @@ std::vector<double> entries_of(const Entry& at, const std::string& expression, i
   }
 }
 
+/// Refuses tables over time that are none, whatever the end of the motion.
+void check_tables_over_time(const Entry& at, const std::vector<LoadTable>& tables) {
+  for (std::size_t k = 0; k < tables.size(); ++k) {
+    const Entry table{at.from, load_table_key(k), at.so_far};
+    if (tables[k].over_time.empty())
+      table.refuse("is missing, but a table with a higher number is given");
+    try {
+      const double end = std::max(1e-30, tables[k].over_time.back()[0]);
+      static_cast<void>(LoadingProgramme::of_time(end, {tables[k].over_time}));
+    } catch (const InputError& error) {
+      table.refuse(error.allowed());
+    }
+  }
+}
+
 /// Finds the entries of all tables, and refuses tables that don't go together.
 void resolve_tables(const Entry& at, LoadingSpecification& loading) {
   auto& tables = loading.tables;
   if (tables.empty()) return;
+  if (at.so_far.dynamics.is_asked_for) return check_tables_over_time(at, tables);
   if (tables.front().entries.empty() && tables.front().expression.empty()) {
     tables.front().entries = {0.0, 1.0};
   }
@@ -64,10 +81,14 @@ void resolve_tables(const Entry& at, LoadingSpecification& loading) {
 Table<LoadingSpecification> loading_keys() {
   using Spec = LoadingSpecification;
   using K = Key<Spec>;
+  constexpr const char* for_steps =
+      "does not go with solver.mode = \"dynamics\", where [loading] has only tables over time";
+  const auto moves = [](auto&, auto& from) { return from.dynamics.is_asked_for; };
   Table<Spec> keys{"loading",
                    {K("steps", &Spec::steps, integer(1, 1'000'000),
                       "number of equal steps from one entry of the tables to the next, or of a "
                       "table that is an expression; without a table from 0 to 1")
+                        .unless(moves, for_steps)
                         .extends()
                         .on_ranks()}};
   for (std::size_t k = 0; k < LoadingProgramme::most_parameters; ++k) {
@@ -85,7 +106,9 @@ Table<LoadingSpecification> loading_keys() {
         load_table_key(k), member, load_table(),
         k == 0
             ? "values of `load` that the path goes through, linearly from one to the next: it may "
-              "rise, fall and rest; with `[[control]]` values of the controlled displacement in m"
+              "rise, fall and rest; with `[[control]]` values of the controlled displacement in m; "
+              "in "
+              "mode `dynamics` pairs of a time in s and the value of `load` then"
             : "likewise for a further load parameter, `" + parameter + "`");
     key.written_if([k](auto& loading, auto&) { return loading.tables.size() > k; })
         .default_words(k == 0 ? "`[0, 1]`; required with `[[control]]`" : "no `" + parameter + "`")
@@ -96,7 +119,7 @@ Table<LoadingSpecification> loading_keys() {
   }
   const auto follows_events = [](auto&, auto& from) { return from.solver.mode == Mode::path; };
   const auto takes_steps = [](auto&, auto& from) { return from.solver.mode != Mode::path; };
-  for (const K& key :
+  for (K key :
        {K("adaptive", &Spec::adaptive, boolean(),
           "whether a step that does not converge is cut, after which steps grow again; otherwise "
           "it ends the run")
@@ -146,8 +169,10 @@ Table<LoadingSpecification> loading_keys() {
         K("teeth", &Spec::teeth, integer(1, 1000),
           "mode `path`: most teeth of the saw-tooth that stands for a law of damage whose force "
           "falls smoothly")
-            .written_if(follows_events)})
+            .written_if(follows_events)}) {
+    key.unless(moves, for_steps);
     keys.add(key);
+  }
   return keys;
 }
 
@@ -215,7 +240,17 @@ Table<DynamicsSpecification> dynamics_keys() {
       {K("end_time", &Spec::end_time, positive("s"),
          "time up to which the motion is followed, from 0")
            .required()
-           .extends(),
+           .extends()
+           .then([](auto& at, auto& dynamics) {
+             for (const LoadTable& table : at.so_far.loading.tables) {
+               try {
+                 static_cast<void>(LoadingProgramme::of_time(dynamics.end_time, {table.over_time}));
+               } catch (const InputError& error) {
+                 at.refuse("a loading.table, whose last time is " + error.value() + " s, " +
+                           error.allowed());
+               }
+             }
+           }),
        K("scheme", &Spec::scheme,
          choice<MotionScheme>(
              {{"verlet", MotionScheme::verlet}, {newmark_name, MotionScheme::newmark}}),
@@ -264,7 +299,7 @@ void check_dynamics(const Entry& at, const Case& result) {
   }
   refuse("crack_tip",
          "does not go with solver.mode = \"dynamics\": its integrals leave out the inertia");
-  for (const char* key : {"loading", "control", "relaxation", "arc_length"}) {
+  for (const char* key : {"control", "relaxation", "arc_length"}) {
     refuse(key,
            "does not go with solver.mode = \"dynamics\", whose supports and loads depend on the "
            "time t; give their values as expressions of t");

@@ -177,6 +177,8 @@ Table<ScatterSpecification> scatter_keys(const std::string& material) {
   using Spec = ScatterSpecification;
   using K = Key<Spec>;
   constexpr auto field = [](auto& scatter) -> auto& { return scatter.field; };
+  const auto is_given = [](auto& scatter, auto&) { return !scatter.factor.empty(); };
+  const char* const is_random = "is for a random factor; leave it out with factor";
   return {material + ".scatter",
           {K("of", &Spec::of,
              choice<Spec::Quantity>({{"stiffness", Spec::Quantity::stiffness},
@@ -184,19 +186,30 @@ Table<ScatterSpecification> scatter_keys(const std::string& material) {
              "what the factor multiplies: the constants of bonds, triangles and tetrahedra, or the "
              "stretches of the law of damage")
                .required(),
+           K("factor", &Spec::factor, field_of_place("1"),
+             "the factor at each point, in the place of a random one; that of a bond is the mean "
+             "of its ends")
+               .written_if(is_given)
+               .moreover("from 1e-6 to 1e6 at each point")
+               .default_words("random")
+               .early(),
            K("distribution", &Spec::distribution,
              choice<Spec::Distribution>({{"weibull", Spec::Distribution::weibull}}),
-             "distribution of the factor, whose mean is 1"),
+             "distribution of the factor, whose mean is 1")
+               .unless(is_given, is_random),
            K("weibull_modulus", in(field, &WeibullField::modulus), between(1.0, 1e3, "1"),
              "shape $m$: the larger, the less scatter")
-               .required(),
+               .unless(is_given, is_random)
+               .required("required without `factor`"),
            K("correlation_length", in(field, &WeibullField::correlation_length),
              number({0.0, 1e30, "must be 0 or a positive number [m]"}, "0 or positive", "m"),
-             "length $\\ell$ over which the field changes; 0: every point has a value of its own"),
+             "length $\\ell$ over which the field changes; 0: every point has a value of its own")
+               .unless(is_given, is_random),
            K("seed", in(field, &WeibullField::seed),
              count_from(0, "", std::numeric_limits<std::int64_t>::max()),
              "seed of the field; the same seed and position give the same value, whatever else the "
-             "case contains")}};
+             "case contains")
+               .unless(is_given, is_random)}};
 }
 
 void make_linear_if_lps(const Entry& at, MaterialSpecification& material) {
@@ -369,7 +382,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .otherwise([](auto&, auto&) {}, "none")
            .on_ranks(),
        K("scatter", &Spec::scatter, scatter_keys(name),
-         "tables `[[material.scatter]]`: random fields")
+         "tables `[[material.scatter]]`: factors that vary from point to point, random or given")
            .on_ranks()}};
 }
 

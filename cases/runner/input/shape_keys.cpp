@@ -1,27 +1,59 @@
 #include "cases/runner/input/shape_keys.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
+#include <memory>
+#include <string>
 #include <tuple>
 #include <variant>
 
 #include "cases/runner/input/value_schema.hpp"
+#include "src/core/input_error.hpp"
+#include "src/geometry/closed_surface.hpp"
+#include "src/geometry/outline_file.hpp"
+#include "src/geometry/pixels.hpp"
 
 namespace peristat {
 namespace {
 
+template <class Rectangular>
+Key<Rectangular> lower_corner() {
+  return Key<Rectangular>("min", &Rectangular::min, coordinates(), "box, image: lower corner")
+      .moreover("below `max`")
+      .required();
+}
+
+template <class Rectangular>
+Key<Rectangular> upper_corner() {
+  return Key<Rectangular>("max", &Rectangular::max, coordinates(), "box, image: upper corner")
+      .required();
+}
+
+constexpr const char* meaning_of_file =
+    "polygon (in place of `vertices`), image, stl: file with corners x, y, with a PNG or TIFF "
+    "picture, with an STL surface; its path is relative to the case file's folder";
+
+/// Calls `read`; puts the file's key in front of the errors that name no place.
+template <class Read>
+auto read_from_file(const Entry& table, const Read& read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    if (!error.place().empty()) throw;
+    table.from.refuse("file", error.allowed());
+  }
+}
+
 const Table<Box>& keys_of(const Box&) {
-  using K = Key<Box>;
-  static const Table<Box> table{
-      "set.shape.box",
-      {K("min", &Box::min, coordinates(), "box: lower corner").moreover("below `max`").required(),
-       K("max", &Box::max, coordinates(), "box: upper corner").required()}};
+  static const Table<Box> table{"set.shape.box", {lower_corner<Box>(), upper_corner<Box>()}};
   return table;
 }
 
 template <class Round>
 Key<Round> centre() {
-  return Key<Round>("centre", &Round::centre, coordinates(), "disk, cylinder, sphere: centre")
+  return Key<Round>("centre", &Round::centre, coordinates(),
+                    "disk, ellipse, cylinder, sphere: centre")
       .required();
 }
 
@@ -59,11 +91,69 @@ const Table<Sphere>& keys_of(const Sphere&) {
 
 const Table<Polygon>& keys_of(const Polygon&) {
   using K = Key<Polygon>;
-  static const Table<Polygon> table{"set.shape.polygon",
-                                    {K("vertices", &Polygon::vertices, pairs(),
-                                       "polygon: corners in order; the last is joined to the first")
-                                         .moreover("around an area")
-                                         .required()}};
+  static const Table<Polygon> table{
+      "set.shape.polygon",
+      {K("vertices", &Polygon::vertices, pairs(),
+         "polygon: corners in order; the last is joined to the first")
+           .moreover("around an area")
+           .written_if([](auto& polygon, auto&) { return polygon.file.empty(); })
+           .one_of(),
+       K("file", &Polygon::file, file_beside_the_case(), meaning_of_file)
+           .written_if([](auto& polygon, auto&) { return !polygon.file.empty(); })
+           .one_of()},
+      {},
+      [](auto& at, auto& polygon) {
+        if (polygon.file.empty()) return;
+        polygon.vertices = read_from_file(at, [&] { return read_outline(polygon.file); });
+      }};
+  return table;
+}
+
+const Table<PixelImage>& keys_of(const PixelImage&) {
+  using K = Key<PixelImage>;
+  static const Table<PixelImage> table{
+      "set.shape.image",
+      {K("file", &PixelImage::file, file_beside_the_case(), meaning_of_file).required(),
+       lower_corner<PixelImage>(), upper_corner<PixelImage>(),
+       K("grey", &PixelImage::grey, range_of_numbers(),
+         "image: least and largest value of grey of the pixels that are inside, 0 (black) to 255, "
+         "or to 65535 in files with 16 bits")
+           .required()},
+      {},
+      [](auto& at, auto& image) {
+        image.pixels = read_from_file(at, [&] {
+          return std::make_shared<const Pixels>(read_pixels(image.file, image.grey));
+        });
+      }};
+  return table;
+}
+
+const Table<StlBody>& keys_of(const StlBody&) {
+  using K = Key<StlBody>;
+  static const Table<StlBody> table{
+      "set.shape.stl",
+      {K("file", &StlBody::file, file_beside_the_case(), meaning_of_file).required(),
+       K("scale", &StlBody::scale, positive("m"),
+         "stl: length that a file's 1 stands for; STL files have no unit"),
+       K("translate", &StlBody::translate, coordinates(), "stl: shift after the scaling")},
+      {},
+      [](auto& at, auto& body) {
+        body.surface =
+            read_from_file(at, [&] { return read_stl(body.file, body.scale, body.translate); });
+      }};
+  return table;
+}
+
+const Table<Ellipse>& keys_of(const Ellipse&) {
+  using K = Key<Ellipse>;
+  static const Table<Ellipse> table{
+      "set.shape.ellipse",
+      {centre<Ellipse>(),
+       K("radii", &Ellipse::radii, coordinates(), "ellipse: radii along its two axes")
+           .moreover("positive")
+           .required(),
+       K("angle", &Ellipse::angle, between(-360.0, 360.0, "degrees"),
+         "ellipse: angle from x to the axis of the first radius, anticlockwise")}};
   return table;
 }
 
@@ -71,7 +161,7 @@ const Table<Polygon>& keys_of(const Polygon&) {
 template <class Action>
 void for_each_shape(const Action& action) {
   std::apply([&](const auto&... shape) { (action(shape), ...); },
-             std::tuple<Box, Disk, Cylinder, Sphere, Polygon>());
+             std::tuple<Box, Disk, Ellipse, Cylinder, Sphere, Polygon, PixelImage, StlBody>());
 }
 
 /// "box" of the table "set.shape.box".
@@ -90,8 +180,8 @@ std::vector<std::string> shape_kinds() {
 /// Kinds of shapes that a body of this dimension can have.
 std::vector<std::string> shape_kinds(int dimension) {
   if (dimension == 1) return {"box"};
-  if (dimension == 2) return {"box", "disk", "polygon"};
-  return {"box", "cylinder", "sphere", "polygon"};
+  if (dimension == 2) return {"box", "disk", "ellipse", "polygon", "image"};
+  return {"box", "cylinder", "sphere", "polygon", "stl"};
 }
 
 void refuse_other_dimension(const Entry& at, const std::string& kind) {
@@ -132,7 +222,7 @@ Kind<Shape> shape_beside() {
     const std::string kind = at.from.one_of(at.key, shape_kinds(at.so_far.dimension));
     std::vector<std::string> keys = case_keys().at("set.shape." + kind);
     keys.insert(keys.begin(), {at.key, "name", "cuts_bonds"});
-    at.from.allow_only(keys, "is not a key of a " + kind);
+    at.from.allow_only(keys, "is not a key of the shape " + kind);
     return read_shape(at, kind);
   };
   const auto text = [](const Shape& shape, const Case& from) {
@@ -141,8 +231,9 @@ Kind<Shape> shape_beside() {
   };
   Kind<Shape> kind{
       read, text, choice_schema(shape_kinds()),
-      "`\"box\"` (1D, 2D, 3D), `\"disk\"` (2D), `\"polygon\"` (2D; in 3D, where it is infinite "
-      "in z, only to subtract), `\"cylinder\"`, `\"sphere\"` (3D)"};
+      "`\"box\"` (1D, 2D, 3D), `\"disk\"`, `\"ellipse\"` (2D), `\"polygon\"` (2D; in 3D, where "
+      "it is infinite in z, only to subtract), `\"image\"` (2D), `\"cylinder\"`, `\"sphere\"`, "
+      "`\"stl\"` (3D)"};
   for_each_shape(
       [&](const auto& shape) { kind.schemas_beside.add_missing(keys_of(shape).key_schemas()); });
   return kind;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "cases/runner/input/key_kinds.hpp"
@@ -72,6 +73,9 @@ void check_stand_in(const Entry& at, const SolverSpecification& solver) {
     at.refuse(
         "is for bodies with damage: the stand-in replaces the body until damage begins, and "
         "without damage it would replace it to the end");
+  const auto* const points = std::get_if<PointSource>(&at.so_far.body);
+  if (solver.elastic_horizon_ratio > 0.0 && points != nullptr && points->horizon.ratio > 0.0)
+    at.refuse("gives the stand-in one horizon, but points.horizon gives every point its own");
 }
 
 Kind<Mode> mode() {

@@ -289,6 +289,11 @@ bool TomlTable::is_array(const std::string& key) const {
   return value != nullptr && value->kind == TomlValue::Kind::array;
 }
 
+bool TomlTable::is_table(const std::string& key) const {
+  const TomlValue* const value = find(key);
+  return value != nullptr && value->is_table();
+}
+
 bool TomlTable::is_string(const std::string& key) const {
   const TomlValue* const value = find(key);
   return value != nullptr && value->kind == TomlValue::Kind::string;

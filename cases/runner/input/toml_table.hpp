@@ -62,6 +62,8 @@ class TomlTable {
   [[nodiscard]] std::vector<double> numbers(const std::string& key, const Range& range) const;
   /// True if the value of the key is an array.
   [[nodiscard]] bool is_array(const std::string& key) const;
+  /// True if the value of the key is a table.
+  [[nodiscard]] bool is_table(const std::string& key) const;
   /// True if the value of the key is a string.
   [[nodiscard]] bool is_string(const std::string& key) const;
   /// An array of pairs of numbers.

@@ -15,6 +15,7 @@ import numpy as np
 
 from hdf5_reader import Damaged, Hdf5Reader, as_text, require_plain_file
 from images import BrokenBonds, ImageKinds, on_the_body
+from mesh_cells import Elements, are_sound
 from outline import Outline, read_outline
 
 MOST_TABLE = 1 << 30  # limit on the bytes of a CSV file
@@ -67,6 +68,7 @@ class ResultsFolder:
     drawn: dict = field(default_factory=dict)  # cache shared by pictures of several steps
     image_kinds: ImageKinds | None = None  # for a body with planes of symmetry or periods
     _bonds: BrokenBonds | None = None  # broken bonds, once they have been read
+    elements: Elements | None = None  # of a plane mesh, one per point
     lattice_edges: np.ndarray | None = None  # for a lattice that is turned or not square, one row per axis [m]
 
     @property
@@ -92,7 +94,10 @@ class ResultsFolder:
         """Reach of the horizon in whole spacings; 1 if unknown."""
         lattice, points = (self.case.get(name) for name in ("lattice", "points"))
         ratio = _finite(lattice.get("horizon_ratio")) if isinstance(lattice, dict) else None
-        horizon = _finite(points.get("horizon")) if isinstance(points, dict) else None
+        horizon = points.get("horizon") if isinstance(points, dict) else None
+        if isinstance(horizon, dict):  # per point, a ratio to its size
+            ratio, horizon = _finite(horizon.get("ratio")), None
+        horizon = _finite(horizon)
         return int(max(ratio or (horizon or 0.0) / self.spacing, 1.0))
 
     @cached_property
@@ -309,6 +314,7 @@ def read_results_folder(path: Path) -> ResultsFolder:
         angle = _finite(file.attribute("points", "angle"))
         step_numbers = _readable_steps(file, missing)
         image_kinds = _image_kinds(file, reference.shape[1], missing)
+        elements = _elements(file, reference, missing)
     title = title or as_text(case.get("title", "")) or path.resolve().name
     title = "".join(c if c.isprintable() else " " for c in title)[:LONGEST_TITLE]
     lattice = case.get("lattice", {})
@@ -325,6 +331,7 @@ def read_results_folder(path: Path) -> ResultsFolder:
     )  # fmt: skip
     found.lattice_edges = _edges(spacing, along, angle)
     found.image_kinds = image_kinds
+    found.elements = elements
     return found
 
 
@@ -354,6 +361,21 @@ def _image_kinds(file, dimension: int, missing) -> ImageKinds | None:
         missing.append(f"the images of points can't be read ({error})")
         return None
     return kinds
+
+
+def _elements(file, reference: np.ndarray, missing) -> Elements | None:
+    """Elements of a plane mesh; None for other bodies, and for elements that are no cells of the points."""
+    if reference.shape[1] != 2 or "points/elements" not in file:
+        return None
+    try:
+        integers = (file.numbers(f"points/elements/{name}", kind=np.int64) for name in ("offset", "corners"))
+        elements = Elements(file.numbers("points/elements/nodes"), *integers)
+        if are_sound(elements, len(reference)):
+            return elements
+        raise Damaged("they are no cells of the points")
+    except (Damaged, KeyError) as error:
+        missing.append(f"the elements can't be read ({error})")
+        return None
 
 
 def _finite(value) -> float | None:

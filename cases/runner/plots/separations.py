@@ -5,6 +5,7 @@ import numpy as np
 from cells import Cells, at_the_rim, merged
 from cloud_cells import CloudCells
 from crossings import crosses
+from mesh_cells import element_cells
 from rim import fitted, rim_offsets
 from separations_from_images import separate_from_images
 from voronoi import voronoi_cells
@@ -63,7 +64,8 @@ def cells_of(results, step, limit: int, size: float, *fields: np.ndarray):
     is_whole = len(reference) == len(results.reference) and results.tells_broken_bonds
     broken = results.broken_bonds().until(step.number) if is_whole else None
     loose = damage > (LOST_DAMAGE if is_whole else LOOSE_DAMAGE)
-    if cells.dimension == 2 and not cells.is_lattice and len(reference) == len(results.reference):
+    is_cloud = results.elements is not None or not cells.is_lattice
+    if cells.dimension == 2 and is_cloud and len(reference) == len(results.reference):
         cells = CloudCells(_polygons(results).scaled(1.0 / size), reference / size, results.spacing / size)
         inner = broken.inner() if is_whole else np.zeros((0, 2), dtype=np.int64)
         cells.part([crack / size for crack in results.cracks], inner, np.rint(step.fragment))
@@ -87,6 +89,8 @@ def _separate_lattice(results, step, cells, reference, broken) -> None:
 
 def _polygons(results):
     """Cells of a cloud [m], computed once."""
+    if results.elements is not None:
+        return element_cells(results.elements)
     if "polygons" not in results.drawn:
         positive = np.maximum(np.nan_to_num(results.volume, posinf=0.0), 0.0)
         sizes = results.spacing * np.sqrt(np.clip(positive / (positive.mean() or 1.0), LEAST_VOLUME, 1.0 / LEAST_VOLUME))

@@ -70,6 +70,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
     record.probes[probe.name] =
         probe_values(probe, recorded_, made.values, crack_state(record, probe.name), loads);
   }
+  driven_.add_values(at.displacement, state.external_force, loads, record.probes);
   note_growth(record);
   const std::string without_release = add_crack_tip_values(
       case_, crack_tips_, assembler_, state.trial, record.stage, record.probes);

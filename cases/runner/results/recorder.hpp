@@ -9,6 +9,7 @@
 #include "cases/runner/process/progress.hpp"
 #include "cases/runner/results/checkpoint/damage_histories.hpp"
 #include "cases/runner/results/results.hpp"
+#include "cases/runner/results/tables/driven_sets.hpp"
 #include "cases/runner/setup/body.hpp"
 #include "solvers/drivers/load_stepping.hpp"
 #include "solvers/observe/probe.hpp"
@@ -31,7 +32,8 @@ class Recorder {
         progress_(progress),
         body_(body),
         crack_tips_(crack_tips),
-        separated_(body) {}
+        separated_(body),
+        driven_(from, body) {}
 
   /// Restores its state at the time of the checkpoint.
   void go_on(const Checkpoint& checkpoint, const EarlierResults& earlier,
@@ -82,6 +84,7 @@ class Recorder {
   std::optional<StepFields> unwritten_;  // of the last step, if it only entered the history
   DamageHistories written_histories_;    // in the last state that was written with fields
   SeparatedBonds separated_;
+  const DrivenSets driven_;
   std::map<std::string, CrackGrowth> growth_;  // per probe of crack_resistance
   double relative_residual_ = 0.0;
   std::optional<StepRecord> last_;

@@ -18,8 +18,12 @@
 #include "cases/runner/results/files/xdmf_series.hpp"
 #include "cases/runner/results/folder/results_folder.hpp"
 #include "cases/runner/results/folder/safe_copy.hpp"
+#include "cases/runner/results/parts/crack_lines.hpp"
+#include "cases/runner/results/parts/point_cells.hpp"
 #include "cases/runner/results/parts/step_part.hpp"
+#include "cases/runner/results/parts/vtk_hdf.hpp"
 #include "cases/runner/results/tables/convergence_table.hpp"
+#include "cases/runner/results/tables/load_displacement.hpp"
 #include "cases/runner/results/tables/record_tables.hpp"
 #include "cases/runner/results/tables/settings_table.hpp"
 #include "cases/runner/results/tables/summary_json.hpp"
@@ -152,8 +156,8 @@ StepShape shape_of(const Points& points, const RowGathering& gathering,
 struct Results::Files {
   Files(Beginning beginning, const Points& points, const CaseText& text,
         const std::vector<std::string>& sets, const std::vector<ProbeColumns>& probe_columns,
-        const std::vector<PointCounts>& counts, const FurtherOutput& further,
-        const RowGathering& of_ranks);
+        const std::vector<PointCounts>& counts, const CellsOfBody& cells_of_body,
+        const FurtherOutput& further, const RowGathering& of_ranks);
 
   void describe(const CaseText& text);
   void go_on(const EarlierResults& earlier, const Checkpoint& checkpoint,
@@ -167,6 +171,7 @@ struct Results::Files {
   void write_checkpoint(Checkpoint checkpoint, StateNumbering* numbering);
   void add_dossier(const std::vector<double>& residual, const std::vector<double>& displacement);
   void publish_xdmf();
+  void publish_vtk_hdf();
   void publish_summary(const Summary& summary) const;
   void gather_parts();
 
@@ -180,7 +185,8 @@ struct Results::Files {
   std::vector<Column> history_header;
   ClaimedFolder claimed;
   const ResultsFolder& folder;
-  CsvTable history, iterations, decisions, broken_bonds;
+  LoadDisplacement load_displacement;
+  CsvTable history, curve, iterations, decisions, broken_bonds;
   /// A table of values along a line, and its rows that results.h5 does not have yet.
   struct Line {
     LineTable table;
@@ -189,6 +195,9 @@ struct Results::Files {
   };
   std::vector<Line> lines;
   Hdf5File master;  ///< results.h5 with links to the parts; lives in memory
+  CrackLines lines_of_cracks;
+  const CellSizes cells;
+  const std::vector<XdmfSeries::Field> constant;
   XdmfSeries xdmf;
   std::string program;  ///< version
   StepTotals totals;
@@ -196,8 +205,10 @@ struct Results::Files {
   ConvergenceTable convergence;
   CheckpointFiles checkpoints;
   SafeCopy safe_copy;
-  bool xdmf_is_behind = false;
+  bool xdmf_is_behind = false, vtk_is_behind = false;
   Clock::time_point xdmf_time{};  ///< when it was last published
+  Clock::time_point vtk_time{};   ///< likewise results.vtkhdf
+  double vtk_seconds = 0.0;       ///< that this has taken
   std::vector<Row> pending_iterations, pending_decisions, pending_broken_bonds;
   ObjectInFile points_part;
   std::optional<ObjectInFile> dossier_part;
@@ -210,8 +221,8 @@ struct Results::Files {
 Results::Files::Files(Beginning beginning, const Points& points, const CaseText& text,
                       const std::vector<std::string>& sets,
                       const std::vector<ProbeColumns>& probe_columns,
-                      const std::vector<PointCounts>& counts, const FurtherOutput& further,
-                      const RowGathering& of_ranks)
+                      const std::vector<PointCounts>& counts, const CellsOfBody& cells_of_body,
+                      const FurtherOutput& further, const RowGathering& of_ranks)
     : gathering(of_ranks),
       shape(shape_of(points, of_ranks, further)),
       support_sets(sets),
@@ -219,14 +230,20 @@ Results::Files::Files(Beginning beginning, const Points& points, const CaseText&
       history_header(history_columns(sets, probe_columns)),
       claimed(std::move(beginning.folder)),
       folder(claimed.paths),
+      load_displacement(history_header, further.has_control),
       history(folder.history(), history_header, beginning.rows(&EarlierResults::history)),
+      curve(folder.load_displacement(), load_displacement.columns(),
+            load_displacement.rows(beginning.rows(&EarlierResults::history))),
       iterations(folder.iterations(), iteration_columns(),
                  beginning.rows(&EarlierResults::iterations)),
       decisions(folder.decisions(), decision_columns(), beginning.rows(&EarlierResults::decisions)),
       broken_bonds(folder.broken_bonds(), broken_bond_columns(),
                    beginning.rows(&EarlierResults::broken_bonds)),
       master(Hdf5File::in_memory(folder.results().string() + " (in memory)", master_growth)),
-      xdmf(shape.points, constant_fields(points)),
+      lines_of_cracks(master, !points.images.kinds.empty()),
+      cells(cells_of_body.sizes),
+      constant(constant_fields(points)),
+      xdmf(shape.points, xdmf_cells(cells), constant),
       program(version_of(text)),
       checkpoints(folder.parts()),
       safe_copy(folder),
@@ -244,8 +261,9 @@ Results::Files::Files(Beginning beginning, const Points& points, const CaseText&
   if (beginning.earlier) {
     go_on(*beginning.earlier, *beginning.checkpoint, beginning.numbering);
   } else {
-    publish_part(folder.points(), bytes_of(points, counts, std::uint64_t(shape.points)),
-                 [&](Hdf5File& file) { write_points(file, points, counts, gathering); });
+    publish_part(
+        folder.points(), bytes_of(points, counts, cells, std::uint64_t(shape.points)),
+        [&](Hdf5File& file) { write_points(file, points, counts, cells_of_body, gathering); });
   }
   master.link("/points", points_part.file, points_part.object);
   publish();
@@ -263,6 +281,10 @@ void Results::Files::describe(const CaseText& text) {
   master.write("/case/as_read", text.as_read, {"none", "text of the case file (TOML)"});
   master.write("/case/as_resolved", text.as_resolved,
                {"none", "the case with overrides and defaults in place (TOML)"});
+  if (!text.tables.empty()) {
+    master.write("/case/tables", text.tables,
+                 {"none", "files of the tables in expressions, with checksums (FNV-1a)"});
+  }
   write_settings(master, text.settings);
   master.make_table("/history", history_header);
   master.make_table("/iterations", iteration_columns());
@@ -298,7 +320,18 @@ void Results::Files::go_on(const EarlierResults& earlier, const Checkpoint& chec
     totals.add(record);
     last_step = record.step;
   }
-  for (const WrittenStep& step : earlier.steps) link(step);
+  auto bond = earlier.broken_bonds.begin();
+  for (const WrittenStep& step : earlier.steps) {
+    const auto is_broken = [&](const Row& row) {
+      return std::get<std::int64_t>(row.front()) <= step.step;
+    };
+    for (; bond != earlier.broken_bonds.end() && is_broken(*bond); ++bond) {
+      lines_of_cracks.add(*bond);
+    }
+    link(step);
+  }
+  for (; bond != earlier.broken_bonds.end(); ++bond) lines_of_cracks.add(*bond);
+  lines_of_cracks.append_pending();
   points_part = earlier.points;
   write_checkpoint(checkpoint, numbering);
 }
@@ -310,6 +343,7 @@ void Results::Files::append_pending() {
   pending_decisions.clear();
   master.append("/broken_bonds", broken_bond_columns(), pending_broken_bonds);
   pending_broken_bonds.clear();
+  lines_of_cracks.append_pending();
   for (Line& line : lines) {
     master.append(group_of_line(line.table.name), line.table.columns, line.pending);
     line.pending.clear();
@@ -330,7 +364,8 @@ void Results::Files::write_checkpoint(Checkpoint checkpoint, StateNumbering* num
 void Results::Files::link(WrittenStep step) {
   master.link("/steps/" + step.name(), step.file, step.group);
   if (shape.has_views()) master.link("/xdmf/" + step.name(), step.file, step.views);
-  xdmf.add(step.step, step.load_factor, step.mode, shown_fields(step, shape));
+  xdmf.add(step.step, step.load_factor, step.mode, shown_fields(step, shape),
+           lines_of_cracks.lines_of(step.name()));
   xdmf_is_behind = true;
   written_steps.push_back(std::move(step));
 }
@@ -360,6 +395,7 @@ void Results::Files::add(const StepRecord& record, const StepFields& fields) {
   publish();
   totals.add(record);  // accepted: results.h5 has it, whatever becomes of the tables
   history.append(row);
+  curve.append(load_displacement.row(row));
   convergence.accept(record.step);
   // The file grows with the steps, so that a run of quick steps would mostly write this file.
   if (Clock::now() - xdmf_time >= std::chrono::seconds(1)) publish_xdmf();
@@ -388,10 +424,27 @@ void Results::Files::add_dossier(const std::vector<double>& residual,
 }
 
 void Results::Files::publish_xdmf() {
-  if (!xdmf_is_behind) return;
-  publish_file(folder.xdmf(), xdmf.text());
-  xdmf_is_behind = false;
-  xdmf_time = Clock::now();
+  if (xdmf_is_behind) {
+    publish_file(folder.xdmf(), xdmf.text());
+    xdmf_is_behind = false;
+    vtk_is_behind = true;
+    xdmf_time = Clock::now();
+  }
+  // Written anew each time, too, which takes longer.
+  constexpr double share_of_time = 0.01;
+  const std::chrono::duration<double> since = Clock::now() - vtk_time;
+  if (!vtk_is_behind) return;
+  if (closed || vtk_seconds <= share_of_time * since.count()) publish_vtk_hdf();
+}
+
+void Results::Files::publish_vtk_hdf() {
+  vtk_seconds = 0.0;
+  const Stopwatch stopwatch(vtk_seconds);
+  auto file = Hdf5File::in_memory(folder.vtk_hdf().string() + " (in memory)", master_growth);
+  write_vtk_hdf(file, written_steps, shape, cells, constant);
+  publish_file(folder.vtk_hdf(), file.image());
+  vtk_is_behind = false;
+  vtk_time = Clock::now();
 }
 
 void Results::Files::publish_summary(const Summary& summary) const {
@@ -466,10 +519,11 @@ Results::Results(const std::filesystem::path& directory, const Points& points, c
                  const std::vector<std::string>& support_sets,
                  const std::vector<ProbeColumns>& probes, const std::vector<PointCounts>& counts,
                  bool overwrite, const FurtherOutput& further, const RowGathering& gathering) {
+  const CellsOfBody cells(points, gathering);
   if (!gathering.part().is_first_rank()) {
     const StepShape shape = shape_of(points, gathering, further);
     sender_ = std::make_unique<Sender>(Sender{gathering, shape, directory});
-    send_points(points, counts, gathering);
+    send_points(points, counts, cells, gathering);
     return;
   }
   double seconds = 0.0;
@@ -479,7 +533,7 @@ Results::Results(const std::filesystem::path& directory, const Points& points, c
     static_cast<void>(history_columns(support_sets, probes));
     files_ = std::make_unique<Files>(
         Beginning{claim_results_folder(directory, identity(text, further), overwrite)}, points,
-        text, support_sets, probes, counts, further, gathering);
+        text, support_sets, probes, counts, cells, further, gathering);
   }
   files_->seconds = seconds;
 }
@@ -489,6 +543,7 @@ Results::Results(EarlierRun& run, EarlierResults& earlier, const Points& points,
                  const std::vector<ProbeColumns>& probes, const FurtherOutput& further,
                  StateNumbering* numbering) {
   const RowGathering& gathering = numbering ? numbering->gathering() : no_gathering();
+  const CellsOfBody cells(points, gathering);
   if (!gathering.part().is_first_rank()) {
     const StepShape shape = shape_of(points, gathering, further);
     sender_ = std::make_unique<Sender>(Sender{gathering, shape, run.directory()});
@@ -505,7 +560,7 @@ Results::Results(EarlierRun& run, EarlierResults& earlier, const Points& points,
     ClaimedFolder folder = run.take_over(identity(text, further), earlier);
     files_ = std::make_unique<Files>(
         Beginning{std::move(folder), &earlier, &run.checkpoint(), numbering}, points, text,
-        support_sets, probes, std::vector<PointCounts>(), further, gathering);
+        support_sets, probes, std::vector<PointCounts>(), cells, further, gathering);
   }
   files_->seconds = seconds;
 }
@@ -513,8 +568,9 @@ Results::Results(EarlierRun& run, EarlierResults& earlier, const Points& points,
 Results::~Results() {
   if (sender_) return;
   try {
+    files_->closed = true;
     files_->publish_xdmf();
-  } catch (const OutputError&) {
+  } catch (const std::exception&) {
     // The file of the step before stays; results.h5 and the tables are complete.
   }
 }
@@ -548,6 +604,7 @@ void Results::add(const std::vector<BrokenBondRecord>& records) {
     for (const BrokenBondRecord& record : some) {
       Row row = make_row(record);
       files_->broken_bonds.append(row);
+      files_->lines_of_cracks.add(row);
       files_->pending_broken_bonds.push_back(std::move(row));
       ++files_->rows.broken_bonds;
     }

@@ -26,17 +26,19 @@ struct CaseText {
   std::map<std::string, std::string> versions{};  ///< "peristat", "hdf5", ... -> "1.0.0"
   std::filesystem::path file{};  ///< absolute; a later run of the same file may replace this one
   Settings settings{};           ///< values given by `--set`
+  std::string tables{};          ///< see fingerprints_of_tables; empty: no expression has a table
 };
 
 /// Optional output of a run.
 struct FurtherOutput {
   bool has_stress = false;  ///< tensors are among the fields
   std::vector<LineTable> lines{};
+  bool has_control = false;  ///< the load is found for a controlled displacement
 };
 
-/// Writer of a results folder (docs/results.md): results.h5, results.xdmf, history.csv,
-/// iterations.csv, decisions.csv, broken_bonds.csv, summary.json, dossier.txt, and peristat.json,
-/// which it holds locked: a folder has one writer.
+/// Writer of a results folder (docs/results.md): results.h5, results.xdmf, results.vtkhdf,
+/// history.csv, load_displacement.csv, iterations.csv, decisions.csv, broken_bonds.csv,
+/// summary.json, dossier.txt, and peristat.json, which it holds locked: a folder has one writer.
 ///
 /// A kill at any moment leaves every accepted step readable: each step's fields go to a file of
 /// their own, `parts/NNNNNN.h5`, and results.h5, which links to them, is published by renaming a

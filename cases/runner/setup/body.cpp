@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cases/runner/setup/find_boundary.hpp"
+#include "cases/runner/setup/read_mesh.hpp"
 #include "solvers/body/body_memory.hpp"
 #include "solvers/formulations/check_specification.hpp"
 #include "solvers/formulations/faster_operator.hpp"
@@ -87,8 +88,10 @@ Points make_points_of(const Case& from) {
       const auto& source = std::get<PointSource>(from.body);
       std::optional<NeighbourFile> neighbours;
       if (!source.neighbours.empty())
-        neighbours = {source.neighbours, source.horizon, source.cross_section};
-      points = read_points(source.file, from.dimension, source.cross_section, neighbours);
+        neighbours = {source.neighbours, source.horizon.length, source.cross_section};
+      points = source.is_mesh()
+                   ? read_mesh_points(source, from.dimension)
+                   : read_points(source.file, from.dimension, source.cross_section, neighbours);
     }
     for (std::size_t k = 0; k < from.sets.size(); ++k) {
       const SetRule& rule = from.sets[k];

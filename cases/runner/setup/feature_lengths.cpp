@@ -88,7 +88,8 @@ class Measuring {
       const ShapeStep& step = lattice_.shapes[k];
       if (step.action == ShapeStep::Action::add) continue;
       const std::string key = "lattice.shape[" + std::to_string(k) + "]";
-      found_.push_back({Kind::opening, key, width_of(step.shape, lattice_.dimension, body_)});
+      if (has_smooth_sides(step.shape))
+        found_.push_back({Kind::opening, key, width_of(step.shape, lattice_.dimension, body_)});
       const Coordinates at = middle(shared(bounds(step.shape), body_), lattice_.dimension);
       if (solid_.contains(at)) continue;  // filled again
       add_ligaments_along_axes(at, key);
@@ -173,6 +174,8 @@ double width_of(const Shape& shape, int dimension, const Box& body) {
   for (std::size_t c = 0; c < std::size_t(dimension); ++c) {
     least = std::min(least, box.max[c] - box.min[c]);
   }
+  if (const auto* const ellipse = std::get_if<Ellipse>(&shape))
+    return std::min({least, 2.0 * ellipse->radii[0], 2.0 * ellipse->radii[1]});
   const auto* const polygon = std::get_if<Polygon>(&shape);
   return polygon != nullptr ? std::min(least, width_of_polygon(*polygon)) : least;
 }

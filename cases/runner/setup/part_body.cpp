@@ -67,6 +67,11 @@ void refuse_convolutions(const Case& from) {
 void refuse_values_without_ranks(const Case& from) {
   refuse_convolutions(from);
   const bool is_lattice = std::holds_alternative<Lattice>(from.body);
+  if (const auto* const source = std::get_if<PointSource>(&from.body);
+      source != nullptr && source->is_mesh())
+    refuse("points.file", source->file.string(),
+           "`peristat points` writes the points of a mesh to a file that runs on several ranks, "
+           "without the cuts by its boundary");
   const bool has_shares = from.volume_correction != VolumeCorrection::none &&
                           from.volume_correction != VolumeCorrection::linear;
   if (formulation_of(from).part_needs_lattice && (!is_lattice || has_shares)) {
@@ -140,14 +145,17 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
     if (slab.whole > std::numeric_limits<Index>::max()) {
       refuse("lattice.spacing", "", "results have numbers for fewer than 2^31 points");
     }
-    const BondSetting setting = bond_setting(from, slab.points);
+    BodySpecification of = specification_of(from);
+    take_horizons(slab.points, of, ranks);
+    slab.points.horizons.clear();  // the parts' points get theirs again, with those of ghosts
+    const BondSetting setting = bond_setting(of, slab.points);
     double reach = reach_of_bonds(slab.points, from.surface_correction, setting, ranks,
                                   formulation_of(from).part_bonds);
     const auto* const lattice = std::get_if<Lattice>(&from.body);
     const bool has_ghost_sites = lattice != nullptr && formulation_of(from).has_ghost_sites;
     if (has_ghost_sites) reach += ranks.max(reach_beyond_balls(*lattice, slab.points));
     if (from.has_pressures()) reach = std::max(reach, reach_of_pressures(slab.points));
-    std::vector<ImageKind> images = kinds_of_images(from, slab.points, ranks);
+    std::vector<ImageKind> images = kinds_of_images(of, slab.points, ranks);
     Part part =
         distribute(std::move(slab), setting.horizon, reach, ranks, threads, std::move(images));
     add_sets(from, ranks, part);
@@ -155,7 +163,6 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
       // Ghost sites around neighbours of ghosts are wrong, but never used.
       part.points.ghosts = ghost_sites(*lattice, part.points, from.horizon).reference;
     }
-    BodySpecification of = specification_of(from);
     find_boundary(from, part.points, ranks, of);
     if (tells_stress(from)) of.evaluation_bytes_per_point = stress_bytes_per_point(from.dimension);
     std::unique_ptr<const Body> body = make_body(std::move(part), of, ranks, threads);

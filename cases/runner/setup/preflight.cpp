@@ -18,6 +18,9 @@
 #include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/counts_bond.hpp"
+#include "src/geometry/local_spacing.hpp"
+#include "src/geometry/mesh_body.hpp"
+#include "src/geometry/mesh_interior.hpp"
 #include "src/geometry/solid.hpp"
 #include "src/parallel/communicator.hpp"
 
@@ -25,7 +28,8 @@ namespace peristat {
 namespace {
 
 const char* kind_of(const Shape& shape) {
-  constexpr std::array names{"box", "disk", "cylinder", "sphere", "polygon"};
+  constexpr std::array names{"box",     "disk",    "cylinder", "sphere",
+                             "polygon", "ellipse", "image",    "stl"};
   return names[shape.index()];
 }
 
@@ -102,7 +106,7 @@ std::vector<Preflight::Opening> openings_of(const Lattice& lattice, const Body& 
   std::shared_ptr<const Bonds> bonds;
   for (std::size_t k = 0; k < lattice.shapes.size(); ++k) {
     const ShapeStep& step = lattice.shapes[k];
-    if (step.action == ShapeStep::Action::add) continue;
+    if (step.action == ShapeStep::Action::add || !has_smooth_sides(step.shape)) continue;
     Preflight::Opening opening{"lattice.shape[" + std::to_string(k) + "]", kind_of(step.shape),
                                width_of(step.shape, lattice.dimension, box), 0, step.cuts_bonds};
     constexpr double round_off = 1e-6;
@@ -128,10 +132,10 @@ class Values {
 
   [[nodiscard]] Preflight::Applied of(const GivenValue& given) const {
     const Expression expression(given.text, given.has_place ? from_.dimension : 0, spacing_,
-                                from_.parameters());
+                                from_.parameters(), body_.points.columns);
     Preflight::Applied value{given.kind, given.key, given.where, given.unit, given.text};
     value.changes = expression.has_parameters();
-    const std::vector<Coordinates> places = places_of(given, expression);
+    const std::vector<Place> places = places_of(given, expression);
     constexpr int most_entries = 100;  // between the first and the last
     const int last = programme_.is_of_time() ? 1 : int(programme_.end());
     const int stride = std::max(1, last / most_entries);
@@ -150,6 +154,11 @@ class Values {
   }
 
  private:
+  struct Place {
+    Coordinates at{};
+    Index point = Expression::no_point;
+  };
+
   struct Range {
     double least = infinity, most = -infinity;
     [[nodiscard]] double largest() const {
@@ -160,42 +169,43 @@ class Values {
     }
   };
 
-  [[nodiscard]] static std::vector<Coordinates> some_of(const std::vector<Coordinates>& places) {
+  [[nodiscard]] static std::vector<Place> some_of(const std::vector<Place>& places) {
     constexpr std::size_t most = 100;
     const std::size_t stride = std::max<std::size_t>(1, places.size() / most);
-    std::vector<Coordinates> some;
+    std::vector<Place> some;
     for (std::size_t k = 0; k < places.size(); k += stride) some.push_back(places[k]);
     return some;
   }
 
   /// Places to evaluate an expression at: a few thousand of the points if there are many.
-  [[nodiscard]] std::vector<Coordinates> places_of(const GivenValue& given,
-                                                   const Expression& expression) const {
-    if (!given.has_place || expression.is_constant()) return {Coordinates{}};
-    if (given.at) return {*given.at};
+  [[nodiscard]] std::vector<Place> places_of(const GivenValue& given,
+                                             const Expression& expression) const {
+    if (!given.has_place || expression.is_constant()) return {Place{}};
+    if (given.at) return {Place{*given.at}};
     const auto set = body_.points.sets.find(given.set);
     const bool is_of_set = set != body_.points.sets.end();
     const Index count = is_of_set ? Index(set->second.size()) : body_.points.own();
     constexpr Index most_places = 5000;
     const Index stride = std::max<Index>(1, count / most_places);
-    std::vector<Coordinates> places;
+    std::vector<Place> places;
     for (Index k = 0; k < count; k += stride) {
-      places.push_back(body_.points.position(is_of_set ? set->second[std::size_t(k)] : k));
+      const Index point = is_of_set ? set->second[std::size_t(k)] : k;
+      places.push_back({body_.points.position(point), point});
     }
     return places;
   }
 
   /// Range of values, leaving out places where the expression is undefined: it acts on no point
   /// there.
-  [[nodiscard]] Range range(const Expression& expression, const std::vector<Coordinates>& places,
+  [[nodiscard]] Range range(const Expression& expression, const std::vector<Place>& places,
                             double stage) const {
     std::vector<double> parameters = programme_.at(stage);
     // The load under displacement control is not known: values are given for a load of 1.
     if (body_.conditions->control() != nullptr && stage > 0.0) parameters.front() = 1.0;
     Range range;
-    for (const Coordinates& place : places) {
+    for (const auto& [at, point] : places) {
       try {
-        const double value = expression(place, parameters);
+        const double value = expression(at, parameters, point);
         range.least = std::min(range.least, value);
         range.most = std::max(range.most, value);
       } catch (const InputError&) {
@@ -358,6 +368,24 @@ void refuse_idle_cracks(const Case& from, const std::vector<Preflight::CutByCrac
   }
 }
 
+Preflight::OfMesh mesh_facts(const Body& body) {
+  const Points& points = body.points;
+  Preflight::OfMesh of;
+  of.elements = element_counts(*points.mesh);
+  const auto spacings = local_spacings(points, body.setting.horizon);
+  const auto [finest, coarsest] = std::ranges::minmax(spacings);
+  of.finest_spacing = finest;
+  of.coarsest_spacing = coarsest;
+  of.remarks = points.mesh->remarks;
+  of.cuts_bonds = points.interior != nullptr;
+  of.leaving = std::ranges::count_if(body.cut_bonds, [&](const BondEnds& bond) {
+    const auto& [i, j] = bond;
+    const auto [a, b] = std::minmax({points.position(i), points.position(j)});
+    return of.cuts_bonds && points.interior->leaves(a, b, points.images.kinds);
+  });
+  return of;
+}
+
 }  // namespace
 
 const FeatureLength* Preflight::shortest(FeatureLength::Kind kind) const {
@@ -384,6 +412,7 @@ Preflight preflight_of(const Case& from, const Body& body, const Communicator& r
   if (const auto* const lattice = std::get_if<Lattice>(&from.body)) {
     take_lattice(from, *lattice, body, ranks, of);
   }
+  if (body.points.mesh) of.mesh = mesh_facts(body);
   const Values values(from, body, ranks);
   for (const GivenValue& given : given_values(from)) {
     if (given.kind != GivenValue::Kind::expected) of.applied.push_back(values.of(given));
@@ -394,6 +423,7 @@ Preflight preflight_of(const Case& from, const Body& body, const Communicator& r
   of.steps = from.loading.steps_to_entry() * std::max(1, int(body.conditions->programme().end()));
   if (!of.is_quasi_static) of.steps = 1;
   of.begins_moving = !from.initial.empty();
+  of.has_horizons = !body.points.horizons.empty();
   of.has_notch = !of.cracks.empty() || !of.openings.empty();
   of.idle = idle_keys(from);
   return of;
@@ -437,6 +467,13 @@ std::string applied_text(const Preflight& of, const Preflight::Applied& value) {
                      value.unit, begin, range_text(value.end), value.unit, end);
 }
 
+std::string mesh_text(const Preflight::OfMesh& mesh) {
+  return fmt::format("{}; spacing around a point {:.4g} to {:.4g} m; {}", mesh.elements,
+                     mesh.finest_spacing, mesh.coarsest_spacing,
+                     mesh.cuts_bonds ? fmt::format("its boundary cuts {} bonds", mesh.leaving)
+                                     : "its boundary cuts no bonds");
+}
+
 std::string zone_text(const Preflight& of, const Preflight::Fracture& fracture) {
   const double zone = fracture.characteristic_length();
   std::string text = fmt::format("{}strength {:.4g} MPa, E G/ft^2 = {:.4g} m: {:.3g} spacings",
@@ -463,6 +500,10 @@ std::vector<std::pair<std::string, std::string>> preflight_lines(const Preflight
     lines.emplace_back("opening", opening.cuts_bonds ? opening.key + " cuts the bonds that cross it"
                                                      : fmt::format("{} bonds bridge {}",
                                                                    opening.bridging, opening.key));
+  }
+  if (of.mesh) {
+    lines.emplace_back("mesh", mesh_text(*of.mesh));
+    for (const std::string& remark : of.mesh->remarks) lines.emplace_back("mesh", remark);
   }
   for (const auto& [key, bonds] : of.cracks) {
     lines.emplace_back("crack", fmt::format("{} cuts {} bonds", key, bonds));

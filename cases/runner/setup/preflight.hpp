@@ -63,6 +63,14 @@ struct Preflight {
     std::string key;              ///< "material.youngs_modulus"
     double youngs_modulus = 0.0;  ///< as given [Pa]
   };
+  /// The mesh that the points were made of.
+  struct OfMesh {
+    std::string elements;                                 ///< "120 triangles"
+    double finest_spacing = 0.0, coarsest_spacing = 0.0;  ///< around a point [m]
+    bool cuts_bonds = false;
+    std::int64_t leaving = 0;  ///< bonds that leave the body and are cut
+    std::vector<std::string> remarks;
+  };
   struct Idle {
     std::string key, needs;
   };
@@ -79,12 +87,14 @@ struct Preflight {
   std::vector<Division> divisions;
   std::vector<FeatureLength> lengths;
   std::vector<Opening> openings;
+  std::optional<OfMesh> mesh;
   std::vector<CutByCrack> cracks;
   std::vector<Applied> applied;
   std::vector<Fracture> fractures;
   std::vector<Stiffness> stiffnesses;
   std::vector<Idle> idle;
   bool begins_moving = false;  ///< by initial fields
+  bool has_horizons = false;   ///< of points, the largest of which is `horizon`
   bool has_notch = false;      ///< a crack or a subtracted shape, at which stress concentrates
 
   /// The shortest length of a kind; null: there is none.

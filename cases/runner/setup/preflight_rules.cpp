@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "src/geometry/local_spacing.hpp"
+
 namespace peristat {
 namespace {
 
@@ -54,6 +56,16 @@ void add_horizon(const Preflight& of, Warnings& warnings) {
         "spacing of {:.2g} m or less gives it three horizons",
         of.horizon, least->what, least->size, least->size * of.spacing / (3.0 * of.horizon)));
   }
+}
+
+void add_grading(const Preflight& of, Warnings& warnings) {
+  if (!of.mesh || of.mesh->coarsest_spacing <= graded_ratio * of.mesh->finest_spacing) return;
+  warnings.push_back(fmt::format(
+      "the mesh is graded: around a point its spacing is {:.3g} to {:.3g} m, a ratio above {}, so "
+      "that the horizon, {:g} m, is {:.3g} spacings where it is coarsest and {:.3g} where it is "
+      "finest; a horizon below 3 spacings resolves neither stiffness nor cracks",
+      of.mesh->finest_spacing, of.mesh->coarsest_spacing, graded_ratio, of.horizon,
+      of.horizon / of.mesh->coarsest_spacing, of.horizon / of.mesh->finest_spacing));
 }
 
 void add_bridged(const Preflight& of, Warnings& warnings) {
@@ -131,7 +143,13 @@ void add_fracture(const Preflight& of, const Preflight::Fracture& fracture, Warn
                     name, zone, zone / of.horizon, shortest_zone,
                     of.spacing * zone / (shortest_zone * of.horizon)));
   }
-  if (!fracture.has_strength && !of.has_notch) {
+  if (!fracture.has_strength && !of.has_notch && of.has_horizons) {
+    warnings.push_back(fmt::format(
+        "there is no crack, notch or hole to start from: each horizon sets a strength "
+        "of its own{}, {:.4g} MPa the largest and more the smaller ones, so that cracks "
+        "begin where points are large; give a crack, or the stretches of all bonds",
+        name, fracture.strength * 1e-6));
+  } else if (!fracture.has_strength && !of.has_notch) {
     warnings.push_back(
         fmt::format("{}.damage.strength is missing, and there is no crack, notch or hole to start "
                     "from: the horizon sets a strength of {:.4g} MPa, and the peak grows with each "
@@ -150,7 +168,7 @@ void add_idle(const Preflight& of, Warnings& warnings) {
 
 std::vector<std::string> warnings_of(const Preflight& of) {
   Warnings warnings;
-  for (const auto& rule : {add_divisions, add_cross_section, add_horizon, add_bridged,
+  for (const auto& rule : {add_divisions, add_cross_section, add_horizon, add_grading, add_bridged,
                            add_constant_values, add_nothing_applied, add_stiffnesses}) {
     rule(of, warnings);
   }

@@ -76,15 +76,22 @@ def _write(folder: Path, settings: list[str]) -> None:
 
     with h5py.File(folder / "results.h5", "r") as file:
         as_read, as_resolved = (_bytes(file[f"case/{name}"][()]) for name in ("as_read", "as_resolved"))
-    points_file = tomllib.loads(as_resolved.decode()).get("points", {}).get("file")
-    files = [points_file] if points_file else []
     record = {
         "case_sha256": _checksum(as_read),
         "settings": settings,
-        "files": {file: _checksum(Path(file).read_bytes()) for file in files},
+        "files": {file: _checksum(Path(file).read_bytes()) for file in _files(tomllib.loads(as_resolved.decode()))},
         "summary_sha256": _checksum((folder / "summary.json").read_bytes()),
     }
     write_own(folder / "sweep.json", (json.dumps(record, indent=2) + "\n").encode(), RECORD)
+
+
+def _files(case: dict) -> list[str]:
+    """The files that a resolved case reads: points, their neighbours, and shapes."""
+    points = case.get("points", {})
+    shapes = case.get("lattice", {}).get("shape", [])
+    in_sets = [shape for rule in case.get("set", []) for shape in rule.get("shape", {}).values()]
+    files = [points.get("neighbours"), *(table.get("file") for table in [points, *shapes, *in_sets])]
+    return [file for file in files if file]
 
 
 def _bytes(value) -> bytes:

@@ -19,7 +19,8 @@ MadeModel make_bond_model(const ModelSetting& setting, Bonds bonds) {
     mixed.weigh(bonds);
   }
   CutBonds cut = cut_bonds(bonds, setting.points, of.cracks);
-  auto [potential, never_fails] = mixed.potential(bonds);
+  auto [potential, never_fails] =
+      mixed.potential(bonds, stretch_factors(setting.points, bonds, setting.bonds));
   return {Model(std::move(bonds), std::move(potential), std::move(never_fails)), std::move(cut)};
 }
 
@@ -38,26 +39,39 @@ FractureScale scale_of_bonds(const MaterialSpecification& material, const std::s
 }  // namespace
 
 const Formulation& bond_formulation() {
-  static const Formulation formulation{
-      .model = MaterialModel::bond,
-      .label = "\"bond\" with kinematics \"finite\"",
-      .takes = {Option::plane, Option::kinematics, Option::potential, Option::micromodulus,
-                Option::calibration, Option::thermal_expansion, Option::fibre, Option::strength,
-                Option::softening, Option::critical_stretch, Option::volume_correction,
-                Option::horizon_shape, Option::surface_correction, Option::interfaces,
-                Option::eigenstrains, Option::given_neighbours, Option::pressures, Option::images,
-                Option::events},
-      .part_needs_lattice = false,
-      .has_quadrature_of_bonds = true,
-      .has_quick_fracture_scale = true,
-      .has_measured_trapping = true,
-      .has_elastic_stand_in = true,
-      .check_material = check_bond_constants,
-      .check_body = require_lattice_to_calibrate_on,
-      .make_model = make_bond_model,
-      .moduli = moduli_of_bonds,
-      .describe = describe_bonds,
-      .fracture_scale = scale_of_bonds};
+  static const Formulation formulation{.model = MaterialModel::bond,
+                                       .label = "\"bond\" with kinematics \"finite\"",
+                                       .takes = {Option::plane,
+                                                 Option::kinematics,
+                                                 Option::potential,
+                                                 Option::micromodulus,
+                                                 Option::calibration,
+                                                 Option::thermal_expansion,
+                                                 Option::fibre,
+                                                 Option::strength,
+                                                 Option::softening,
+                                                 Option::critical_stretch,
+                                                 Option::volume_correction,
+                                                 Option::horizon_shape,
+                                                 Option::surface_correction,
+                                                 Option::interfaces,
+                                                 Option::eigenstrains,
+                                                 Option::given_neighbours,
+                                                 Option::horizons,
+                                                 Option::pressures,
+                                                 Option::images,
+                                                 Option::events},
+                                       .part_needs_lattice = false,
+                                       .has_quadrature_of_bonds = true,
+                                       .has_quick_fracture_scale = true,
+                                       .has_measured_trapping = true,
+                                       .has_elastic_stand_in = true,
+                                       .check_material = check_bond_constants,
+                                       .check_body = require_lattice_to_calibrate_on,
+                                       .make_model = make_bond_model,
+                                       .moduli = moduli_of_bonds,
+                                       .describe = describe_bonds,
+                                       .fracture_scale = scale_of_bonds};
   return formulation;
 }
 

@@ -35,6 +35,7 @@ enum class Option {
   interfaces,
   eigenstrains,
   given_neighbours,
+  horizons,  ///< of points, each its own
   convolutions,
   pressures,
   surface_loads,  ///< tractions and stresses on the surface itself, not on points below it
@@ -95,7 +96,8 @@ inline constexpr std::array<OptionOfMaterial, 13> options_of_material{{
 
 using OptionOfBody = OptionOf<BodySpecification>;
 inline constexpr CollocationSpecification usual_collocation;
-inline constexpr std::array<OptionOfBody, 11> options_of_body{{
+inline constexpr std::array<OptionOfBody, 12> options_of_body{{
+    {Option::horizons, "horizon", [](auto& of) { return of.horizon_per_size != 0.0; }},
     {Option::volume_correction, "volume_correction",
      [](auto& of) { return of.volume_correction != VolumeCorrection::none; }},
     {Option::horizon_shape, "horizon_shape",

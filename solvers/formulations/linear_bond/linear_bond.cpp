@@ -37,20 +37,12 @@ MadeModel make_linear_bonds(const ModelSetting& setting, Bonds bonds) {
           std::move(cut)};
 }
 
-constexpr OptionSet options_of_linear_bonds{Option::plane,
-                                            Option::kinematics,
-                                            Option::micromodulus,
-                                            Option::calibration,
-                                            Option::thermal_expansion,
-                                            Option::fibre,
-                                            Option::energy_density,
-                                            Option::volume_correction,
-                                            Option::horizon_shape,
-                                            Option::interfaces,
-                                            Option::surface_correction,
-                                            Option::given_neighbours,
-                                            Option::pressures,
-                                            Option::images};
+constexpr OptionSet options_of_linear_bonds{
+    Option::plane,          Option::kinematics,         Option::micromodulus,
+    Option::calibration,    Option::thermal_expansion,  Option::fibre,
+    Option::energy_density, Option::volume_correction,  Option::horizon_shape,
+    Option::interfaces,     Option::surface_correction, Option::given_neighbours,
+    Option::horizons,       Option::pressures,          Option::images};
 
 }  // namespace
 

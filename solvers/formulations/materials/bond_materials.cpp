@@ -161,14 +161,15 @@ void BondMaterials::weigh(Bonds& bonds) const {
 }
 
 std::optional<BondMaterials::Strength> BondMaterials::strength(std::size_t kind,
-                                                               const Coordinates& n) const {
+                                                               const Coordinates& n,
+                                                               double by_energy) const {
   const auto& [constant, material] = kinds_[kind];
   const DamageSpecification& damage = material->damage;
   if (damage.law == DamageLaw::none) return {};
-  double share = 1.0;  // relative to the stretches along the fibres
+  double share = damage.is_by_energy ? by_energy : 1.0;  // relative to those of the material
   if (material->fibre && material->fibre->transverse_critical) {
     const double t = constant.alignment(n);
-    share = t + (1.0 - t) * *material->fibre->transverse_critical / damage.critical;
+    share *= t + (1.0 - t) * *material->fibre->transverse_critical / damage.critical;
   }
   const double onset = damage.law == DamageLaw::critical_stretch ? damage.critical : damage.onset;
   return Strength{kind, share * onset, share * damage.critical};
@@ -177,17 +178,23 @@ std::optional<BondMaterials::Strength> BondMaterials::strength(std::size_t kind,
 /// Bonds between equal laws have the mean of their stretches; between different ones the weaker law
 /// decides. If one of the materials does not fail, the bond has the law of the other.
 std::optional<BondMaterials::Strength> BondMaterials::strength(std::size_t a, std::size_t b,
-                                                               const Coordinates& n) const {
-  if (a == b) return strength(a, n);
+                                                               const Coordinates& n,
+                                                               double by_energy) const {
+  if (a == b) return strength(a, n, by_energy);
   const Pair& pair = pairs_[a * materials_.all().size() + b];
-  if (pair.own >= 0) return strength(std::size_t(pair.own), n);
-  const auto one = strength(a, n), other = strength(b, n);
+  if (pair.own >= 0) return strength(std::size_t(pair.own), n, by_energy);
+  const auto one = strength(a, n, by_energy), other = strength(b, n, by_energy);
   if (!one || !other) return one ? one : other;
   if (!same_law(kinds_[a].material->damage, kinds_[b].material->damage)) {
     return one->critical <= other->critical ? one : other;
   }
   return Strength{one->law, mean_by(pair.rule, std::array{one->onset, other->onset}),
                   mean_by(pair.rule, std::array{one->critical, other->critical})};
+}
+
+bool BondMaterials::are_any_by_energy() const {
+  return std::ranges::any_of(kinds_,
+                             [](const Kind& kind) { return kind.material->damage.is_by_energy; });
 }
 
 bool BondMaterials::has_one_law() const {
@@ -201,8 +208,9 @@ bool BondMaterials::has_one_law() const {
   return factors_.strength.empty();
 }
 
-BondMaterials::Failing BondMaterials::potential(const Bonds& bonds) const {
-  Failing result = smooth_potential(bonds);
+BondMaterials::Failing BondMaterials::potential(const Bonds& bonds,
+                                                const std::vector<double>& by_energy) const {
+  Failing result = smooth_potential(bonds, by_energy);
   if (from_.teeth == 0) return result;
   try {
     result.potential = with_teeth(result.potential, from_.teeth);
@@ -212,14 +220,15 @@ BondMaterials::Failing BondMaterials::potential(const Bonds& bonds) const {
   return result;
 }
 
-BondMaterials::Failing BondMaterials::smooth_potential(const Bonds& bonds) const {
+BondMaterials::Failing BondMaterials::smooth_potential(const Bonds& bonds,
+                                                       const std::vector<double>& by_energy) const {
   const auto fails = [](const Kind& kind) { return kind.material->damage.law != DamageLaw::none; };
   const auto failing = std::ranges::find_if(kinds_, fails);
   if (failing == kinds_.end()) return {bond_potential(*kinds_.front().material, modulus_), {}};
 
   Failing result{bond_potential(*failing->material, modulus_),
                  never_failing_bonds(all_materials(from_, materials_), points_, bonds)};
-  const bool has_one = has_one_law();
+  const bool has_one = has_one_law() && (by_energy.empty() || !are_any_by_energy());
   if (has_one && std::ranges::all_of(kinds_, fails)) return result;
   result.never_fails.resize(std::size_t(bonds.count()));
   std::vector<AnyBondLaw> laws;
@@ -228,7 +237,9 @@ BondMaterials::Failing BondMaterials::smooth_potential(const Bonds& bonds) const
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       const Index j = bonds.partner[bond];
-      const auto own = strength(materials_.of(i), materials_.of(j), direction(bonds, i, bond));
+      const double of_horizons = by_energy.empty() ? 1.0 : by_energy[std::size_t(bond)];
+      const auto own =
+          strength(materials_.of(i), materials_.of(j), direction(bonds, i, bond), of_horizons);
       if (!own) {
         result.never_fails[std::size_t(bond)] = 1;
       } else if (!has_one) {

@@ -53,11 +53,15 @@ class BondMaterials {
     BondPotential potential;
     std::vector<char> never_fails;
   };
-  [[nodiscard]] Failing potential(const Bonds& bonds) const;
+  /// @param by_energy factors of stretches that follow from a fracture energy, per bond, see
+  ///        stretch_factors; empty: 1
+  [[nodiscard]] Failing potential(const Bonds& bonds,
+                                  const std::vector<double>& by_energy = {}) const;
 
  private:
   /// The potential with smoothly falling laws, without a saw-tooth.
-  [[nodiscard]] Failing smooth_potential(const Bonds& bonds) const;
+  [[nodiscard]] Failing smooth_potential(const Bonds& bonds,
+                                         const std::vector<double>& by_energy) const;
 
   /// Constants and law of one kind of bond.
   struct Kind {
@@ -76,10 +80,15 @@ class BondMaterials {
 
   [[nodiscard]] Coordinates direction(const Bonds& bonds, Index i, Offset bond) const;
   [[nodiscard]] double constant(std::size_t a, std::size_t b, const Coordinates& n) const;
-  [[nodiscard]] std::optional<Strength> strength(std::size_t kind, const Coordinates& n) const;
-  [[nodiscard]] std::optional<Strength> strength(std::size_t a, std::size_t b,
-                                                 const Coordinates& n) const;
+  /// @param by_energy factor of stretches that follow from a fracture energy
+  [[nodiscard]] std::optional<Strength> strength(std::size_t kind, const Coordinates& n,
+                                                 double by_energy) const;
+  [[nodiscard]] std::optional<Strength> strength(std::size_t a, std::size_t b, const Coordinates& n,
+                                                 double by_energy) const;
+  /// True if all bonds that fail have the same law with the same stretches.
   [[nodiscard]] bool has_one_law() const;
+  /// True if the stretches of a material follow from a fracture energy.
+  [[nodiscard]] bool are_any_by_energy() const;
 
   const BodySpecification& from_;
   const PointMaterials& materials_;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "src/conditions/with_key.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/expression_at_points.hpp"
 
 namespace peristat {
 namespace {
@@ -17,6 +19,30 @@ const std::vector<Index>& members_of(const Points& points, const std::string& se
   const auto found = points.sets.find(set);
   if (found == points.sets.end()) throw InputError(key, '"' + set + '"', "no set of this name");
   return found->second;
+}
+
+/// Factors of points by an expression; an image has that of its source.
+/// @param applies whether the expression is for a point; for others the factor is 1
+template <class Applies>
+std::vector<double> given_factors(const Points& points, const std::string& text,
+                                  const std::string& key, const Applies& applies) {
+  // Values outside are hardly meant as factors, but as moduli or strengths.
+  constexpr double least = 1e-6, most = 1e6;
+  std::vector<double> factors(std::size_t(points.own()), 1.0);
+  with_key(key, [&] {
+    const Expression expression = expression_of(text, points);
+    for (Index i = 0; i < points.own(); ++i) {
+      if (!applies(i)) continue;
+      const double factor = value_at(expression, points, i);
+      if (!(factor >= least && factor <= most)) {
+        throw InputError("", '"' + text + '"',
+                         "is " + number_text(factor) + " at " + place_of(points, i) +
+                             "; a factor must be from 1e-6 to 1e6, and is no modulus or strength");
+      }
+      factors[std::size_t(i)] = factor;
+    }
+  });
+  return factors;
 }
 
 }  // namespace
@@ -93,10 +119,15 @@ std::vector<double> PointMaterials::factors(const Points& points,
                                             int threads) const {
   std::vector<double> factors;
   for (std::size_t m = 0; m < all_.size(); ++m) {
-    for (const ScatterSpecification& scatter : all_[m].of->scatter) {
+    for (std::size_t k = 0; k < all_[m].of->scatter.size(); ++k) {
+      const ScatterSpecification& scatter = all_[m].of->scatter[k];
       if (scatter.of != quantity) continue;
       if (factors.empty()) factors.assign(points.volume.size(), 1.0);
-      const std::vector<double> values = values_at(points, scatter.field, threads);
+      const std::string key = all_[m].key + ".scatter[" + std::to_string(k) + "].factor";
+      const std::vector<double> values =
+          scatter.factor.empty()
+              ? values_at(points, scatter.field, threads)
+              : given_factors(points, scatter.factor, key, [&](Index i) { return of(i) == m; });
       for (Index i = 0; i < points.count(); ++i) {
         if (of(i) == m) factors[std::size_t(i)] = values[std::size_t(points.source(i))];
       }

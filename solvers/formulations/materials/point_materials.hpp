@@ -37,7 +37,10 @@ class PointMaterials {
   /// Its key for errors.
   [[nodiscard]] std::string key_between(std::size_t a, std::size_t b) const;
 
-  /// Random factors of the points by the materials' fields; empty: all 1.
+  /// Factors of the points by the materials' random fields or expressions; empty: all 1.
+  /// @throws InputError ("material.scatter[0].factor") for a bad expression, and for values that
+  /// are
+  ///         no factors
   [[nodiscard]] std::vector<double> factors(const Points& points,
                                             ScatterSpecification::Quantity quantity,
                                             int threads) const;

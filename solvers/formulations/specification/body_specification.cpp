@@ -22,6 +22,12 @@ void check_shares(const Points& points) {
   }
 }
 
+void check_horizons(const Points& points) {
+  require(points.horizons.empty() || points.horizons.size() == points.volume.size(),
+          "points.horizons", "", "must have one entry for every point, or none at all");
+  for (const double horizon : points.horizons) require_positive(horizon, "points.horizons");
+}
+
 void check_set(const std::string& name, const std::vector<Index>& members, Index points) {
   for (std::size_t k = 0; k < members.size(); ++k) {
     const bool ascends = k == 0 || members[k - 1] < members[k];
@@ -30,7 +36,22 @@ void check_set(const std::string& name, const std::vector<Index>& members, Index
   }
 }
 
+void check_column(const std::string& name, const std::vector<double>& values, Index points) {
+  const std::string shown = '"' + name + '"', why_not = why_no_column(name);
+  require(why_not.empty(), "points.columns", shown, why_not);
+  require(values.size() == std::size_t(points), "points.columns", shown,
+          "must have a value for every point");
+  for (const double value : values) {
+    require(std::isfinite(value), "points.columns", shown, "must be finite");
+  }
+}
+
 }  // namespace
+
+double cross_section_of(const BodySpecification& of, const Points& points) {
+  if (points.dimension == 3) return 1.0;
+  return of.cross_section == 0.0 ? points.cross_section() : of.cross_section;
+}
 
 void check_points(const Points& points) {
   require(points.dimension >= 1 && points.dimension <= 3, "points.dimension",
@@ -43,6 +64,8 @@ void check_points(const Points& points) {
     require(std::isfinite(at), "points.reference", number_text(at), "must be finite");
   for (const double volume : points.volume) require_positive(volume, "points.volume");
   check_shares(points);
+  for (const auto& [name, values] : points.columns) check_column(name, values, points.own());
+  check_horizons(points);
   for (const auto& [name, members] : points.sets) check_set(name, members, points.count());
 }
 

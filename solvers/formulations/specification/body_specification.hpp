@@ -62,7 +62,10 @@ struct CollocationSpecification {
 
 /// Specification of a body of points.
 struct BodySpecification {
-  double horizon = 0.0;  ///< [m]
+  double horizon = 0.0;  ///< [m]; the largest if points have horizons of their own
+  /// In its place the horizon of each point over its size, see horizons_of_sizes; 0: none. A body
+  /// gets its Points::horizons from it.
+  double horizon_per_size = 0.0;
   /// 1D: area [m2]; 2D: thickness [m]; 3D: 1. 0: that of the points.
   double cross_section = 0.0;
   VolumeCorrection volume_correction = VolumeCorrection::none;
@@ -95,6 +98,7 @@ struct BodySpecification {
   std::vector<std::vector<double>> programme{};
   /// In the place of the tables the time `t`, up to this [s]: for a body in motion.
   std::optional<double> end_time{};
+  std::vector<TimeTable> loads_over_time{};         ///< tables of `load`, … of a body in motion
   std::vector<InitialSpecification> initial{};      ///< of a body in motion
   std::vector<AbsorbingSpecification> absorbing{};  ///< likewise
   bool has_inertia = false;                         ///< for a motion by implicit steps
@@ -117,6 +121,9 @@ struct BodySpecification {
     return regions.empty() && !material.fibre && material.scatter.empty();
   }
 };
+
+/// Cross-section of a body: the given one, or that of its points; 1 in 3D.
+[[nodiscard]] double cross_section_of(const BodySpecification& of, const Points& points);
 
 /// Refuses points that are no body: arrays that don't fit together, places and volumes that are not
 /// finite or positive, a set with a number that is no point's.

@@ -52,6 +52,9 @@ struct DamageSpecification {
   /// In the place of `onset` (of `critical` for the law critical_stretch): largest stress of the
   /// bulk under a pull, see with_stretches [Pa].
   std::optional<double> strength{};
+  /// True if the stretches were computed from a fracture energy: those of a bond then depend on the
+  /// horizons of its points, and these are for the body's horizon.
+  bool is_by_energy = false;
 
   /// True if some stretches are still to be computed from these data.
   [[nodiscard]] bool is_by_data() const {
@@ -85,13 +88,15 @@ struct FibreSpecification {
   std::optional<double> transverse_critical{};  ///< s_c of bonds across; none: as along
 };
 
-/// Random factor of the bonds, the mean of the factors of their two points.
+/// Factor of the bonds, the mean of the factors of their two points: random, or given at the
+/// points.
 struct ScatterSpecification {
   enum class Quantity { stiffness, strength };
   enum class Distribution { weibull };
   Quantity of = Quantity::stiffness;  ///< scales their constants, or all stretches of their law
   Distribution distribution = Distribution::weibull;
   WeibullField field{};
+  std::string factor{};  ///< expression of place and the points' columns; empty: random
 };
 
 struct MaterialSpecification {

@@ -31,9 +31,9 @@ def keys_by_table():
 
 
 def inner(schema):
-    """The table that a key has, or that the items of its array are; none for a value."""
-    table = schema.get("items", schema)
-    return table if "properties" in table else None
+    """The table that a key has, may have, or that the items of its array are; none for a value."""
+    tables = (one.get("items", one) for one in schema.get("anyOf", [schema]))
+    return next((table for table in tables if "properties" in table), None)
 
 
 def values(table, path=""):

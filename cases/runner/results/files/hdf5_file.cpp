@@ -104,6 +104,17 @@ void write_dataset(hid_t file, const std::string& path, hid_t type, const void* 
 hid_t type_of(double) { return H5T_NATIVE_DOUBLE; }
 hid_t type_of(std::int32_t) { return H5T_NATIVE_INT32; }
 hid_t type_of(std::uint8_t) { return H5T_NATIVE_UINT8; }
+hid_t type_of(std::int64_t) { return H5T_NATIVE_INT64; }
+
+/// Properties of a dataset that is stored compressed, in parts of about half a megabyte.
+void compress(hid_t creation, const Hdf5File::Shape& shape, const std::string& path) {
+  std::vector<hsize_t> chunk(shape.begin(), shape.end());
+  chunk[0] = std::min<hsize_t>(chunk[0], 1 << 15);
+  if (chunk[0] == 0) return;
+  checked(H5Pset_chunk(creation, int(chunk.size()), chunk.data()), "prepare " + path);
+  checked(H5Pset_shuffle(creation), "prepare " + path);
+  checked(H5Pset_deflate(creation, 1), "prepare " + path);
+}
 
 std::string column_path(const std::string& group, const Column& column) {
   std::string name = column.name;
@@ -245,12 +256,19 @@ void Hdf5File::write(const std::string& path, const std::vector<std::uint8_t>& v
   write_dataset(id_, path, H5T_NATIVE_UINT8, values.data(), shape, label);
 }
 
+void Hdf5File::write(const std::string& path, const std::vector<std::int64_t>& values,
+                     const Shape& shape, const DatasetLabel& label) {
+  write_dataset(id_, path, H5T_NATIVE_INT64, values.data(), shape, label);
+}
+
 template <class Value>
 void Hdf5File::write_rows(const std::string& path, const Shape& shape, const DatasetLabel& label,
-                          const std::function<void(const PutRows<Value>&)>& fill) {
+                          const std::function<void(const PutRows<Value>&)>& fill, Storage storage) {
   const hid_t type = type_of(Value{});
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "prepare " + path);
+  if (storage == Storage::compressed) compress(creation, shape, path);
   const Handle dataset(
-      H5Dcreate2(id_, path.c_str(), type, dataspace(shape), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+      H5Dcreate2(id_, path.c_str(), type, dataspace(shape), H5P_DEFAULT, creation, H5P_DEFAULT),
       H5Dclose, "create " + path);
   std::uint64_t values_per_row = 1;
   for (std::size_t k = 1; k < shape.size(); ++k) values_per_row *= shape[k];
@@ -269,36 +287,65 @@ void Hdf5File::write_rows(const std::string& path, const Shape& shape, const Dat
 }
 
 template void Hdf5File::write_rows<double>(const std::string&, const Shape&, const DatasetLabel&,
-                                           const std::function<void(const PutRows<double>&)>&);
+                                           const std::function<void(const PutRows<double>&)>&,
+                                           Storage);
 template void Hdf5File::write_rows<std::int32_t>(
     const std::string&, const Shape&, const DatasetLabel&,
-    const std::function<void(const PutRows<std::int32_t>&)>&);
+    const std::function<void(const PutRows<std::int32_t>&)>&, Storage);
 template void Hdf5File::write_rows<std::uint8_t>(
     const std::string&, const Shape&, const DatasetLabel&,
-    const std::function<void(const PutRows<std::uint8_t>&)>&);
+    const std::function<void(const PutRows<std::uint8_t>&)>&, Storage);
 
 void Hdf5File::write(const std::string& path, const std::string& text, const DatasetLabel& label) {
   const char* pointer = text.c_str();
   write_dataset(id_, path, text_type(), &pointer, {}, label);
 }
 
+template <class Value>
+void Hdf5File::write_view(const std::string& path, const Shape& shape,
+                          const std::vector<ViewedRows>& parts, const DatasetLabel& label) {
+  const hid_t type = type_of(Value{});
+  const Handle view = dataspace(shape);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "prepare " + path);
+  const Value zero{};
+  checked(H5Pset_fill_value(creation, type, &zero), "prepare " + path);
+  for (const ViewedRows& part : parts) {
+    const Handle source = dataspace(part.shape);
+    // The dataset may have more rows than `shape`, so that all of it must not be selected.
+    const std::vector<hsize_t> origin(part.shape.size(), 0),
+        all(part.shape.begin(), part.shape.end());
+    checked(
+        H5Sselect_hyperslab(source, H5S_SELECT_SET, origin.data(), nullptr, all.data(), nullptr),
+        "select rows for " + path);
+    const hsize_t inner = part.shape.size() > 1 ? part.shape.back() : 1;
+    const hsize_t outer = part.shape.size() > 2 ? part.shape[1] : 1;
+    const hsize_t start[] = {part.row, part.column}, stride[] = {1, 3},
+                  blocks[] = {part.shape[0], outer}, block[] = {1, inner};
+    checked(H5Sselect_hyperslab(view, H5S_SELECT_SET, start, stride, blocks, block),
+            "select rows of " + path);
+    checked(H5Pset_virtual(creation, view, part.of.file.c_str(), part.of.object.c_str(), source),
+            "map " + path);
+  }
+  checked(H5Sselect_all(view), "select " + path);
+  const Handle dataset(
+      H5Dcreate2(id_, path.c_str(), type, view, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose,
+      "create " + path);
+  write_label(dataset, label);
+}
+
+template void Hdf5File::write_view<double>(const std::string&, const Shape&,
+                                           const std::vector<ViewedRows>&, const DatasetLabel&);
+template void Hdf5File::write_view<std::int64_t>(const std::string&, const Shape&,
+                                                 const std::vector<ViewedRows>&,
+                                                 const DatasetLabel&);
+template void Hdf5File::write_view<std::uint8_t>(const std::string&, const Shape&,
+                                                 const std::vector<ViewedRows>&,
+                                                 const DatasetLabel&);
+
 void Hdf5File::write_padded_view(const std::string& path, const std::string& source,
                                  const Shape& shape, const DatasetLabel& label) {
-  const bool is_tensor = shape.size() == 3;
-  const Handle view = dataspace({shape[0], is_tensor ? std::uint64_t(9) : std::uint64_t(3)});
-  const Handle whole = dataspace(shape);
-  const hsize_t start[] = {0, 0}, stride[] = {1, 3}, block[] = {1, shape.back()},
-                blocks[] = {shape[0], is_tensor ? shape[1] : 1};
-  checked(H5Sselect_hyperslab(view, H5S_SELECT_SET, start, stride, blocks, block),
-          "select columns of " + path);
-  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "prepare " + path);
-  const double zero = 0.0;
-  checked(H5Pset_fill_value(creation, H5T_NATIVE_DOUBLE, &zero), "prepare " + path);
-  checked(H5Pset_virtual(creation, view, ".", source.c_str(), whole), "map " + path);
-  const Handle dataset(
-      H5Dcreate2(id_, path.c_str(), H5T_NATIVE_DOUBLE, view, H5P_DEFAULT, creation, H5P_DEFAULT),
-      H5Dclose, "create " + path);
-  write_label(dataset, label);
+  const std::uint64_t width = shape.size() == 3 ? 9 : 3;
+  write_view<double>(path, {shape[0], width}, {{{".", source}, shape}}, label);
 }
 
 void Hdf5File::set_attribute(const std::string& path, const std::string& name, double value) {
@@ -323,6 +370,21 @@ void Hdf5File::set_attribute(const std::string& path, const std::string& name,
   std::vector<const char*> pointers;
   for (const std::string& text : texts) pointers.push_back(text.c_str());
   write_attribute(object, name, text_type(), dataspace({pointers.size()}), pointers.data());
+}
+
+void Hdf5File::set_attribute(const std::string& path, const std::string& name,
+                             const std::vector<std::int64_t>& values) {
+  const Handle object(H5Oopen(id_, path.c_str(), H5P_DEFAULT), H5Oclose, "open " + path);
+  write_attribute(object, name, H5T_NATIVE_INT64, dataspace({values.size()}), values.data());
+}
+
+void Hdf5File::set_fixed_attribute(const std::string& path, const std::string& name,
+                                   const std::string& text) {
+  const Handle object(H5Oopen(id_, path.c_str(), H5P_DEFAULT), H5Oclose, "open " + path);
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make the type of a text");
+  checked(H5Tset_size(type, text.size()), "make the type of a text");
+  checked(H5Tset_strpad(type, H5T_STR_NULLPAD), "make the type of a text");
+  write_attribute(object, name, type, dataspace({}), text.data());
 }
 
 bool Hdf5File::has_attribute(const std::string& path, const std::string& name) const {

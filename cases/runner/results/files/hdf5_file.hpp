@@ -57,13 +57,17 @@ class Hdf5File {
              const DatasetLabel& label);
   void write(const std::string& path, const std::vector<std::uint8_t>& values, const Shape& shape,
              const DatasetLabel& label);
+  void write(const std::string& path, const std::vector<std::int64_t>& values, const Shape& shape,
+             const DatasetLabel& label);
   /// Writes rows into a dataset, from row `first` on.
   template <class Value>
   using PutRows = std::function<void(std::uint64_t first, const std::vector<Value>& rows)>;
+  enum class Storage { plain, compressed };
   /// Writes a dataset in parts, which `fill` puts: values are double, int32 or uint8.
   template <class Value>
   void write_rows(const std::string& path, const Shape& shape, const DatasetLabel& label,
-                  const std::function<void(const PutRows<Value>&)>& fill);
+                  const std::function<void(const PutRows<Value>&)>& fill,
+                  Storage storage = Storage::plain);
   /// A single text.
   void write(const std::string& path, const std::string& text, const DatasetLabel& label);
   /// A virtual dataset that shows vectors (count x dimension) of this file as count x 3, or tensors
@@ -72,11 +76,31 @@ class Hdf5File {
   void write_padded_view(const std::string& path, const std::string& source, const Shape& shape,
                          const DatasetLabel& label);
 
+  /// Rows of a dataset as part of a view. The dataset may have further rows.
+  struct ViewedRows {
+    ObjectInFile of;        ///< relative to this file's folder; "." is this file
+    Shape shape;            ///< of the rows that are shown
+    std::uint64_t row = 0;  ///< of the view at which they are shown
+    std::uint64_t column = 0;
+  };
+  /// A virtual dataset that shows rows of others; takes no space. The values of a row are shown in
+  /// columns from `column` on, those of a tensor (row x a x b) in groups of three columns; the rest
+  /// is zero.
+  /// @tparam Value double, int64 or uint8, the type of all datasets
+  template <class Value>
+  void write_view(const std::string& path, const Shape& shape, const std::vector<ViewedRows>& parts,
+                  const DatasetLabel& label);
+
   void set_attribute(const std::string& path, const std::string& name, double value);
   void set_attribute(const std::string& path, const std::string& name, std::int64_t value);
   void set_attribute(const std::string& path, const std::string& name, const std::string& text);
   void set_attribute(const std::string& path, const std::string& name,
                      const std::vector<std::string>& texts);
+  void set_attribute(const std::string& path, const std::string& name,
+                     const std::vector<std::int64_t>& values);
+  /// A text of fixed length in ASCII, which the readers of VTK ask for.
+  void set_fixed_attribute(const std::string& path, const std::string& name,
+                           const std::string& text);
 
   /// True if there is an object; a link to one that can't be opened counts as none.
   [[nodiscard]] bool has(const std::string& path) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,10 +9,11 @@
 
 namespace peristat {
 
-/// Text of results.xdmf: one grid of points per step with fields, that reads its arrays from
-/// results.h5. Its time is the step number (load factors may repeat), the load factor a number of
-/// the grid; vectors have three components, which the glyphs and the warping of ParaView need, and
-/// tensors nine.
+/// Text of results.xdmf: per step with fields two grids that read their arrays from results.h5,
+/// `body` with a cell per point, and once bonds have broken `broken_bonds` with a line per bond.
+/// The time is the step number (load factors may repeat), the load factor a number of the body;
+/// vectors have three components, which the glyphs and the warping of ParaView need, and tensors
+/// nine.
 class XdmfSeries {
  public:
   struct Field {
@@ -21,20 +23,36 @@ class XdmfSeries {
     bool is_flag = false;  ///< of one byte, 0 or 1; else of doubles
     bool is_tensor = false;
   };
+  /// Cells of the points with corners of their own.
+  struct Cells {
+    std::string topology;                    ///< "Quadrilateral", "Mixed", …
+    std::string dataset;                     ///< path of the corners' numbers in results.h5
+    std::uint64_t corners = 0, numbers = 0;  ///< number of corners, and of numbers in the dataset
+  };
+  /// Lines between points.
+  struct Lines {
+    std::string group{};  ///< in results.h5, with `bonds` (count x 2) and `step`
+    std::uint64_t count = 0;
+  };
 
   /// @param constant fields that all steps have, e.g. volumes
-  XdmfSeries(Index points, std::vector<Field> constant)
-      : points_(std::to_string(points)), constant_(std::move(constant)) {}
+  XdmfSeries(Index points, Cells cells, std::vector<Field> constant)
+      : points_(std::to_string(points)), cells_(std::move(cells)), constant_(std::move(constant)) {}
 
-  void add(int step, double load_factor, const std::string& mode, const std::vector<Field>& fields);
+  void add(int step, double load_factor, const std::string& mode, const std::vector<Field>& fields,
+           const Lines& broken_bonds);
 
   /// The whole file.
   [[nodiscard]] std::string text() const;
 
  private:
-  [[nodiscard]] std::string attribute(const Field& field) const;
+  [[nodiscard]] std::string attribute(const Field& field, const std::string& centre) const;
+  [[nodiscard]] std::string body() const;
+  [[nodiscard]] std::string lines(const Lines& broken_bonds,
+                                  const std::vector<Field>& fields) const;
 
   std::string points_;
+  Cells cells_;
   std::vector<Field> constant_;
   std::string grids_;
 };

@@ -17,9 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Files of the folder itself, in all versions so far.
-const std::vector<std::string> own_files{"results.h5",      "results.xdmf",  "history.csv",
-                                         "iterations.csv",  "decisions.csv", "broken_bonds.csv",
-                                         "convergence.csv", "dossier.txt",   "summary.json"};
+const std::vector<std::string> own_files{
+    "results.h5",    "results.xdmf",          "history.csv",     "iterations.csv",
+    "decisions.csv", "broken_bonds.csv",      "convergence.csv", "dossier.txt",
+    "summary.json",  "load_displacement.csv", "results.vtkhdf"};
 
 /// Pictures of version 1, which kept no list of them.
 const std::vector<std::string> pictures_of_version_1{

@@ -13,7 +13,11 @@ struct ResultsFolder {
 
   [[nodiscard]] std::filesystem::path results() const { return directory / "results.h5"; }
   [[nodiscard]] std::filesystem::path xdmf() const { return directory / "results.xdmf"; }
+  [[nodiscard]] std::filesystem::path vtk_hdf() const { return directory / "results.vtkhdf"; }
   [[nodiscard]] std::filesystem::path history() const { return directory / "history.csv"; }
+  [[nodiscard]] std::filesystem::path load_displacement() const {
+    return directory / "load_displacement.csv";
+  }
   [[nodiscard]] std::filesystem::path iterations() const { return directory / "iterations.csv"; }
   [[nodiscard]] std::filesystem::path decisions() const { return directory / "decisions.csv"; }
   [[nodiscard]] std::filesystem::path broken_bonds() const {

@@ -38,6 +38,19 @@ bool are_same(const std::vector<double>& some, const std::vector<double>& others
   });
 }
 
+constexpr const char* columns_group = "/points/columns";
+
+std::string column_of(const std::string& name) { return columns_group + ("/" + name); }
+
+/// True if a group holds columns of these names, or there are none.
+bool holds_columns(const Hdf5File& file, const std::string& group, const Points& points) {
+  const std::string place = group + "/columns";
+  if (!file.has(place)) return points.columns.empty();
+  std::vector<std::string> names;
+  for (const auto& [name, values] : points.columns) names.push_back(name);
+  return file.names(place) == names;
+}
+
 std::vector<std::int32_t> neighbour_points(const Points& points) {
   std::vector<std::int32_t> ends;
   for (const NeighbourShares& pair : points.neighbours) ends.insert(ends.end(), {pair.i, pair.j});
@@ -79,6 +92,28 @@ void write_image_kinds(Hdf5File& file, const Points& points) {
              {"m", "of each kind of images: an image of X stands at mirror X + shift"});
 }
 
+/// Writes the elements of points at the centroids of a mesh's elements.
+void write_elements(Hdf5File& file, const Points& points) {
+  const MeshElements& elements = points.elements;
+  if (elements.empty()) return;
+  const auto dimension = std::uint64_t(points.dimension);
+  const auto integers = [](const auto& values) {
+    return std::vector<std::int32_t>(values.begin(), values.end());
+  };
+  std::vector<std::int32_t> kinds;
+  for (const MeshElements::Kind kind : elements.kind) kinds.push_back(std::int32_t(kind));
+  const std::string place = "/points/elements";
+  file.make_group(place);
+  file.write(place + "/nodes", elements.nodes, {elements.nodes.size() / dimension, dimension},
+             {"m", "positions of the mesh's nodes"});
+  file.write(place + "/kind", kinds, {kinds.size()},
+             {"1", "of each point's element: VTK's number of its type"});
+  file.write(place + "/offset", integers(elements.offset), {elements.offset.size()},
+             {"1", "first corner of each point's element, and the end"});
+  file.write(place + "/corners", integers(elements.corners), {elements.corners.size()},
+             {"1", "nodes at the corners of the elements, in VTK's order"});
+}
+
 }  // namespace
 
 std::string flags_of(const std::string& set) { return "/points/sets/" + name_of_flags(set); }
@@ -93,12 +128,20 @@ void write_rows_of(const Points& points, const std::vector<PointCounts>& counts,
   sink.write("/points/reference", points.reference, {dimension},
              {"m", "reference position of each point"});
   sink.write("/points/volume", points.volume, {}, {"m3", "volume of each point"});
+  // A rank without points has no horizons, but its part in the gathering.
+  if (gathering.part().ranks().max(points.horizons.empty() ? 0.0 : 1.0) > 0.0) {
+    sink.write("/points/horizon", points.horizons, {}, {"m", "horizon of each point"});
+  }
   sink.write(
       "/points/set_ids", membership(points), {points.sets.size()},
       {"1", "1 where the point (row) is in the set (column); attribute sets names the columns"});
   for (const auto& [name, members] : points.sets) {
     sink.write(flags_of(name), flags(points, members), {},
                {"1", "1 where the point is in set " + name});
+  }
+  for (const auto& [name, values] : points.columns) {
+    sink.write(column_of(name), values, {},
+               {"none", "column " + name + " of the file of points, in its own unit"});
   }
   for (const PointCounts& of_points : counts) {
     std::visit(
@@ -122,7 +165,7 @@ void write_rows_of(const Points& points, const std::vector<PointCounts>& counts,
 }  // namespace
 
 void write_points(Hdf5File& file, const Points& points, const std::vector<PointCounts>& counts,
-                  const RowGathering& gathering) {
+                  const CellsOfBody& cells, const RowGathering& gathering) {
   file.make_group("/points");
   file.set_attribute("/points", "dimension", std::int64_t{points.dimension});
   file.set_attribute("/points", "spacing", double(points.spacing));
@@ -131,7 +174,9 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
   }
   if (points.angle != 0.0) file.set_attribute("/points", "angle", points.angle);
   file.make_group("/points/sets");
+  if (!points.columns.empty()) file.make_group(columns_group);
   write_rows_of(points, counts, gathering, &file);
+  write_cells(&file, cells.cells, cells.sizes, gathering);
   std::vector<std::string> names;
   for (const auto& [name, members] : points.sets) names.push_back(name);
   if (!names.empty()) file.set_attribute("/points/set_ids", "sets", names);
@@ -145,20 +190,26 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
                {"1", "share of the volume of j that i counts, and of i that j counts"});
   }
   write_image_kinds(file, points);
+  write_elements(file, points);
 }
 
 void send_points(const Points& points, const std::vector<PointCounts>& counts,
-                 const RowGathering& gathering) {
+                 const CellsOfBody& cells, const RowGathering& gathering) {
   write_rows_of(points, counts, gathering, nullptr);
+  write_cells(nullptr, cells.cells, cells.sizes, gathering);
 }
 
 std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& counts,
-                       std::uint64_t rows) {
-  const std::uint64_t bytes_per_point = counts.size() * sizeof(double) +
-                                        (std::uint64_t(points.dimension) + 4) * sizeof(double) +
+                       const CellSizes& cells, std::uint64_t rows) {
+  const std::uint64_t bytes_per_point = (counts.size() + points.columns.size()) * sizeof(double) +
+                                        (std::uint64_t(points.dimension) + 5) * sizeof(double) +
                                         sizeof(std::int32_t) + 2 * points.sets.size();
   const std::uint64_t bytes_per_pair = 2 * (sizeof(std::int32_t) + sizeof(double));
-  return rows * bytes_per_point + points.neighbours.size() * bytes_per_pair +
+  const std::uint64_t of_elements =
+      sizeof(double) * points.elements.nodes.size() +
+      sizeof(std::int32_t) * (points.elements.corners.size() + 2 * points.elements.kind.size());
+  return rows * bytes_per_point + of_elements + cells.bytes() +
+         points.neighbours.size() * bytes_per_pair +
          points.images.kinds.size() * 6 * sizeof(double);
 }
 
@@ -171,12 +222,15 @@ bool holds_points(const Hdf5File* file, const std::string& group, const Points& 
   const std::uint64_t rows = gathering.rows(points.volume.size());
   const bool is_outline_held = source.all_agree([&] {
     return file->names(group + "/sets") == names && holds_neighbours(*file, group, points) &&
-           file->count_of_rows(group + "/volume") == rows;
+           holds_columns(*file, group, points) && file->count_of_rows(group + "/volume") == rows;
   });
   if (!is_outline_held) return false;
   const auto d = std::size_t(points.dimension);
   bool are_held = are_same(source.read<double>(group + "/reference", d), points.reference);
   are_held = are_same(source.read<double>(group + "/volume", 1), points.volume) && are_held;
+  for (const auto& [name, values] : points.columns) {
+    are_held = are_same(source.read<double>(group + "/columns/" + name, 1), values) && are_held;
+  }
   for (const auto& [set, members] : points.sets) {
     const std::string path = group + "/sets/" + name_of_flags(set);
     are_held = source.read<std::uint8_t>(path, 1) == flags(points, members) && are_held;

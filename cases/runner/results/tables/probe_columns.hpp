@@ -12,6 +12,7 @@ struct ProbeColumns {
   std::string name;
   int components = 1;
   std::string unit = "1";  ///< of the probed field
+  std::string meaning{};   ///< empty: a probe of the case
 };
 
 /// Columns that a probe of a set or a point adds to the history.

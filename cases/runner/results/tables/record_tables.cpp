@@ -159,7 +159,9 @@ std::vector<Column> history_columns(const std::vector<std::string>& support_sets
             "probe", probe.name,
             "history.csv already has a column \"" + name + "\"; give the probe another name");
       }
-      columns.push_back({number, name, probe.unit, "probe " + probe.name + " of the case"});
+      const std::string meaning =
+          probe.meaning.empty() ? "probe " + probe.name + " of the case" : probe.meaning;
+      columns.push_back({number, name, probe.unit, meaning});
     }
   }
   columns.insert(columns.end(), later_step_columns().begin(), later_step_columns().end());

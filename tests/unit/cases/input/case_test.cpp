@@ -244,7 +244,7 @@ TEST_F(CaseReader, ReadsAPointSourceRelativeToTheCaseFile) {
   const Case read_cloud = read(cloud);
   const auto& source = std::get<PointSource>(read_cloud.body);
   EXPECT_EQ(source.file, folder_ / "cloud.csv");
-  EXPECT_EQ(source.horizon, 0.3);
+  EXPECT_EQ(source.horizon.length, 0.3);
   EXPECT_EQ(source.cross_section, 0.01);
 }
 
@@ -307,9 +307,9 @@ const std::vector<BadInput> bad_inputs{
      {"lattice.horizon", "did you mean horizon_ratio?"}},
     {"UnknownShapeWithKeysOfItsOwn",
      "add = \"box\"\nmin = [0.0, 0.0]",
-     "add = \"ellipse\"\nradii = [0.1, 0.2]\nmin = [0.0, 0.0]",
+     "add = \"oval\"\nsemiaxes = [0.1, 0.2]\nmin = [0.0, 0.0]",
      8,
-     {"lattice.shape[0].add = \"ellipse\"", "not known", "box, disk"}},
+     {"lattice.shape[0].add = \"oval\"", "not known", "box, disk"}},
     {"PoissonRatioOfBonds",
      "[material]",
      "[material]\npoisson_ratio = 0.2",
@@ -350,7 +350,7 @@ const std::vector<BadInput> bad_inputs{
      "max = [1.0, 0.5]",
      "max = [1.0, 0.5]\nradius = 3",
      11,
-     {"lattice.shape[0].radius = 3", "not a key of a box"}},
+     {"lattice.shape[0].radius = 3", "not a key of the shape box"}},
     // broken TOML
     {"BrokenToml", "spacing = 0.1", "spacing = 0.1.2", 4, {"not valid TOML"}},
     {"NoValue", "horizon_ratio = 3.015", "horizon_ratio =", 5, {"not valid TOML"}},

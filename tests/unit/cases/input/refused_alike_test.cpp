@@ -1,6 +1,9 @@
 /// Case files and users of the library are refused with the same words: the rules stand once.
 
+#include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -150,6 +153,46 @@ INSTANTIATE_TEST_SUITE_P(
                of.interfaces[0].between = {"low", "low"};
              }}),
     [](const auto& rule) { return rule.param.name; });
+
+/// A horizon per point is for points from a file.
+TEST(RefusedAlikeWithPoints, WhatNeedsOneHorizon) {
+  const std::string file = testing::TempDir() + "refused_alike_points.csv";
+  std::ofstream(file) << "x, y, volume\n0, 0, 1\n1, 0, 1\n";
+  const std::string points =
+      "dimension = 2\n[points]\nfile = \"" + file + "\"\nhorizon = { ratio = 3.015 }\n";
+  const auto make = [](MaterialModel model) {
+    BodySpecification of;
+    of.horizon_per_size = 3.015;
+    of.material.youngs_modulus = 1e9;
+    if (model != MaterialModel::bond) make_solid(of, model);
+    return of;
+  };
+  std::vector<std::pair<std::string, BodySpecification>> refused;
+  refused.emplace_back(solid + "\"cpd\"", make(MaterialModel::cpd));
+  refused.emplace_back(solid + "\"lps\"", make(MaterialModel::lps));
+  refused.emplace_back(solid + "\"correspondence\"", make(MaterialModel::correspondence));
+  refused.emplace_back(bond + "model = \"green_bond\"", make(MaterialModel::bond));
+  refused.back().second.material.model = MaterialModel::green_bond;
+  refused.emplace_back("[material]\nmicromodulus = 1.0", make(MaterialModel::bond));
+  refused.back().second.material.youngs_modulus.reset();
+  refused.back().second.material.micromodulus = 1.0;
+  refused.emplace_back(damage + "law = \"linear\"\nfracture_energy = 10.0\nstrength = 1e6",
+                       make(MaterialModel::bond));
+  refused.back().second.material.damage.law = DamageLaw::linear;
+  refused.back().second.material.damage.fracture_energy = 10.0;
+  refused.back().second.material.damage.strength = 1e6;
+  refused.emplace_back("[quadrature]\nvolume_correction = \"exact\"\n" + bond,
+                       make(MaterialModel::bond));
+  refused.back().second.volume_correction = VolumeCorrection::exact;
+  for (const auto& [lines, of] : refused) {
+    const InputError of_file =
+        error_of([&] { static_cast<void>(read_case("a.toml", points + lines, {})); });
+    const InputError of_library = error_of([&] { check_materials(of, 2); });
+    EXPECT_EQ(of_file.allowed(), of_library.allowed());
+    EXPECT_NE(of_file.allowed(), "is accepted") << lines;
+    EXPECT_NE(of_file.place().find("a.toml:"), std::string::npos) << of_file.what();
+  }
+}
 
 }  // namespace
 }  // namespace peristat

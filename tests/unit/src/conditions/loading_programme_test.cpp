@@ -81,5 +81,41 @@ TEST(LoadingProgramme, IsOfTime) {
   }
 }
 
+TEST(LoadingProgramme, HasLoadsOverTime) {
+  const LoadingProgramme programme =
+      LoadingProgramme::of_time(4.0, {{{0, 2}, {1, 3}, {4, -3}}, {{0, 0}, {8, 16}}});
+  EXPECT_EQ(programme.names(), (std::vector<std::string>{"t", "load", "load2"}));
+  EXPECT_EQ(programme.at(0.0), (std::vector<double>{0.0, 2.0, 0.0}));
+  EXPECT_EQ(programme.at(0.5), (std::vector<double>{0.5, 2.5, 1.0}));
+  EXPECT_EQ(programme.at(1.0), (std::vector<double>{1.0, 3.0, 2.0}));  // exactly
+  EXPECT_EQ(programme.at(2.5), (std::vector<double>{2.5, 0.0, 5.0}));
+  EXPECT_EQ(programme.at(4.0), (std::vector<double>{4.0, -3.0, 8.0}));
+  EXPECT_EQ(programme.end(), 4.0);
+}
+
+TEST(LoadingProgramme, RefusesLoadsThatDoNotCoverTheMotion) {
+  const auto refused = [](const std::vector<TimeTable>& loads) -> std::string {
+    try {
+      static_cast<void>(LoadingProgramme::of_time(2.0, loads));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const double infinite = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(refused({{{0, 0}, {2, 1}}}), "accepted");
+  EXPECT_EQ(refused({{{0, 0}}}), "programme[0]: needs at least two pairs of a time and a value");
+  EXPECT_EQ(refused({{{1, 0}, {2, 1}}}), "programme[0] = 1: must begin at the time 0");
+  EXPECT_EQ(refused({{{0, 0}, {2, 1}}, {{0, 0}, {2, 1}, {2, 2}}}),
+            "programme[1] = 2: must be later than the time before, 2 s: the times of a table "
+            "ascend");
+  EXPECT_EQ(refused({{{0, 0}, {2, infinite}}}), "programme[0] = inf: must be finite");
+  EXPECT_EQ(refused({{{0, 0}, {1.5, 1}}}),
+            "programme[0] = 1.5: ends before the motion, which ends at 2 s; add a pair for the "
+            "value from there on");
+  EXPECT_EQ(refused(std::vector<TimeTable>(5, {{0, 0}, {2, 1}})),
+            "programme = 5: must have at most 4 tables");
+}
+
 }  // namespace
 }  // namespace peristat

@@ -116,6 +116,65 @@ TEST(Expression, KnowsWhetherAParameterOccurs) {
   EXPECT_FALSE(Expression(2.75e-4).has_parameters());
 }
 
+const Columns columns{{"temperature", {20.0, 30.0}}, {"v_1", {0.5, -0.5}}};
+
+TEST(Expression, HasTheColumnsOfAPoint) {
+  const Expression expression("temperature*load + v_1 + x", 2, 0.01, with_load, columns);
+  EXPECT_FALSE(expression.is_constant());
+  EXPECT_TRUE(expression.has_parameters());
+  EXPECT_EQ(expression({1, 0, 0}, std::array{2.0}, 0), 41.5);
+  EXPECT_EQ(expression({1, 0, 0}, std::array{2.0}, 1), 60.5);
+  EXPECT_EQ(expression({1, 0, 0}, std::array{2.0}, 0), 41.5);
+  EXPECT_FALSE(Expression("temperature", 2, 0.01, with_load, columns).has_parameters());
+  // A place is enough where no column occurs.
+  EXPECT_EQ(Expression("x", 2, 0.01, {}, columns)({3, 0, 0}), 3);
+}
+
+TEST(Expression, RefusesAColumnWhereThereIsNoPoint) {
+  const Expression expression("2*temperature", 2, 0.01, {}, columns);
+  for (const Index point : {Expression::no_point, Index(2), Index(-7)}) {
+    try {
+      (void)expression({1, 2, 0}, {}, point);
+      FAIL();
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.allowed(),
+                "column temperature has a value at each point, but the value at (x, y) = (1, 2) is "
+                "needed, where there is none");
+    }
+  }
+  // Names without values, with which a case file is checked.
+  const Columns names{{"temperature", {}}};
+  EXPECT_THROW((void)Expression("temperature", 2, 0.01, {}, names)({}, {}, 0), InputError);
+}
+
+TEST(Expression, NamesTheColumnsThatAreAllowed) {
+  const auto refused = [](const std::string& text, int dimension) {
+    try {
+      (void)Expression(text, dimension, 0.01, with_load, columns);
+    } catch (const InputError& error) {
+      return error.allowed();
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refused("temprature", 1),
+            "unknown variable temprature; allowed are x, load, pi, spacing, spacing_x, "
+            "temperature, v_1; did you mean temperature?");
+  EXPECT_EQ(refused("2*temperature", 0),
+            "column temperature has a value at each point, but this one number is for none");
+}
+
+TEST(Expression, KnowsWhichNamesColumnsCanHave) {
+  for (const char* name : {"temperature", "_a", "E1", "velocity_x", "step", "horizon", "volume"}) {
+    EXPECT_EQ(why_no_column(name), "") << name;
+  }
+  for (const char* name :
+       {"x",   "y",    "z",   "t", "load", "load4", "pi",  "spacing", "spacing_y", "free", "table",
+        "sin", "sqrt", "sum", "",  "1st",  "a b",   "a-b", "T(K)",    "\xc3\xa9"}) {
+    EXPECT_NE(why_no_column(name), "") << name;
+  }
+  EXPECT_NE(why_no_column(std::string(101, 'a')), "");
+}
+
 TEST(Expression, CanBeMoved) {
   Expression first("x + load", 1, 1.0, with_load);
   const Expression second = std::move(first);
@@ -174,7 +233,8 @@ TEST(Expression, RefusesTextThatIsNoExpression) {
   const std::string longest = std::string(19'998, ' ') + "1";
   EXPECT_EQ(refusal(longest), "accepted");
   EXPECT_EQ(refusal(longest + "1"),
-            "an expression may have at most 19999 characters; this one has 20000");
+            "an expression may have at most 19999 characters; this one has 20000. Many values are "
+            "better kept in a file, as in table(\"file.csv\", x)");
   for (const char* text : {"", " ", "\n"}) {
     EXPECT_THROW(Expression(text, 2, 0.01, with_load), InputError);
   }

@@ -87,13 +87,45 @@ TEST_F(PointFile, TakesItsSpacingFromTheMeanVolume) {
 TEST_F(PointFile, NamesTheLineOfABadColumnName) {
   EXPECT_EQ(refusal("# head\nx,volume\n0,1\n"),
             std::pair(2, std::string("column 'y' is missing; the columns are x, y, volume, and "
-                                     "optionally set")));
-  EXPECT_EQ(refusal("x,y,volumne\n0,0,1\n"),
-            std::pair(1, std::string("unknown column 'volumne'; the columns are x, y, volume, and "
-                                     "optionally set; did you mean volume?")));
+                                     "optionally set and columns of your own")));
+  EXPECT_EQ(
+      refusal("x,y,volumne\n0,0,1\n"),
+      std::pair(1, std::string("column 'volume' is missing; the columns are x, y, volume, and "
+                               "optionally set and columns of your own; did you mean it by "
+                               "'volumne'?")));
   EXPECT_EQ(refusal("x,y,z,volume\n0,0,0,1\n").first, 1);
   EXPECT_EQ(refusal("x,y,x,volume\n0,0,0,1\n"),
             std::pair(1, std::string("column 'x' appears twice")));
+}
+
+TEST_F(PointFile, KeepsFurtherColumnsWithTheirPoints) {
+  const Points points = read(
+      "temperature, x, y, volume, set, v_x\n"
+      "31.5, 1, 0, 1, a, -1\n"
+      "+3e1, 0, 0, 1, , 0\n"
+      "33, 2, 0, 1, b|a, 1e-300\n");
+  EXPECT_EQ(points.reference, three_places);  // renumbered, and the columns with them
+  ASSERT_EQ(points.columns.size(), 2u);
+  EXPECT_EQ(points.columns.at("temperature"), (std::vector<double>{30, 31.5, 33}));
+  EXPECT_EQ(points.columns.at("v_x"), (std::vector<double>{0, -1, 1e-300}));
+  EXPECT_EQ(further_columns(file(), 2), (std::vector<std::string>{"temperature", "v_x"}));
+  EXPECT_TRUE(read("x y volume set\n0 0 1\n").columns.empty());
+}
+
+TEST_F(PointFile, RefusesColumnsThatExpressionsCouldNotUse) {
+  for (const char* name : {"t", "load", "spacing", "pi", "sin", "table", "a-b", "2nd", "", "z"}) {
+    const auto [line, message] =
+        refusal("# remark\nx,y,volume," + std::string(name) + "\n0,0,1,1\n");
+    EXPECT_EQ(line, 2) << name;
+    EXPECT_NE(message.find("'" + std::string(name) + "'"), std::string::npos) << message;
+  }
+  EXPECT_EQ(refusal("x,y,volume,T,T\n0,0,1,1,1\n"),
+            std::pair(1, std::string("column 'T' appears twice")));
+  EXPECT_EQ(refusal("x,y,volume,T\n0,0,1,1\n1,0,1,nan\n"),
+            std::pair(3, std::string("T = 'nan' is not finite")));
+  EXPECT_EQ(refusal("x,y,volume,T\n0,0,1,1\n1,0,1,\n"),
+            std::pair(3, std::string("T = '' is not a number")));
+  EXPECT_EQ(refusal("x,y,volume,T\n0,0,1,1e999\n").first, 2);
 }
 
 TEST_F(PointFile, TellsThatTheLineOfNamesIsARemark) {

@@ -76,6 +76,43 @@ TEST(SearchBonds, FindsWhatAllPairsOfAThinBodyGive) {
   EXPECT_GT(bonds.count(), 100);
 }
 
+TEST(SearchBonds, FindsPairsWithinTheLargerOfTheirRadii) {
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    const Points points = cloud(dimension, 400, 8);
+    std::vector<double> radii = tests::Random(9).vector(400);
+    for (double& radius : radii) radius = 0.3 * std::pow(300.0, radius - 0.5);  // 450 to 1
+    const Bonds bonds = search_bonds(points, radii, 2);
+    Offset expected = 0;
+    for (Index i = 0; i < points.count(); ++i) {
+      std::vector<Index> partners;
+      for (Index j = i + 1; j < points.count(); ++j) {
+        const double radius = std::max(radii[std::size_t(i)], radii[std::size_t(j)]);
+        if (tests::reference_distance(points, i, j) <= radius) partners.push_back(j);
+      }
+      const std::vector<Index> found(bonds.partner.begin() + bonds.offset[i],
+                                     bonds.partner.begin() + bonds.offset[i + 1]);
+      ASSERT_EQ(found, partners) << dimension << "D, point " << i;
+      expected += Offset(partners.size());
+    }
+    EXPECT_EQ(bonds.count(), expected);
+    EXPECT_GT(expected, 400);
+    EXPECT_LT(expected, 40000);
+    const Bonds one_by_one = search_bonds(points, radii, 1);
+    EXPECT_EQ(tests::kinds(one_by_one), tests::kinds(bonds));
+  }
+}
+
+TEST(SearchBonds, WithEqualRadiiFindsWhatOneRadiusFinds) {
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    const Points points = cloud(dimension, 300, 10);
+    const Bonds one = search_bonds(points, 0.4, 1);
+    const Bonds each = search_bonds(points, std::vector<double>(300, 0.4), 1);
+    ASSERT_GT(one.count(), 100);
+    EXPECT_EQ(each.partner, one.partner);
+    EXPECT_EQ(tests::kinds(each), tests::kinds(one));
+  }
+}
+
 TEST(SearchBonds, FindsNeighboursAtExactlyTheHorizonWhateverTheRoundOff) {
   // Inner points of a lattice whose horizon is m spacings: 2m in 1D; the lattice points of a disk
   // and a ball of radius 2 and 3 without the centre (Gauss circle problem: 13, 29; 33, 123).

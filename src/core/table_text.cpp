@@ -1,4 +1,4 @@
-#include "src/geometry/table_text.hpp"
+#include "src/core/table_text.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -20,8 +20,11 @@ std::string_view trimmed(std::string_view text) {
 
 }  // namespace
 
-void for_each_row(const std::filesystem::path& file,
-                  const std::function<void(std::size_t, std::string_view)>& visit) {
+namespace {
+
+/// Visits rows until a visit returns false.
+void visit_rows(const std::filesystem::path& file,
+                const std::function<bool(std::size_t, std::string_view)>& visit) {
   std::ifstream stream(file);
   if (std::filesystem::is_directory(file) || !stream)
     throw InputError("file", file.string(), "the file can't be read");
@@ -32,9 +35,27 @@ void for_each_row(const std::filesystem::path& file,
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     if (number == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(3);
     text = trimmed(text);
-    if (!text.empty() && text.front() != '#') visit(number, text);
+    if (!text.empty() && text.front() != '#' && !visit(number, text)) return;
   }
   if (stream.bad()) throw InputError("file", file.string(), "the file can't be read to its end");
+}
+
+}  // namespace
+
+void for_each_row(const std::filesystem::path& file,
+                  const std::function<void(std::size_t, std::string_view)>& visit) {
+  visit_rows(file, [&](std::size_t line, std::string_view text) {
+    visit(line, text);
+    return true;
+  });
+}
+
+void first_row(const std::filesystem::path& file,
+               const std::function<void(std::size_t, std::string_view)>& visit) {
+  visit_rows(file, [&](std::size_t line, std::string_view text) {
+    visit(line, text);
+    return false;
+  });
 }
 
 std::vector<std::string_view> split(std::string_view text, char separator) {

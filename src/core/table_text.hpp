@@ -15,6 +15,10 @@ namespace peristat {
 void for_each_row(const std::filesystem::path& file,
                   const std::function<void(std::size_t line, std::string_view text)>& visit);
 
+/// Calls visit(line, text) for the first of these lines alone, if there is one.
+void first_row(const std::filesystem::path& file,
+               const std::function<void(std::size_t line, std::string_view text)>& visit);
+
 /// The fields of a row, separated by commas or by blanks, without blanks around them.
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
 [[nodiscard]] std::vector<std::string_view> split_at_blanks(std::string_view text);

@@ -1,0 +1,182 @@
+#include "cases/runner/setup/read_mesh.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "cases/runner/input/case.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/machine_error.hpp"
+#include "src/geometry/mesh_body.hpp"
+#include "src/geometry/mesh_interior.hpp"
+#include "src/geometry/mesh_points.hpp"
+
+extern char** environ;
+
+namespace peristat {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* python = "/usr/bin/python3";
+
+[[noreturn]] void refuse_mesh_file(const fs::path& file, const std::string& what) {
+  throw InputError("file", file.string(), what);
+}
+
+/// Path of the script, in the tree of the sources or of an installation above a folder; or empty.
+fs::path script_above(fs::path folder) {
+  constexpr int most_levels = 6;
+  for (int level = 0; level < most_levels; ++level, folder = folder.parent_path()) {
+    for (const char* const tools : {"cases/runner", "share/peristat"}) {
+      const fs::path script = folder / tools / "meshes/read_mesh.py";
+      std::error_code error;
+      if (fs::is_regular_file(script, error)) return script;
+    }
+  }
+  return {};
+}
+
+fs::path find_script() {
+  std::error_code error;
+  fs::path script = script_above(fs::read_symlink("/proc/self/exe", error).parent_path());
+  Dl_info library{};  // of another program that uses the library
+  if (script.empty() && dladdr(reinterpret_cast<const void*>(&read_mesh), &library) != 0)
+    script = script_above(fs::absolute(library.dli_fname, error).parent_path());
+  if (script.empty())
+    throw MachineError(
+        "meshes/read_mesh.py, which reads meshes, is not installed with the program");
+  return script;
+}
+
+/// Reads everything from a descriptor.
+std::string read_all(int descriptor) {
+  std::string text;
+  std::vector<char> some(1 << 20);
+  for (;;) {
+    const ssize_t count = ::read(descriptor, some.data(), some.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return text;
+    text.append(some.data(), std::size_t(count));
+  }
+}
+
+/// Output of a process, and how it ended.
+struct Answer {
+  std::string text;
+  int status = 0;
+};
+
+Answer answer_of_script(const fs::path& file) {
+  const std::string script = find_script().string(), name = file.string();
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0)
+    throw MachineError(std::string("no pipe can be opened: ") + std::strerror(errno));
+  std::array<char*, 5> arguments{const_cast<char*>(python), const_cast<char*>("-BEs"),
+                                 const_cast<char*>(script.c_str()), const_cast<char*>(name.c_str()),
+                                 nullptr};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
+  pid_t child = 0;
+  const int error = posix_spawn(&child, python, &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  ::close(ends[1]);
+  if (error != 0) {
+    ::close(ends[0]);
+    if (error == ENOENT)
+      refuse_mesh_file(file, std::string("meshes are read by ") + python +
+                                 " and meshio, which are missing; install python3-meshio");
+    throw MachineError(std::string(python) + " can't be started: " + std::strerror(error));
+  }
+  Answer answer{read_all(ends[0]), 0};
+  ::close(ends[0]);
+  while (waitpid(child, &answer.status, 0) < 0 && errno == EINTR) {
+  }
+  return answer;
+}
+
+/// Values of the script's answer, one after another.
+class AnswerReader {
+ public:
+  AnswerReader(const std::string& text, std::size_t at, const fs::path& file)
+      : text_(text), at_(at), file_(file) {}
+
+  template <class Value>
+  std::vector<Value> values(std::size_t count) {
+    if (count > (text_.size() - at_) / sizeof(Value))
+      refuse_mesh_file(file_, "reading it by meshio has ended early");
+    std::vector<Value> read(count);
+    if (count > 0) std::memcpy(read.data(), text_.data() + at_, count * sizeof(Value));
+    at_ += count * sizeof(Value);
+    return read;
+  }
+  std::size_t count() { return std::size_t(values<std::int64_t>(1).front()); }
+  std::string text() {
+    const std::vector<char> letters = values<char>(count());
+    return {letters.begin(), letters.end()};
+  }
+
+ private:
+  const std::string& text_;
+  std::size_t at_;
+  const fs::path& file_;
+};
+
+Mesh mesh_of(AnswerReader answer) {
+  Mesh mesh;
+  mesh.nodes = answer.values<double>(3 * answer.count());
+  for (std::size_t blocks = answer.count(); blocks > 0; --blocks) {
+    Mesh::Block block;
+    block.type = answer.text();
+    const std::size_t elements = answer.count();
+    block.nodes_per_element = answer.count();
+    block.nodes = answer.values<std::int64_t>(elements * block.nodes_per_element);
+    mesh.blocks.push_back(std::move(block));
+  }
+  for (std::size_t groups = answer.count(); groups > 0; --groups) {
+    Mesh::Group group;
+    group.name = answer.text();
+    group.is_of_nodes = answer.count() != 0;
+    group.members = answer.values<std::int64_t>(answer.count());
+    mesh.groups.push_back(std::move(group));
+  }
+  for (std::size_t remarks = answer.count(); remarks > 0; --remarks)
+    mesh.remarks.push_back(answer.text());
+  return mesh;
+}
+
+}  // namespace
+
+Mesh read_mesh(const fs::path& file) {
+  const Answer answer = answer_of_script(file);
+  const std::string mesh = "mesh\n", refused = "refused\n";
+  if (answer.text.starts_with(refused)) refuse_mesh_file(file, answer.text.substr(refused.size()));
+  if (answer.text.starts_with(mesh) && answer.status == 0)
+    return mesh_of(AnswerReader(answer.text, mesh.size(), file));
+  if (WIFSIGNALED(answer.status) &&
+      (WTERMSIG(answer.status) == SIGXCPU || WTERMSIG(answer.status) == SIGKILL))
+    refuse_mesh_file(file, "meshio was ended: it took too long, or too much memory");
+  refuse_mesh_file(file, "meshio has failed; the file may be broken");
+}
+
+Points read_mesh_points(const PointSource& source, int dimension) {
+  const Mesh mesh = read_mesh(source.file);
+  // A scale of [units] belongs here: the coordinates are the file's, the rest works in metres.
+  Points points = make_points(make_mesh_body(mesh, dimension, source.file.string()), source.at,
+                              source.cross_section, source.file.string());
+  if (source.cut_bonds) points.interior = std::make_shared<const MeshInterior>(points.mesh);
+  return points;
+}
+
+}  // namespace peristat
