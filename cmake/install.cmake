@@ -51,6 +51,7 @@ foreach(tool IN ITEMS plots sweep trust meshes)
   install(DIRECTORY cases/runner/${tool} DESTINATION ${tools_folder} FILES_MATCHING PATTERN *.py)
 endforeach()
 install(DIRECTORY cases DESTINATION ${tools_folder} PATTERN runner EXCLUDE)
+install(FILES docs/case.schema.json DESTINATION ${tools_folder}/docs)  # where the cases look for it
 install(DIRECTORY docs TYPE DOC)
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE TYPE DOC)
 install(FILES benchmarks/RESULTS.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/benchmarks)

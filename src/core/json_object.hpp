@@ -34,7 +34,6 @@ class JsonObject {
   /// Adds those members of another object whose keys this one lacks.
   JsonObject& add_missing(const JsonObject& other);
 
-  [[nodiscard]] bool is_empty() const { return members_.empty(); }
   /// A member per line, indented by two blanks.
   [[nodiscard]] std::string text() const;
 

@@ -97,6 +97,9 @@ class Package(Folder):
         cases = shipped(self.prefix / "share/peristat/cases")
         self.assertIn("plate_with_hole/elastic.toml", cases)
         self.assertEqual(cases, shipped(ROOT / "cases"))
+        for case, text in cases.items():
+            schema = text.decode().partition("\n")[0].removeprefix("#:schema ")
+            self.assertTrue((self.prefix / "share/peristat/cases" / case).parent.joinpath(schema).is_file(), case)
 
     def test_the_help_names_what_can_be_typed(self):
         told = self.launch("help").output

@@ -230,13 +230,13 @@ std::string without_links(std::string text) {
 }
 
 std::string schema_text(const KeyDescription& key) {
-  std::string text = without_links(key.meaning);
+  std::string text = key.meaning;
   if (!key.unit.empty()) text += " [" + key.unit + "]";
   const bool is_needed =
       key.fallback.find("required") != std::string::npos || key.fallback.starts_with("exactly one");
   if (!key.fallback.empty()) text += (is_needed ? "\n\n" : "\n\nDefault: ") + key.fallback;
   if (!key.allowed.empty()) text += "\n\nAllowed: " + short_exponents(key.allowed);
-  return text;
+  return without_links(std::move(text));
 }
 
 }  // namespace

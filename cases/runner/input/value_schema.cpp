@@ -14,7 +14,7 @@ bool has_dimension(const std::string& unit) {
 }
 
 /// Pattern of a number, and a unit behind it.
-constexpr const char* quantity = R"(^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\s\d.].*$)";
+constexpr const char* quantity = R"(^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\s\d.eE].*$)";
 
 void add_limits(JsonObject& schema, const Range& range) {
   if (!range.limits_are_remote)
@@ -73,9 +73,7 @@ JsonObject components_schema(const JsonObject& component) { return list_schema(c
 JsonObject table_schema(const JsonObject& keys) {
   JsonObject schema;
   schema.add("type", "object").add("properties", keys);
-  // `false` would have taplo mark every line of the table, not only that of the unknown key.
-  return schema.add("additionalProperties",
-                    JsonObject().add("not", JsonObject().add("title", "an unknown key")));
+  return schema.add_json("additionalProperties", "false");
 }
 
 JsonObject either_schema(const std::vector<JsonObject>& schemas) {

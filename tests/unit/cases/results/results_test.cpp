@@ -495,7 +495,7 @@ TEST_F(ResultsTest, SummaryTakesSumsFromAllStepsAndTheRestFromTheLast) {
                          std::regex("(\"peak_memory_bytes\": )[1-9][0-9]*"), "$1M");
   EXPECT_EQ(json, R"({
   "status": "not_converged",
-  "reason": "line\u000a\"quoted\" \\",
+  "reason": "line\n\"quoted\" \\",
   "points": 6,
   "free_dofs": 5000000000,
   "bonds": 11,
