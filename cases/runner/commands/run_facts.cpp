@@ -112,7 +112,7 @@ std::vector<PointCounts> constant_fields_of(const Case& from, const Body& body) 
   if (const auto* const source = std::get_if<PointSource>(&from.body)) {
     const Index own = body.points.owned.value_or(body.points.own());
     counts.push_back({"source_row", "number of each point in the file's order, from 0",
-                      source_rows(source->file, body.points, own)});
+                      source_rows(source->file, body.points, own, source->length_unit)});
   }
   const auto own = [&](auto values) {
     values.resize(std::size_t(body.points.owned.value_or(body.points.own())));

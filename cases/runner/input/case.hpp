@@ -21,12 +21,20 @@
 
 namespace peristat {
 
+/// Table [units]: units of the plain numbers and expressions of a case file. Empty: the unit
+/// follows from the others, see unit_system.
+struct UnitNames {
+  std::string length, time, force, stress, energy, mass;
+};
+
 /// Points that come from a file instead of a lattice (table [points]).
 struct PointSource {
   std::filesystem::path file;  ///< absolute; in the case file relative to the case file's folder
   std::filesystem::path neighbours{};  ///< absolute; empty: the points within the horizon
   double cross_section = 1.0;          ///< 1D: area [m2]; 2D: thickness [m]
   double horizon = 0.0;                ///< [m]
+  /// Unit of the coordinates in the file, whose cube is the unit of its volumes [m].
+  double length_unit = 1.0;
 };
 
 /// Values of a load parameter: given one by one, or as an expression of the step.
@@ -109,6 +117,7 @@ struct OutputSpecification {
 /// A case, read and checked once and constant from then on: the specification of the body, which
 /// knows no file, and all the rest.
 struct Case : BodySpecification {
+  UnitNames units;  ///< of the file; all members here are in SI units
   std::string title;
   int dimension = 2;
   std::variant<Lattice, PointSource> body;

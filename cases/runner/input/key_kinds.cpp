@@ -62,7 +62,7 @@ std::string tuples_text(const std::vector<std::array<double, count>>& tuples, co
 Kind<double> number(const Range& range, std::string allowed, std::string unit) {
   return {[=](const Entry& at) { return at.from.number(at.key, range); },
           [](double value, const Case&) { return toml_number(value); }, std::move(allowed),
-          std::move(unit)};
+          std::move(unit), ValueForm::number};
 }
 
 Kind<double> positive(const std::string& unit, double high) {
@@ -83,7 +83,7 @@ Kind<Spacing> spacing() {
     return spacing.is_square() ? toml_number(spacing)
                                : array_text(components_of(along, from), toml_number);
   };
-  return {read, text, "positive, or a list with one number per dimension", "m"};
+  return {read, text, "positive, or a list with one number per dimension", "m", ValueForm::number};
 }
 
 Kind<double> between(double low, double high, std::string unit) {
@@ -217,7 +217,7 @@ Kind<Coordinates> coordinates(std::string unit) {
           [](const Coordinates& place, const Case& from) {
             return array_text(components_of(place, from), toml_number);
           },
-          "a number per dimension", std::move(unit)};
+          "a number per dimension", std::move(unit), ValueForm::number};
 }
 
 Kind<Coordinates> stiffnesses(const std::string& unit) {
@@ -233,7 +233,7 @@ Kind<Coordinates> stiffnesses(const std::string& unit) {
   const auto text = [any](const Coordinates& stiffness, const Case& from) {
     return any.text(stiffness, from);
   };
-  return {read, text, "numbers from 0, not all 0", unit};
+  return {read, text, "numbers from 0, not all 0", unit, ValueForm::number};
 }
 
 Kind<Side> side() {
@@ -259,12 +259,12 @@ Kind<std::optional<Side>> optional_side() {
 
 Kind<std::vector<std::array<double, 2>>> pairs() {
   return {[](const Entry& at) { return at.from.pairs(at.key); }, tuples_text<2>,
-          "3 or more pairs `[x, y]`", "m"};
+          "3 or more pairs `[x, y]`", "m", ValueForm::number};
 }
 
 Kind<std::vector<std::array<double, 3>>> triples() {
   return {[](const Entry& at) { return at.from.triples(at.key); }, tuples_text<3>,
-          "3 or more `[x, y, z]`", "m"};
+          "3 or more `[x, y, z]`", "m", ValueForm::number};
 }
 
 Kind<int> axis() {
@@ -286,7 +286,7 @@ Kind<std::string> condition() {
     }
     return selection;
   };
-  return {read, string_text, "an expression of place"};
+  return {read, string_text, "an expression of place", "", ValueForm::expression};
 }
 
 Kind<LoadTable> load_table() {
@@ -298,7 +298,8 @@ Kind<LoadTable> load_table() {
     return table.expression.empty() ? array_text(table.entries, toml_number)
                                     : toml_string(table.expression);
   };
-  return {read, text, "at least two numbers, the first 0, or an expression of `step`, 0 at step 0"};
+  return {read, text, "at least two numbers, the first 0, or an expression of `step`, 0 at step 0",
+          "", ValueForm::expression};
 }
 
 Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
@@ -321,7 +322,8 @@ Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
               return toml_string(component.value_or("free"));
             });
           },
-          "number, expression of place and `load` (mode `dynamics`: `t`), or `\"free\"`", "m"};
+          "number, expression of place and `load` (mode `dynamics`: `t`), or `\"free\"`", "m",
+          ValueForm::expression};
 }
 
 Kind<std::array<std::optional<std::string>, 3>> free_components(Components kind,
@@ -348,7 +350,7 @@ Kind<std::array<std::optional<std::string>, 3>> free_components(Components kind,
           },
           kind == Components::of_load ? "number, expression of `load` (`t`) alone, or `\"free\"`"
                                       : "number, expression of `load` alone, or `\"free\"`",
-          unit};
+          unit, ValueForm::expression};
 }
 
 namespace {
@@ -370,7 +372,7 @@ Kind<std::string> expression(bool of_place, bool or_free) {
   return {read, string_text,
           std::string("number, or expression of ") +
               (of_place ? "place and `load`" : "`load` alone") + (or_free ? ", or `\"free\"`" : ""),
-          "m"};
+          "m", ValueForm::expression};
 }
 
 }  // namespace
@@ -393,7 +395,7 @@ Kind<std::array<std::string, 3>> components_of_place(const std::string& unit) {
           [](const auto& values, const Case& from) {
             return array_text(components_of(values, from), toml_string);
           },
-          "number or expression of place", unit};
+          "number or expression of place", unit, ValueForm::expression};
 }
 
 Kind<std::string> expression_or_free() { return expression(true, true); }
@@ -419,7 +421,7 @@ Kind<double> stretch() {
     return value;
   };
   return {read, [](double value, const Case&) { return toml_number(value); },
-          "1e-09 to 1000, or an expression of `horizon` and `spacing`", "1"};
+          "1e-09 to 1000, or an expression of `horizon` and `spacing`", "1", ValueForm::expression};
 }
 
 namespace {
@@ -442,12 +444,13 @@ std::string read_field(const Entry& at, bool has_parameters) {
 
 Kind<std::string> scalar_field(const std::string& unit) {
   return {[](const Entry& at) { return read_field(at, true); }, string_text,
-          "number or expression of place and `load` (mode `dynamics`: `t`)", unit};
+          "number or expression of place and `load` (mode `dynamics`: `t`)", unit,
+          ValueForm::expression};
 }
 
 Kind<std::string> field_of_place(const std::string& unit) {
   return {[](const Entry& at) { return read_field(at, false); }, string_text,
-          "number or expression of place", unit};
+          "number or expression of place", unit, ValueForm::expression};
 }
 
 namespace {
@@ -471,7 +474,7 @@ Kind<std::array<std::string, 3>> located_components(bool has_place, const std::s
           },
           has_place ? "number or expression of place and `load` (mode `dynamics`: `t`)"
                     : "number or expression of `load` (`t`) alone",
-          unit};
+          unit, ValueForm::expression};
 }
 
 }  // namespace
@@ -494,7 +497,8 @@ Kind<std::vector<std::string>> stress_components() {
     return values;
   };
   return {read, [](const auto& values, const Case&) { return array_text(values, toml_string); },
-          "numbers or expressions of place and `load` (mode `dynamics`: `t`)", "Pa"};
+          "numbers or expressions of place and `load` (mode `dynamics`: `t`)", "Pa",
+          ValueForm::expression};
 }
 
 Kind<std::vector<std::string>> expected_components() {
@@ -509,7 +513,7 @@ Kind<std::vector<std::string>> expected_components() {
   return {read, [](const auto& values, const Case&) { return array_text(values, toml_string); },
           "list of numbers or expressions of place and `load` (mode `dynamics`: `t`), one for each "
           "component of the field",
-          ""};
+          "", ValueForm::expression};
 }
 
 Kind<std::array<std::string, 3>> force_components(bool is_total, const std::string& unit) {

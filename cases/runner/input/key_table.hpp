@@ -18,12 +18,13 @@ struct Kind : UntypedKind {
   /// @param reads  function that returns the value of an Entry
   /// @param writes function that returns the TOML of a value of a case
   template <class Reads, class Writes>
-  Kind(Reads reads, Writes writes, std::string is_allowed, std::string has_unit = {})
+  Kind(Reads reads, Writes writes, std::string is_allowed, std::string has_unit = {},
+       ValueForm has_form = ValueForm::other)
       : UntypedKind([=](const Entry& at, void* value) { *static_cast<Value*>(value) = reads(at); },
                     [=](const void* value, const Case& from) -> std::string {
                       return writes(*static_cast<const Value*>(value), from);
                     },
-                    std::move(is_allowed), std::move(has_unit)) {}
+                    std::move(is_allowed), std::move(has_unit), has_form) {}
 
   [[nodiscard]] Value read(const Entry& at) const {
     Value value{};

@@ -35,8 +35,9 @@ struct UntypedKind {
   Read read_into;
   Text text_of;
   std::string allowed, unit;
+  ValueForm form;
 
-  UntypedKind(Read read_into, Text text_of, std::string allowed, std::string unit);
+  UntypedKind(Read read_into, Text text_of, std::string allowed, std::string unit, ValueForm form);
   UntypedKind(const UntypedKind&);
   UntypedKind(UntypedKind&&) noexcept;
   ~UntypedKind();

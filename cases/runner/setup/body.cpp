@@ -88,7 +88,8 @@ Points make_points_of(const Case& from) {
       std::optional<NeighbourFile> neighbours;
       if (!source.neighbours.empty())
         neighbours = {source.neighbours, source.horizon, source.cross_section};
-      points = read_points(source.file, from.dimension, source.cross_section, neighbours);
+      points = read_points(source.file, from.dimension, source.cross_section, neighbours,
+                           source.length_unit);
     }
     for (std::size_t k = 0; k < from.sets.size(); ++k) {
       const SetRule& rule = from.sets[k];
