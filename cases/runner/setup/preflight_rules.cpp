@@ -99,7 +99,7 @@ void add_stiffnesses(const Preflight& of, Warnings& warnings) {
   for (const auto& [key, modulus] : of.stiffnesses) {
     if (modulus <= no_dimension || modulus >= softest_gel) continue;
     warnings.push_back(fmt::format(
-        "{} = {:g} Pa is softer than any solid; all numbers are in SI units: {:g} GPa is {:g}e9, "
+        "{} = {:g} Pa is softer than any solid; numbers without a unit are in SI units: {:g} GPa is {:g}e9, "
         "{:g} MPa is {:g}e6",
         key, modulus, modulus, modulus, modulus, modulus));
   }
