@@ -112,6 +112,24 @@ FractureScale fracture_scale_of(const MaterialSpecification& material, const std
   return formulation.fracture_scale(material, key, setting, spacing);
 }
 
+double modulus_of_tip(const MaterialSpecification& material, const std::string& key,
+                      const BondSetting& setting, double spacing) {
+  const Moduli of = formulation_of(material).moduli(material, key, setting, spacing);
+  const double nu = of.poisson_ratio;
+  return of.is_thin ? of.youngs_modulus : of.youngs_modulus / (1.0 - nu * nu);
+}
+
+MaterialSpecification with_fracture_energy(MaterialSpecification material, const std::string& key,
+                                           const BondSetting& setting, double spacing) {
+  DamageSpecification& damage = material.damage;
+  if (!damage.fracture_toughness) return material;
+  const double toughness = *damage.fracture_toughness;
+  damage.fracture_energy =
+      toughness * (toughness / modulus_of_tip(material, key, setting, spacing));
+  damage.fracture_toughness.reset();
+  return material;
+}
+
 namespace {
 
 /// Stretches of a material by horizon, if they are not proportional to the root of 1 / horizon.
@@ -137,6 +155,7 @@ std::vector<LawStretches> by_horizon(const MaterialSpecification& material, cons
 void find_stretches(const Formulation& formulation, MaterialSpecification& material,
                     const std::string& key, const BondSetting& setting, double spacing,
                     double fineness) {
+  material = with_fracture_energy(std::move(material), key, setting, spacing);
   if (!material.damage.is_by_data()) return;
   if (formulation.crack_energy_of_dilation) {
     const double energy = formulation.crack_energy_of_dilation(material, key, setting, spacing);

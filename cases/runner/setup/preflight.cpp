@@ -253,7 +253,7 @@ void add_materials(const Case& from, const Body& body, Preflight& to) {
     const DamageSpecification& asked = given[k].of->damage;
     to.fractures.push_back({of.regions.empty() ? "" : found[k].name, key, scale.youngs_modulus,
                             scale.energy(damage), strength, damage.critical,
-                            asked.strength || asked.onset > 0.0 || !asked.fracture_energy,
+                            asked.strength || asked.onset > 0.0 || !asked.has_fracture_energy(),
                             asked.strength.has_value(), damage.softens()});
   }
 }

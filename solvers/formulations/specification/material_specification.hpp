@@ -54,6 +54,9 @@ struct DamageSpecification {
   /// In the place of `critical`: fracture energy of a plane crack, the mean over its directions
   /// [J/m2].
   std::optional<double> fracture_energy{};
+  /// In the place of `fracture_energy`: toughness K_Ic of a plane crack, see with_fracture_energy
+  /// [Pa sqrt(m)].
+  std::optional<double> fracture_toughness{};
   /// In the place of `onset` (of `critical` for the law critical_stretch): largest stress of the
   /// bulk under a pull, see with_stretches [Pa].
   std::optional<double> strength{};
@@ -63,9 +66,12 @@ struct DamageSpecification {
   /// Stretches by horizon, see stretches_of; empty: proportional to the root of 1 / horizon.
   std::vector<LawStretches> of_horizons{};
 
+  [[nodiscard]] constexpr bool has_fracture_energy() const {
+    return fracture_energy || fracture_toughness;
+  }
   /// True if some stretches are still to be computed from these data.
   [[nodiscard]] bool is_by_data() const {
-    return law != DamageLaw::energy_density && (fracture_energy || strength);
+    return law != DamageLaw::energy_density && (has_fracture_energy() || strength);
   }
 
   /// True if bonds break one by one, by their stretches.
