@@ -18,29 +18,30 @@ struct NoExpression {};
 /// None: that of zero, which fits any.
 using Measured = std::optional<Dimension>;
 
-std::string described(const Dimension& dimension) {
+std::string dimension_words(const Dimension& dimension) {
   const std::string name = name_of(dimension);
   return name.empty() ? "another dimension" : name;
 }
 
 /// The dimension of terms that are added or compared.
-Measured common(const Measured& a, const Measured& b) {
+Measured common_dimension(const Measured& a, const Measured& b) {
   if (!a || !b) return a ? a : b;
   if (*a == *b) return a;
   throw InputError("", "",
-                   "adds or compares " + described(*a) + " and " + described(*b) +
+                   "adds or compares " + dimension_words(*a) + " and " + dimension_words(*b) +
                        "; beside a unit every number needs one");
 }
 
 void require_plain(const Measured& argument, const std::string& where) {
   if (argument && *argument != no_dimension)
-    throw InputError("", "", where + " must have no unit; this one is " + described(*argument));
+    throw InputError("", "",
+                     where + " must have no unit; this one is " + dimension_words(*argument));
 }
 
 /// Reads an expression by the ranks of muParser's operators.
-class Reader {
+class DimensionReader {
  public:
-  explicit Reader(const std::vector<ExpressionToken>& tokens) {
+  explicit DimensionReader(const std::vector<ExpressionToken>& tokens) {
     for (const ExpressionToken& token : tokens)
       if (token.kind != ExpressionToken::Kind::blank) tokens_.push_back(&token);
   }
@@ -72,7 +73,7 @@ class Reader {
     if (take("?")) {
       value = choice();
       if (!take(":")) throw NoExpression();
-      value = common(value, choice());
+      value = common_dimension(value, choice());
     }
     --depth_;
     return value;
@@ -91,7 +92,7 @@ class Reader {
     static constexpr std::array<std::string_view, 6> marks{"<=", ">=", "==", "!=", "<", ">"};
     Measured value = sum();
     while (take_one_of(marks)) {
-      static_cast<void>(common(value, sum()));
+      static_cast<void>(common_dimension(value, sum()));
       value = no_dimension;
     }
     return value;
@@ -99,7 +100,8 @@ class Reader {
 
   Measured sum() {
     Measured value = product();
-    while (take_one_of(std::array<std::string_view, 2>{"+", "-"})) value = common(value, product());
+    while (take_one_of(std::array<std::string_view, 2>{"+", "-"}))
+      value = common_dimension(value, product());
     return value;
   }
 
@@ -171,7 +173,7 @@ class Reader {
       }
       const Measured argument = choice();
       if (keeps)
-        value = common(value, argument);
+        value = common_dimension(value, argument);
       else if (name == "sqrt")
         value = argument ? root(*argument) : argument;
       else if (name != "sign" && name != "table" && !(turns && argument == angle))
@@ -196,7 +198,7 @@ class Reader {
 
 std::optional<Dimension> dimension_of_expression(const std::vector<ExpressionToken>& tokens) {
   try {
-    return Reader(tokens).whole();
+    return DimensionReader(tokens).whole();
   } catch (const NoExpression&) {
     return std::nullopt;
   }

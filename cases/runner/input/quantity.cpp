@@ -17,41 +17,56 @@ struct Symbol {
   bool takes_prefix = false;
 };
 
-constexpr Dimension none{}, length{2}, mass{0, 2}, time_of{0, 0, 2}, force{2, 2, -4},
-    stress{-2, 2, -4}, energy{4, 2, -4}, temperature{0, 0, 0, 2}, angle{0, 0, 0, 0, 2};
-constexpr long double degree = std::numbers::pi_v<long double> / 180.0L;
-constexpr long double pound_force = 44482216152605.0L;  // 1e-13 N, exact
-constexpr long double psi = pound_force / (254.0L * 254.0L);
+namespace dimensions {
+constexpr Dimension number{}, length{2}, mass{0, 2}, time{0, 0, 2}, frequency{0, 0, -2},
+    force{2, 2, -4}, stress{-2, 2, -4}, energy{4, 2, -4}, temperature{0, 0, 0, 2},
+    angle{0, 0, 0, 0, 2};
+}  // namespace dimensions
 
-constexpr std::array symbols{
-    Symbol{"m", {length}, true},         Symbol{"g", {mass, 1.0L, -6}, true},
-    Symbol{"s", {time_of}, true},        Symbol{"N", {force}, true},
-    Symbol{"Pa", {stress}, true},        Symbol{"J", {energy}, true},
-    Symbol{"K", {temperature}, true},    Symbol{"Hz", {{0, 0, -2}}, true},
-    Symbol{"rad", {angle}, true},        Symbol{"deg", {angle, degree}},
-    Symbol{"degrees", {angle, degree}},  Symbol{"°", {angle, degree}},
-    Symbol{"%", {none, 1.0L, -4}},       Symbol{"t", {mass, 1.0L, 6}},
-    Symbol{"min", {time_of, 6.0L, 2}},   Symbol{"h", {time_of, 36.0L, 4}},
-    Symbol{"bar", {stress, 1.0L, 10}},   Symbol{"in", {length, 254.0L, -8}},
-    Symbol{"ft", {length, 3048.0L, -8}}, Symbol{"lbf", {force, pound_force, -26}},
-    Symbol{"psi", {stress, psi, -10}},   Symbol{"ksi", {stress, psi, -4}}};
+constexpr long double one_degree = std::numbers::pi_v<long double> / 180.0L;
+constexpr long double pound_force = 44482216152605.0L;  // 1e-13 N, exact
+constexpr long double pound_per_inch2 = pound_force / (254.0L * 254.0L);
+
+constexpr std::array unit_symbols{Symbol{"m", {dimensions::length}, true},
+                                  Symbol{"g", {dimensions::mass, 1.0L, -6}, true},
+                                  Symbol{"s", {dimensions::time}, true},
+                                  Symbol{"N", {dimensions::force}, true},
+                                  Symbol{"Pa", {dimensions::stress}, true},
+                                  Symbol{"J", {dimensions::energy}, true},
+                                  Symbol{"K", {dimensions::temperature}, true},
+                                  Symbol{"Hz", {dimensions::frequency}, true},
+                                  Symbol{"rad", {dimensions::angle}, true},
+                                  Symbol{"deg", {dimensions::angle, one_degree}},
+                                  Symbol{"degrees", {dimensions::angle, one_degree}},
+                                  Symbol{"°", {dimensions::angle, one_degree}},
+                                  Symbol{"%", {dimensions::number, 1.0L, -4}},
+                                  Symbol{"t", {dimensions::mass, 1.0L, 6}},
+                                  Symbol{"min", {dimensions::time, 6.0L, 2}},
+                                  Symbol{"h", {dimensions::time, 36.0L, 4}},
+                                  Symbol{"bar", {dimensions::stress, 1.0L, 10}},
+                                  Symbol{"in", {dimensions::length, 254.0L, -8}},
+                                  Symbol{"ft", {dimensions::length, 3048.0L, -8}},
+                                  Symbol{"lbf", {dimensions::force, pound_force, -26}},
+                                  Symbol{"psi", {dimensions::stress, pound_per_inch2, -10}},
+                                  Symbol{"ksi", {dimensions::stress, pound_per_inch2, -4}}};
 
 struct Prefix {
   std::string_view name;
   int tens;
 };
 /// Both Greek letters mu of Unicode are in use.
-constexpr std::array prefixes{Prefix{"n", -9}, Prefix{"u", -6}, Prefix{"µ", -6}, Prefix{"μ", -6},
-                              Prefix{"m", -3}, Prefix{"c", -2}, Prefix{"d", -1}, Prefix{"k", 3},
-                              Prefix{"M", 6},  Prefix{"G", 9},  Prefix{"T", 12}};
+constexpr std::array unit_prefixes{Prefix{"n", -9}, Prefix{"u", -6}, Prefix{"µ", -6},
+                                   Prefix{"μ", -6}, Prefix{"m", -3}, Prefix{"c", -2},
+                                   Prefix{"d", -1}, Prefix{"k", 3},  Prefix{"M", 6},
+                                   Prefix{"G", 9},  Prefix{"T", 12}};
 
 std::optional<Unit> unit_of_symbol(std::string_view name) {
-  for (const Symbol& symbol : symbols)
+  for (const Symbol& symbol : unit_symbols)
     if (name == symbol.name) return symbol.unit;
-  for (const Symbol& symbol : symbols) {
+  for (const Symbol& symbol : unit_symbols) {
     if (!symbol.takes_prefix || !name.ends_with(symbol.name)) continue;
     const std::string_view front = name.substr(0, name.size() - symbol.name.size());
-    for (const Prefix& prefix : prefixes) {
+    for (const Prefix& prefix : unit_prefixes) {
       if (front != prefix.name) continue;
       Unit unit = symbol.unit;
       unit.half_tens += 2 * prefix.tens;
@@ -74,10 +89,10 @@ std::string meant_symbol(std::string_view name) {
   const auto compare = [&](const std::string& known) {
     if (differs_in_case_alone(name, known)) meant += (meant.empty() ? "" : " or ") + known;
   };
-  for (const Symbol& symbol : symbols) {
+  for (const Symbol& symbol : unit_symbols) {
     compare(std::string(symbol.name));
     if (!symbol.takes_prefix) continue;
-    for (const Prefix& prefix : prefixes)
+    for (const Prefix& prefix : unit_prefixes)
       compare(std::string(prefix.name) + std::string(symbol.name));
   }
   return meant.empty() ? "" : "; did you mean " + meant + "?";
@@ -111,7 +126,7 @@ class UnitReader {
   std::optional<Unit> product() {
     skip_blanks();
     std::optional<Unit> unit = text_.substr(at_).starts_with("1/") ? Unit() : factor();
-    if (unit && unit->dimension == none && text_.substr(at_).starts_with("1/")) ++at_;
+    if (unit && unit->dimension == dimensions::number && text_.substr(at_).starts_with("1/")) ++at_;
     while (unit) {
       const std::size_t before = at_;
       skip_blanks();
@@ -209,30 +224,32 @@ struct Named {
   const char* name;
   const char* example;
 };
-constexpr std::array names{Named{"1", "a number without a unit", "0.25"},
-                           Named{"m", "a length", "2.5 mm"},
-                           Named{"m2", "an area", "4 mm2"},
-                           Named{"m3", "a volume", "4 mm3"},
-                           Named{"s", "a time", "20 us"},
-                           Named{"1/s", "a rate", "50 1/s"},
-                           Named{"m/s", "a velocity", "5 mm/s"},
-                           Named{"m/s2", "an acceleration", "9.81 m/s2"},
-                           Named{"kg", "a mass", "5 g"},
-                           Named{"kg/m3", "a density", "2.4 t/m3"},
-                           Named{"N", "a force", "5 kN"},
-                           Named{"N/m", "an energy per area or force per length", "110 N/m"},
-                           Named{"N/m3", "a force per volume", "25 kN/m3"},
-                           Named{"Pa", "a stress", "210 GPa"},
-                           Named{"J", "an energy", "5 mJ"},
-                           Named{"Pa*sqrt(m)", "a toughness", "30 MPa*sqrt(m)"},
-                           Named{"K", "a difference of temperature", "20 K"},
-                           Named{"1/K", "a thermal expansion", "12e-6 1/K"},
-                           Named{"rad", "an angle", "30 deg"}};
+constexpr std::array named_dimensions{
+    Named{"1", "a number without a unit", "0.25"},
+    Named{"m", "a length", "2.5 mm"},
+    Named{"m2", "an area", "4 mm2"},
+    Named{"m3", "a volume", "4 mm3"},
+    Named{"s", "a time", "20 us"},
+    Named{"1/s", "a rate", "50 1/s"},
+    Named{"m/s", "a velocity", "5 mm/s"},
+    Named{"m/s2", "an acceleration", "9.81 m/s2"},
+    Named{"kg", "a mass", "5 g"},
+    Named{"kg/m3", "a density", "2.4 t/m3"},
+    Named{"N", "a force", "5 kN"},
+    Named{"N/m", "an energy per area or force per length", "110 N/m"},
+    Named{"N/m3", "a force per volume", "25 kN/m3"},
+    Named{"Pa", "a stress", "210 GPa"},
+    Named{"J", "an energy", "5 mJ"},
+    Named{"Pa*sqrt(m)", "a toughness", "30 MPa*sqrt(m)"},
+    Named{"K", "a difference of temperature", "20 K"},
+    Named{"1/K", "a thermal expansion", "12e-6 1/K"},
+    Named{"rad", "an angle", "30 deg"}};
 
 const Named* named(const Dimension& dimension) {
-  const auto found = std::ranges::find_if(
-      names, [&](const Named& entry) { return unit_of_key(entry.unit).dimension == dimension; });
-  return found == names.end() ? nullptr : &*found;
+  const auto found = std::ranges::find_if(named_dimensions, [&](const Named& entry) {
+    return unit_of_key(entry.unit).dimension == dimension;
+  });
+  return found == named_dimensions.end() ? nullptr : &*found;
 }
 
 }  // namespace

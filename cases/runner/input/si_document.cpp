@@ -15,7 +15,7 @@
 namespace peristat {
 namespace {
 
-using ValueKind = TomlValue::Kind;
+using TomlKind = TomlValue::Kind;
 
 /// Keys by their tables.
 const KeyDescription* description(const std::string& table, const std::string& key) {
@@ -47,12 +47,12 @@ class KeyConversion {
   }
 
   void convert(TomlValue& value, const std::string& path) const {
-    if (value.kind == ValueKind::array) {
+    if (value.kind == TomlKind::array) {
       for (std::size_t k = 0; k < value.items.size(); ++k)
         convert(value.items[k], path + "[" + std::to_string(k) + "]");
-    } else if (value.kind == ValueKind::integer || value.kind == ValueKind::real) {
+    } else if (value.kind == TomlKind::integer || value.kind == TomlKind::real) {
       convert_number(value, path);
-    } else if (value.kind == ValueKind::string) {
+    } else if (value.kind == TomlKind::string) {
       convert_string(value, path);
     }
   }
@@ -67,13 +67,13 @@ class KeyConversion {
     const Unit scale = value_.given / value_.si;
     if (scale.has_size_of({})) return;
     const std::string text =
-        value.kind == ValueKind::integer ? std::to_string(value.integer) : number_text(value.real);
+        value.kind == TomlKind::integer ? std::to_string(value.integer) : number_text(value.real);
     if (length_of_number(text) == text.size()) set(value, path, in_unit(text, scale));
   }
 
   void set(TomlValue& value, const std::string& path, std::optional<double> number) const {
     if (!number) refuse(value, path, "is too large or too small for a number");
-    value.kind = ValueKind::real;
+    value.kind = TomlKind::real;
     value.real = *number;
   }
 

@@ -24,7 +24,7 @@ std::string times(const Unit& unit, bool inverse) {
   return (divides ? "/" : "*") + number_text(std::pow(10.0, std::abs(unit.half_tens) / 2));
 }
 
-std::string number_in(std::string_view number, const Unit& unit) {
+std::string si_number(std::string_view number, const Unit& unit) {
   const std::optional<double> value = in_unit(number, unit);
   if (value) return number_text(*value);
   throw InputError("", "", "has a number that is too large or too small");
@@ -34,7 +34,7 @@ std::string number_in(std::string_view number, const Unit& unit) {
 std::string converted(const ExpressionToken& token, const UnitSystem& units) {
   const std::string text(token.text);
   if (token.kind == TokenKind::quantity)
-    return number_in(token.number, token.unit / units.unit_of(token.unit.dimension));
+    return si_number(token.number, token.unit / units.unit_of(token.unit.dimension));
   if (token.kind != TokenKind::word) return text;
   const Unit unit = is_length(token.text) ? units.length
                     : is_time(token.text) ? units.time
@@ -104,9 +104,9 @@ std::string in_si(const std::string& expression, const UnitSystem& units,
     if (leading != k)
       text += converted(token, units);
     else if (token.kind == TokenKind::number)
-      text += number_in(token.text, scale);
+      text += si_number(token.text, scale);
     else
-      text += number_in(token.number, token.unit / units.unit_of(token.unit.dimension) * scale);
+      text += si_number(token.number, token.unit / units.unit_of(token.unit.dimension) * scale);
   }
   return is_scaled && !leading ? "(" + text + ")" + times(scale, false) : text;
 }
