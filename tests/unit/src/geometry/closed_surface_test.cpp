@@ -98,8 +98,12 @@ TEST(ClosedSurface, OfASphereIsItsPolyhedron) {
     const Coordinates at{uniform(generator), uniform(generator), uniform(generator)};
     const double r = length(at);
     // Edges of 2^-4 quarter turns: facets are up to 1 - cos(0.06) = 2e-3 below the sphere.
-    if (r < 0.995) EXPECT_TRUE(surface.contains(at));
-    if (r > 1.0) EXPECT_FALSE(surface.contains(at));
+    if (r < 0.995) {
+      EXPECT_TRUE(surface.contains(at));
+    }
+    if (r > 1.0) {
+      EXPECT_FALSE(surface.contains(at));
+    }
     EXPECT_NEAR(surface.distance(at), std::abs(1 - r), 5e-3);
     inside += surface.contains(at);
     if (r > 0.99) continue;
