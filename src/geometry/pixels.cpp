@@ -8,7 +8,7 @@
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/core/program_output.hpp"
-#include "src/geometry/table_text.hpp"
+#include "src/core/table_text.hpp"
 
 namespace peristat {
 namespace {
