@@ -122,13 +122,14 @@ INSTANTIATE_TEST_SUITE_P(
                of.material.damage = {.law = DamageLaw::critical_stretch, .critical = 0.02};
                of.material.damage.fracture_energy = 10.0;
              }},
-        Rule{"ToughnessBesideAnEnergy", "material.damage.fracture_toughness",
-             damage + "law = \"critical_stretch\"\nfracture_energy = 10.0\nfracture_toughness = 1e6",
-             [](auto& of) {
-               of.material.damage = {.law = DamageLaw::critical_stretch};
-               of.material.damage.fracture_energy = 10.0;
-               of.material.damage.fracture_toughness = 1e6;
-             }},
+        Rule{
+            "ToughnessBesideAnEnergy", "material.damage.fracture_toughness",
+            damage + "law = \"critical_stretch\"\nfracture_energy = 10.0\nfracture_toughness = 1e6",
+            [](auto& of) {
+              of.material.damage = {.law = DamageLaw::critical_stretch};
+              of.material.damage.fracture_energy = 10.0;
+              of.material.damage.fracture_toughness = 1e6;
+            }},
         Rule{"CriticalBesideAToughness", "material.damage.critical",
              damage + "law = \"critical_stretch\"\nfracture_toughness = 1e6\ncritical = 0.02",
              [](auto& of) {
