@@ -157,7 +157,7 @@ class ThreeWays(Folder):
                     if key == "case" or "balance_error" in key:
                         continue
                     scale = abs(values).max() if values.size else 0.0
-                    numpy.testing.assert_allclose(other[key], values, rtol=0, atol=1e-12 * scale, err_msg=key)
+                    numpy.testing.assert_allclose(other[key], values, rtol=0, atol=1e-14 * scale, err_msg=key)
 
     def test_the_resolved_case_is_in_si_units_and_gives_the_same_body(self):
         folder = self.run_case(rewritten(SI, IN_MM), name="mm")
@@ -193,6 +193,12 @@ class Words(Folder):
         self.assert_refused(run, ":5:1: lattice.thickness = \"2.5 MPa\"", "must be a length, e.g. 2.5 mm", "MPa is the unit of a stress")
         run = self.command("check", SI, 'lattice.thickness="2.5 kg"')
         self.assert_refused(run, "--set lattice.thickness", "kg is the unit of a mass")
+
+    def test_warnings_show_values_as_they_are_typed(self):
+        for text, value in ((rewritten(SI, IN_MM).replace("0.002*load", "0.002"), "0.002"), (SI.replace("2e-6*load", "2 um"), "2 um")):
+            said = self.assert_completed(self.command("check", text)).said
+            self.assertIn(f'support[1].displacement[1] = {value} does not depend on load', said)
+            self.assertIn(f'write "{value}*load"', said)
 
     def test_symbols_lead_to_their_keys(self):
         for line, key in (("E = 70e9", "youngs_modulus"), ("nu = 0.3", "poisson_ratio"), ("rho = 2500", "density"),

@@ -177,7 +177,7 @@ Case read_case(const std::filesystem::path& file, const std::string& text,
   TomlValue document = parse_toml(result.as_read, result.file);
   for (const auto& [key, value] : overrides) apply_override(document, key, value);
   collect_locations(document, "", result.locations);
-  convert_to_si(document, units_of(document, result), result.file);
+  result.typed = convert_to_si(document, units_of(document, result), result.file);
   try {
     document_keys().read({TomlTable(document, "", result.file), "", result}, result);
     refuse_idle_tables(result);

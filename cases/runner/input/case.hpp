@@ -28,7 +28,7 @@ namespace peristat {
 /// Table [units]: units of the plain numbers and expressions of a case file. Empty: the unit
 /// follows from the others, see unit_system.
 struct UnitNames {
-  std::string length, time, force, stress, energy, mass;
+  std::string length{}, time{}, force{}, stress{}, energy{}, mass{};
 };
 
 /// Horizon of points from a file: one length for all, or a multiple of each point's size.
@@ -164,6 +164,8 @@ struct Case : BodySpecification {
   Settings settings;        ///< the overrides
   /// Places of every key, table and array element by dotted key, e.g. "support[1].displacement[0]".
   std::map<std::string, CaseLocation> locations;
+  /// Values that were converted to SI units, as they are typed, likewise.
+  std::map<std::string, std::string> typed;
 };
 
 /// True if the results or a probe of the case contain strain or stress.

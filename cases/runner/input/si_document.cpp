@@ -16,6 +16,7 @@ namespace peristat {
 namespace {
 
 using TomlKind = TomlValue::Kind;
+using TypedValues = std::map<std::string, std::string>;
 
 /// Keys by their tables.
 const KeyDescription* description(const std::string& table, const std::string& key) {
@@ -38,8 +39,9 @@ std::string string_in(const TomlValue& table, const std::string& key) {
 class KeyConversion {
  public:
   /// @param unit of the key; empty: it is a condition
-  KeyConversion(ValueForm form, std::string unit, const UnitSystem& units, const std::string& file)
-      : form_(form), name_(std::move(unit)), units_(units), file_(file) {
+  KeyConversion(ValueForm form, std::string unit, const UnitSystem& units, const std::string& file,
+                TypedValues& typed)
+      : form_(form), name_(std::move(unit)), units_(units), file_(file), typed_(typed) {
     if (!name_.empty()) value_.si = unit_of_key(name_);
     value_.given = units.unit_of(value_.si.dimension);
     // Angles have no unit in [units]: degrees stay degrees.
@@ -73,6 +75,7 @@ class KeyConversion {
 
   void set(TomlValue& value, const std::string& path, std::optional<double> number) const {
     if (!number) refuse(value, path, "is too large or too small for a number");
+    typed_[path] = value.kind == TomlKind::string ? value.string : value.written;
     value.kind = TomlKind::real;
     value.real = *number;
   }
@@ -91,8 +94,9 @@ class KeyConversion {
     // Other strings are left to the reader, which refuses them if the key takes numbers alone.
     if (is_number) return;
     try {
-      value.string = in_si(value.string, units_,
-                           name_.empty() ? std::nullopt : std::optional<UnitOfValue>(value_));
+      const std::string si = in_si(
+          value.string, units_, name_.empty() ? std::nullopt : std::optional<UnitOfValue>(value_));
+      if (si != value.string) typed_[path] = std::exchange(value.string, si);
     } catch (const InputError& error) {
       refuse(value, path, error.allowed());
     }
@@ -120,6 +124,7 @@ class KeyConversion {
   UnitOfValue value_;
   const UnitSystem& units_;
   const std::string& file_;
+  TypedValues& typed_;
 };
 
 /// Unit of a key; of some it depends on other keys.
@@ -140,7 +145,7 @@ class Conversion {
       : units_(units), file_(file), has_controls_(document.entries.contains("control")) {}
 
   /// @param name of the table without indices
-  void convert(TomlValue& table, const std::string& name, const std::string& path) const {
+  void convert(TomlValue& table, const std::string& name, const std::string& path) {
     for (auto& [key, value] : table.entries) {
       const std::string inner = name.empty() ? key : name + "." + key;
       const std::string at = path.empty() ? key : path + "." + key;
@@ -153,10 +158,12 @@ class Conversion {
         if (name == "loading") convert_times(value, at);
         const std::string unit = unit_of(*known, name, table, has_controls_);
         if (is_unit_of_measure(unit) || known->form == ValueForm::expression)
-          KeyConversion(known->form, unit, units_, file_).convert(value, at);
+          KeyConversion(known->form, unit, units_, file_, typed).convert(value, at);
       }
     }
   }
+
+  TypedValues typed{};
 
  private:
   /// Converts the times of a table over time, pairs of a time and a load.
@@ -176,8 +183,11 @@ class Conversion {
 
 }  // namespace
 
-void convert_to_si(TomlValue& document, const UnitSystem& units, const std::string& file) {
-  Conversion(document, units, file).convert(document, "", "");
+std::map<std::string, std::string> convert_to_si(TomlValue& document, const UnitSystem& units,
+                                                 const std::string& file) {
+  Conversion conversion(document, units, file);
+  conversion.convert(document, "", "");
+  return std::move(conversion.typed);
 }
 
 }  // namespace peristat

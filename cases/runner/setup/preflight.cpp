@@ -133,7 +133,9 @@ class Values {
   [[nodiscard]] Preflight::Applied of(const GivenValue& given) const {
     const Expression expression(given.text, given.has_place ? from_.dimension : 0, spacing_,
                                 from_.parameters(), body_.points.columns);
-    Preflight::Applied value{given.kind, given.key, given.where, given.unit, given.text};
+    const auto typed = from_.typed.find(given.key);
+    Preflight::Applied value{given.kind, given.key, given.where, given.unit,
+                             typed == from_.typed.end() ? given.text : typed->second};
     value.changes = expression.has_parameters();
     const std::vector<Place> places = places_of(given, expression);
     constexpr int most_entries = 100;  // between the first and the last
