@@ -5,6 +5,8 @@ corners or with corners shifted at random by a fifth of a size. Its points, one 
 two horizons below the edges at the displacements of a uniform strain. The table has the largest errors of energy
 density, stress and displacement at the points that are free, and deeper than two of the largest horizons.
 
+The last lines have the fracture energy of a crack along a jump of sizes, by integrals over the points' horizons.
+
     /usr/bin/python3 benchmarks/graded_horizons.py
 """
 
@@ -15,6 +17,7 @@ import sys
 import tempfile
 
 import h5py
+import numpy
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = ROOT / "build/release/peristat"
@@ -37,6 +40,22 @@ def measure(ring, horizon, quadrature, held, inside, folder):
     return found, json.loads((folder / "out/summary.json").read_text())["bonds"]
 
 
+def beside_a_jump(sizes):
+    """Least and largest energy over G of a crack along a jump of sizes, over all distances; in 2D.
+
+    A point at a distance z from a crack holds in its bonds across it the integral over r from z to the horizon of
+    r^2 2 arccos(z/r)."""
+    place = numpy.linspace(-1, 1, 2001)
+    radius = [numpy.linspace(abs(z), 1, 1001) for z in place]
+    density = numpy.array([numpy.trapz(r**2 * numpy.arccos(numpy.minimum(abs(z) / numpy.maximum(r, 1e-300), 1)), r)
+                           for z, r in zip(place, radius)])  # fmt: skip
+    up_to = numpy.concatenate([[0], numpy.cumsum((density[1:] + density[:-1]) / 2)])
+    share = lambda z: numpy.interp(z, place, up_to / up_to[-1])
+    distance = numpy.linspace(-sizes, sizes, 4001)  # in horizons of the fine side
+    taken = share(distance) + 1 - share(distance / sizes)
+    return taken.min(), taken.max()
+
+
 def main():
     if len(sys.argv) != 1:
         sys.exit(__doc__)
@@ -57,6 +76,9 @@ def main():
                     energy, stress, displacement, middle = (f"{100 * value:.2f} %" for value in found)
                     print(f"| {'shifted' if shift else 'regular'} | {along} | {ratio} | {words} | {correction} | {bonds} | "
                           f"{energy} | {middle} | {stress} | {displacement} |", flush=True)  # fmt: skip
+    print("\n| jump of sizes | least energy over G | largest |\n|---|---|---|")
+    for sizes in (1.1, 1.5, 2.0, 4.0):
+        print("| {} : 1 | {:.3f} | {:.3f} |".format(sizes, *beside_a_jump(sizes)))
 
 
 if __name__ == "__main__":

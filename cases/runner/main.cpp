@@ -193,6 +193,7 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
                               {"exponential", Law::exponential},
                               {"blended", Law::blended}}));
   add("--fracture-energy", damage.fracture_energy, "[J/m2]");
+  add("--fracture-toughness", damage.fracture_toughness, "[Pa sqrt(m)]");
   add("--strength", damage.strength, "[Pa]");
   add("--critical", damage.critical, "stretch");
   add("--onset", damage.onset, "stretch");

@@ -241,7 +241,15 @@ namespace {
 void begin_body(Body& body, Points points, const BodySpecification& of) {
   body.points = std::move(points);
   body.setting = bond_setting(of, body.points);
-  body.specification = with_stretches(of, body.setting, body.points.spacing);
+  double fineness = 1.0;
+  for (const double horizon : body.points.horizons) {
+    fineness = std::max(fineness, body.setting.horizon / horizon);
+  }
+  body.specification =
+      with_stretches(of, body.setting,
+                     body.points.horizons.empty() ? double(body.points.spacing)
+                                                  : body.setting.horizon / body.horizon_ratio(),
+                     fineness);
   require_resolved(body.points, body.setting.horizon);
 }
 

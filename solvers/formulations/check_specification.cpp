@@ -82,7 +82,8 @@ void check_fibre(const MaterialSpecification& material, const std::string& key, 
   }
   require_positive(fibre.transverse_modulus, table + ".transverse_modulus");
   require_positive(fibre.shear_modulus, table + ".shear_modulus");
-  require_absent(material.damage.is_by_data(), key + ".damage",
+  require_absent(material.damage.is_by_data() || material.damage.fracture_toughness,
+                 key + ".damage",
                  "with fibres toughness and strength depend on the direction; give critical and "
                  "fibre.transverse_critical");
   require_absent(material.calibration == Calibration::lattice, key + ".calibration",
@@ -136,6 +137,9 @@ void check_material_of(const MaterialSpecification& material, const std::string&
   require_positive(material.c1, key + ".c1");
   require_positive(material.density, key + ".density");
   check_damage(material.damage, key + ".damage.");
+  require_absent(dimension == 1 && material.damage.fracture_toughness,
+                 key + ".damage.fracture_toughness",
+                 "is for dimension 2 and 3; give fracture_energy");
   check_fibre(material, key, dimension);
   check_scatter(material, key);
 }
@@ -231,10 +235,9 @@ void check_for_horizons(const BodySpecification& of) {
                    "\"energy_density\" belongs to one horizon, that of its band of failed points; "
                    "take a law of stretches" +
                        with);
-    if (!damage.is_by_data() || !damage.fracture_energy) return;
-    const std::string alone =
-        "changes the shape of the law with the horizon beside fracture_energy;" + with +
-        " give fracture_energy alone, or strength or stretches";
+    if (damage.law != DamageLaw::blended || !damage.fracture_energy) return;
+    const std::string alone = "changes the shape of \"blended\" from horizon to horizon;" + with +
+                              " give fracture_energy alone, another law, or strength or stretches";
     require_absent(damage.strength.has_value(), table + "strength", alone);
     require_absent(damage.onset != 0.0, table + "onset", alone);
     require_absent(damage.peak != 0.0, table + "peak", alone);

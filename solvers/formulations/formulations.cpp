@@ -112,11 +112,50 @@ FractureScale fracture_scale_of(const MaterialSpecification& material, const std
   return formulation.fracture_scale(material, key, setting, spacing);
 }
 
+double modulus_of_tip(const MaterialSpecification& material, const std::string& key,
+                      const BondSetting& setting, double spacing) {
+  const Moduli of = formulation_of(material).moduli(material, key, setting, spacing);
+  const double nu = of.poisson_ratio;
+  return of.is_thin ? of.youngs_modulus : of.youngs_modulus / (1.0 - nu * nu);
+}
+
+MaterialSpecification with_fracture_energy(MaterialSpecification material, const std::string& key,
+                                           const BondSetting& setting, double spacing) {
+  DamageSpecification& damage = material.damage;
+  if (!damage.fracture_toughness) return material;
+  const double toughness = *damage.fracture_toughness;
+  damage.fracture_energy =
+      toughness * (toughness / modulus_of_tip(material, key, setting, spacing));
+  damage.fracture_toughness.reset();
+  return material;
+}
+
 namespace {
+
+/// Stretches of a material by horizon, if they are not proportional to the root of 1 / horizon.
+std::vector<LawStretches> by_horizon(const MaterialSpecification& material, const std::string& key,
+                                     const BondSetting& setting, double spacing, double fineness) {
+  const DamageSpecification& damage = material.damage;
+  const bool keeps_shape = !damage.strength && damage.onset == 0.0 && damage.peak == 0.0;
+  if (!(fineness > 1.0) || !damage.fracture_energy || keeps_shape) return {};
+  std::vector<LawStretches> all;
+  const int last = int(std::ceil(horizon_steps * std::log2(fineness)));
+  for (int k = 0; k <= last; ++k) {
+    const double finer = std::exp2(double(k) / horizon_steps);
+    BondSetting own = setting;
+    own.horizon /= finer;
+    const DamageSpecification found =
+        with_stretches(damage, key, fracture_scale_of(material, key, own, spacing / finer));
+    all.push_back({found.onset, found.critical});
+  }
+  return all;
+}
 
 /// Finds the stretches of a material from its data.
 void find_stretches(const Formulation& formulation, MaterialSpecification& material,
-                    const std::string& key, const BondSetting& setting, double spacing) {
+                    const std::string& key, const BondSetting& setting, double spacing,
+                    double fineness) {
+  material = with_fracture_energy(std::move(material), key, setting, spacing);
   if (!material.damage.is_by_data()) return;
   if (formulation.crack_energy_of_dilation) {
     const double energy = formulation.crack_energy_of_dilation(material, key, setting, spacing);
@@ -126,16 +165,19 @@ void find_stretches(const Formulation& formulation, MaterialSpecification& mater
   }
   const FractureScale scale = fracture_scale_of(material, key, setting, spacing);
   const bool is_by_energy = material.damage.fracture_energy.has_value();
+  std::vector<LawStretches> of_horizons = by_horizon(material, key, setting, spacing, fineness);
   material.damage = with_stretches(material.damage, key, scale);
   material.damage.is_by_energy = is_by_energy;
+  material.damage.of_horizons = std::move(of_horizons);
 }
 
 }  // namespace
 
-BodySpecification with_stretches(BodySpecification of, const BondSetting& setting, double spacing) {
+BodySpecification with_stretches(BodySpecification of, const BondSetting& setting, double spacing,
+                                 double fineness) {
   const Formulation& formulation = formulation_of(of);
   for_each_material(of, [&](MaterialSpecification& material, const std::string& key) {
-    find_stretches(formulation, material, key, setting, spacing);
+    find_stretches(formulation, material, key, setting, spacing, fineness);
   });
   return of;
 }

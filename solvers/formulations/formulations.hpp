@@ -41,9 +41,22 @@ struct ModelName {
                                               const std::string& key, const BondSetting& setting,
                                               double spacing);
 
+/// Modulus E' of a crack of mode I, G = K^2 / E': E in plane stress, E / (1 - nu^2) in plane strain
+/// and 3D, by the moduli of the material's model [Pa].
+[[nodiscard]] double modulus_of_tip(const MaterialSpecification& material, const std::string& key,
+                                    const BondSetting& setting, double spacing);
+
+/// The material with the fracture energy K^2 / E' in the place of a toughness K.
+[[nodiscard]] MaterialSpecification with_fracture_energy(MaterialSpecification material,
+                                                         const std::string& key,
+                                                         const BondSetting& setting,
+                                                         double spacing);
+
 /// The body with stretches in the place of fracture energies and strengths.
+/// @param spacing  of points with the setting's horizon [m]
+/// @param fineness the setting's horizon over the smallest one
 /// @throws InputError as the with_stretches of a law does
 [[nodiscard]] BodySpecification with_stretches(BodySpecification of, const BondSetting& setting,
-                                               double spacing);
+                                               double spacing, double fineness = 1.0);
 
 }  // namespace peristat

@@ -6,12 +6,14 @@
 #include <string>
 #include <string_view>
 
+#include "src/core/decimal.hpp"
 #include "src/core/input_error.hpp"
-#include "src/geometry/table_text.hpp"
+#include "src/core/table_text.hpp"
 
 namespace peristat {
 
-std::vector<std::array<double, 2>> read_outline(const std::filesystem::path& file) {
+std::vector<std::array<double, 2>> read_outline(const std::filesystem::path& file,
+                                                double length_unit) {
   constexpr double largest = 1e30;  // as of every number in a case file
   std::vector<std::array<double, 2>> corners;
   constexpr std::size_t most_corners = 10'000;
@@ -35,7 +37,7 @@ std::vector<std::array<double, 2>> read_outline(const std::filesystem::path& fil
       const std::string shown = std::string(1, "xy"[c]) + " = '" + std::string(fields[c]) + "' ";
       if (!number) refuse(shown + why_not);
       if (std::abs(*number) > largest) refuse(shown + "is out of range");
-      corner[c] = *number;
+      corner[c] = in_metres(*number, length_unit);
     }
     if (closed_in > 0)
       refuse("line " + std::to_string(closed_in) +

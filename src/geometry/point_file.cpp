@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "src/core/decimal.hpp"
 #include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/nearest_name.hpp"
@@ -34,8 +35,8 @@ struct PointRow {
 
 class PointReader {
  public:
-  PointReader(const std::filesystem::path& file, int dimension)
-      : file_(file), dimension_(dimension) {}
+  PointReader(const std::filesystem::path& file, int dimension, double length_unit)
+      : file_(file), dimension_(dimension), length_unit_(length_unit) {}
 
   /// Calls visit(row) for every point, in the order of the file.
   void for_each_point(const std::function<void(const PointRow&)>& visit) {
@@ -148,12 +149,12 @@ class PointReader {
         row.sets = cells[k];
         for (const std::string_view name : split(row.sets, '|')) check_name(name);
       } else if (column == "volume") {
-        row.volume = number(column, cells[k]);
+        row.volume = number(column, cells[k], 3);
         if (!(row.volume > 0)) refuse("volume = " + std::string(cells[k]) + " must be positive");
       } else if (column == "x" || column == "y" || column == "z") {
-        row.place[std::size_t(column[0] - 'x')] = number(column, cells[k]);
+        row.place[std::size_t(column[0] - 'x')] = number(column, cells[k], 1);
       } else {
-        row.further.push_back(number(column, cells[k]));
+        row.further.push_back(number(column, cells[k], 0));
       }
     }
     ++count_;
@@ -170,16 +171,31 @@ class PointReader {
     }
   }
 
-  double number(const std::string& column, std::string_view text) const {
-    const std::string shown = column + " = '" + std::string(text) + "'";
+  /// A number in the unit of length to a power, in SI units.
+  double number(const std::string& column, std::string_view text, int power) const {
     std::string why_not;
-    const std::optional<double> value = number_in(text, why_not);
-    if (!value) refuse(shown + " " + why_not);
+    std::optional<double> value = number_in(text, why_not);
+    if (value && length_unit_ != 1.0) {
+      value = tens_ ? shifted_decimal(text, power * *tens_)
+                    : std::optional(*value * std::pow(length_unit_, power));
+      why_not = "is too large or too small in units of " + number_text(length_unit_) + " m";
+    }
+    if (!value || !std::isfinite(*value))
+      refuse(column + " = '" + std::string(text) + "' " + why_not);
     return *value;
+  }
+
+  /// The exponent of a power of ten, by which numbers are converted without rounding them twice.
+  static std::optional<int> tens_of(double number) {
+    const double tens = std::round(std::log10(number));
+    if (shifted_decimal("1", static_cast<int>(tens)) != number) return std::nullopt;
+    return static_cast<int>(tens);
   }
 
   std::filesystem::path file_;
   int dimension_;
+  double length_unit_;
+  std::optional<int> tens_ = tens_of(length_unit_);
   std::size_t line_ = 0;
   Index count_ = 0;
   bool by_comma_ = false;
@@ -275,7 +291,7 @@ WholeFile look_at_file(PointReader& reader, int dimension, double cross_section)
 }  // namespace
 
 std::vector<std::int32_t> source_rows(const std::filesystem::path& file, const Points& points,
-                                      Index count) {
+                                      Index count, double length_unit) {
   std::vector<Index> by_place(static_cast<std::size_t>(count));
   std::iota(by_place.begin(), by_place.end(), Index(0));
   const auto stands_before = [&](Index a, Index b) {
@@ -283,7 +299,7 @@ std::vector<std::int32_t> source_rows(const std::filesystem::path& file, const P
   };
   std::sort(by_place.begin(), by_place.end(), stands_before);
   std::vector<std::int32_t> rows(by_place.size(), -1);
-  PointReader reader(file, points.dimension);
+  PointReader reader(file, points.dimension, length_unit);
   reader.for_each_point([&](const PointRow& row) {
     const auto found = std::lower_bound(
         by_place.begin(), by_place.end(), row.place,
@@ -295,15 +311,15 @@ std::vector<std::int32_t> source_rows(const std::filesystem::path& file, const P
 }
 
 std::vector<std::string> further_columns(const std::filesystem::path& file, int dimension) {
-  PointReader reader(file, dimension);
+  PointReader reader(file, dimension, 1.0);
   reader.read_names();
   return reader.further();
 }
 
 Points read_points(const std::filesystem::path& file, int dimension, double cross_section,
-                   const std::optional<NeighbourFile>& neighbours) {
+                   const std::optional<NeighbourFile>& neighbours, double length_unit) {
   check_cross_section(cross_section);
-  PointReader reader(file, dimension);
+  PointReader reader(file, dimension, length_unit);
   reader.read_names();
   Collection read(dimension);
   read.name_columns(reader.further());
@@ -318,9 +334,9 @@ Points read_points(const std::filesystem::path& file, int dimension, double cros
 }
 
 Part read_slab(const std::filesystem::path& file, int dimension, double cross_section,
-               const Communicator& ranks) {
+               const Communicator& ranks, double length_unit) {
   check_cross_section(cross_section);
-  PointReader reader(file, dimension);
+  PointReader reader(file, dimension, length_unit);
   const WholeFile whole = look_at_file(reader, dimension, cross_section);
   const LocalityCells cells(dimension, whole.spacing, whole.low, whole.high);
   const double rows = cells.of(whole.high.data())[0] + 1.0;

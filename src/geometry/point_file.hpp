@@ -25,11 +25,13 @@ namespace peristat {
 ///         expressions can't use, a value that is not a number or not finite, a volume that is not
 ///         positive, and two points at one place; with "file" for a file that can't be read or has
 ///         no points
+/// @param length_unit unit of the coordinates, whose cube is that of the volumes [m]
 /// @param neighbours their neighbours, if they are given; points are numbered there from 1 in the
 ///        order of the file
 [[nodiscard]] Points read_points(const std::filesystem::path& file, int dimension,
                                  double cross_section,
-                                 const std::optional<NeighbourFile>& neighbours = {});
+                                 const std::optional<NeighbourFile>& neighbours = {},
+                                 double length_unit = 1.0);
 
 /// Names of the further columns of a file of points, in their order.
 /// @throws InputError as read_points does for the line of names
@@ -39,12 +41,13 @@ namespace peristat {
 /// Row in the file, from 0, of each of the first `count` points, found by position; -1: none. The
 /// points are all of the file or those of a part.
 [[nodiscard]] std::vector<std::int32_t> source_rows(const std::filesystem::path& file,
-                                                    const Points& points, Index count);
+                                                    const Points& points, Index count,
+                                                    double length_unit = 1.0);
 
 /// A slab of the points of read_points, without ghosts, as make_slab's: every rank reads the file,
 /// and keeps no more than a slab. Collective.
 /// @throws InputError as read_points does; for two points at one place perhaps on one rank alone
 [[nodiscard]] Part read_slab(const std::filesystem::path& file, int dimension, double cross_section,
-                             const Communicator& ranks);
+                             const Communicator& ranks, double length_unit = 1.0);
 
 }  // namespace peristat

@@ -45,6 +45,7 @@ struct Sphere {
 struct Polygon {
   std::vector<std::array<double, 2>> vertices;
   std::filesystem::path file{};  ///< that they are read from by read_outline; may be empty
+  double scale = 1.0;            ///< of the file's coordinates [m]
 };
 
 /// Ellipse in the x-y plane (2D): radius `radii[0]` along its first axis, which is turned by

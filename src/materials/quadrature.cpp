@@ -355,20 +355,20 @@ std::vector<double> whole_volumes(const Points& points, const Kernel& kernel) {
   return whole;
 }
 
-std::vector<double> stretch_factors(const Points& points, const Bonds& bonds,
-                                    const Kernel& kernel) {
+std::vector<double> fineness_of_bonds(const Points& points, const Bonds& bonds,
+                                      const Kernel& kernel) {
   if (points.horizons.empty()) return {};
   const BondShares share(points, kernel);
-  std::vector<double> factors(std::size_t(bonds.count()), 1.0);
+  std::vector<double> fineness(std::size_t(bonds.count()), 1.0);
   for_each_bond(bonds, [&](Index i, Offset bond) {
     const Index j = bonds.partner[bond];
     const double of_i = share.directed(i, j, bonds.length(bond));
     const double of_j = share.directed(j, i, bonds.length(bond));
-    const double squares = of_i * kernel.horizon / points.horizons[std::size_t(i)] +
-                           of_j * kernel.horizon / points.horizons[std::size_t(j)];
-    factors[std::size_t(bond)] = std::sqrt(squares / (of_i + of_j));
+    const double both = of_i * kernel.horizon / points.horizons[std::size_t(i)] +
+                        of_j * kernel.horizon / points.horizons[std::size_t(j)];
+    fineness[std::size_t(bond)] = both / (of_i + of_j);
   });
-  return factors;
+  return fineness;
 }
 
 double confined_energy_error(const Points& points, const Bonds& bonds, const BondSetting& setting) {

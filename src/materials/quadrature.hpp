@@ -60,14 +60,15 @@ void drop_weightless(Bonds& bonds);
 /// The same of every point if it stood inside a lattice of its own size and horizon [m3].
 [[nodiscard]] std::vector<double> whole_volumes(const Points& points, const Kernel& kernel);
 
-/// Factor of each bond's stretches of damage, relative to those of bonds of the kernel's horizon,
-/// if they follow from a fracture energy; empty without horizons of points. With a critical stretch
-/// s_i of each direction, for which 4 G = c(delta_i) <|n_x|> m_2(delta_i) s_i^2, so that s_i^2 is
-/// proportional to 1 / delta_i, a bond that breaks releases what both of its directions release:
+/// Fineness of each bond, the kernel's horizon delta over the bond's own delta_ij; empty without
+/// horizons of points. A bond fails as those of one horizon delta_ij do,
 ///
-///   (w_i + w_j) s^2 = w_i s_i^2 + w_j s_j^2,   w_i and w_j the two terms of its weight.
-[[nodiscard]] std::vector<double> stretch_factors(const Points& points, const Bonds& bonds,
-                                                  const Kernel& kernel);
+///   (w_i + w_j) / delta_ij = w_i / delta_i + w_j / delta_j,   w_i and w_j the terms of its weight.
+///
+/// The work W of a bond's law that follows from a fracture energy, G = c(delta) A(delta) W(delta),
+/// is proportional to 1 / delta. So a bond releases what both of its directions would release.
+[[nodiscard]] std::vector<double> fineness_of_bonds(const Points& points, const Bonds& bonds,
+                                                    const Kernel& kernel);
 
 /// Largest deviation from 1 of (discrete energy density / classical) over points and axes under a
 /// confined unit strain: the error of the quadrature, or its rest after a surface correction.

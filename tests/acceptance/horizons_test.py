@@ -86,7 +86,7 @@ class HorizonsOfPoints(Folder):
             (["points.horizon={ratio=0.9}"], ("points.horizon.ratio", "from 1 to 1000")),
             (["points.horizon={rato=3}"], ("did you mean ratio",)),
             (["material.kinematics=linear", "solver.operator=fft"], ("solver.operator", '"bonds"')),
-            (['material.damage={law="linear", fracture_energy=1, strength=1e5}'], ("material.damage.strength", "alone")),
+            (['material.damage={law="blended", fracture_energy=1, strength=1e5}'], ("material.damage.strength", "alone")),
             (['material.damage={law="linear", critical=1e-3, onset=1e-4}', "solver.mode=adaptive",
               "solver.elastic_horizon_ratio=3"], ("elastic_horizon_ratio", "points.horizon"))):  # fmt: skip
             with self.subTest(changes=changes):

@@ -158,11 +158,12 @@ class Messages(Folder):
                 self.assertEqual(tuple(place), places[k])
 
     def test_a_number_with_a_unit(self):
-        for text in ("3.2 GPa", '"3.2 GPa"'):
-            run = self.command("check", PLATE.replace("200e9", text))
-            self.assert_refused(run, "numbers carry no unit", "3.2e+09")
-        run = self.command("check", PLATE, "lattice.spacing=1 mm")
-        self.assert_refused(run, "numbers carry no unit", "write 0.001")
+        run = self.command("check", PLATE.replace("200e9", "3.2 GPa"))
+        self.assert_refused(run, 'write a number with a unit in quotes: "3.2 GPa"')
+        run = self.command("check", PLATE.replace("200e9", '"3.2 mm"'))
+        self.assert_refused(run, "must be a stress, e.g. 210 GPa")
+        self.assertEqual(self.command("check", PLATE.replace("200e9", '"3.2 GPa"')).returncode, 0)
+        self.assertEqual(self.command("check", PLATE, "lattice.spacing=1 mm").returncode, 0)
 
     def test_data_of_damage_need_a_law(self):
         """They used to be ignored silently. An explicit law "none" switches them off."""

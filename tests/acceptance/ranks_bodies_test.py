@@ -194,6 +194,14 @@ class Bodies(Comparison):
                               'quadrature.volume_correction="linear"', ranks=(4,))  # fmt: skip
         self.compare_settings(PLATE, "lattice.cell_perturbation=0.2", 'quadrature.volume_correction="exact"')
 
+    def test_meshes_are_refused(self):
+        (self.folder / "plate.msh").write_text("")
+        text = PLATE.split("[lattice]")[0] + '[points]\nfile = "plate.msh"\nhorizon = 0.16\n[material]' + \
+            PLATE.split("[material]")[1]
+        ended = self.peristat("run", self.case(text), "--ranks", "2", "--output", "out")
+        self.assert_code(ended, 2)
+        self.assertIn("peristat points", ended.errors)
+
     def test_points_from_a_file(self):
         rows = ["x, y, volume, set"]
         for k in range(20):

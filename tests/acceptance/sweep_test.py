@@ -293,6 +293,17 @@ class Sweep(Folder):
         self.assert_ends(self.sweep("--vary", "loading.steps=1", case=case), 0, "done")
         self.assertFalse((self.out / "refinement.csv").exists())
 
+    def test_spacings_of_a_refinement_are_in_m_whatever_the_units(self):
+        run = self.sweep("--set", "lattice.spacing=4e-3", "--set", "units.length=mm", "--refine", "3", case=ROOT / "cases/bar/tension.toml")
+        self.assert_ends(run, 0, *3 * ["done"])
+        with open(self.out / "refinement.csv", newline="") as table:
+            tip = next(row for row in csv.DictReader(table) if row["quantity"] == "probe:tip")
+        for k, spacing in enumerate((4e-6, 2e-6, 1e-6), 1):
+            self.assertAlmostEqual(float(tip[f"spacing_{k}"]) / spacing, 1.0, delta=1e-14)
+        self.assertAlmostEqual(float(tip["extrapolated"]) / 1e-6, 1.0, delta=1e-3)
+        refused = self.sweep("--set", 'lattice.spacing="4 mm"', "--refine", "3", case=ROOT / "cases/bar/tension.toml", output=("--output", "refused"))
+        self.assert_refused(refused, "lattice.spacing is no number", "unit")
+
     def test_a_refinement_in_which_a_run_fails_extrapolates_nothing(self):
         run = self.sweep("--refine", "3", "--vary", "solver.max_iterations=1,20", "--set", "loading.smallest_step=0.5")
         self.assert_code(run, 3)

@@ -14,18 +14,18 @@ NUMBERS = """0 -0.0 1 -1 2 3 4 1e-3 0.5 1.0 1.5 1e300 -1e300 1e308 1.79769313486
     0x7fffffff 0b1 1_000 nan inf -inf +inf 07 1. .5 1e 0.1e+5000 1979-05-27T07:32:00Z 07:32:00""".split()
 TEXTS = ['""', '"x"', '"load"', '"free"', '"left"', '"../../etc/passwd"', '"/dev/null"', '"/dev/zero"', '"."', '"none"', '"auto"',
          '"exact"', '"\\u0000"', '"\\U0001F4A5"', '"ünïcödé"', '"\\u202e abc"', '"a\\nb"', '"' + "A" * 100_000 + '"',
-         "'''\nmany\nlines'''", '"%s%n%d"', '"$(touch x)"', '"nan"', '"inf"', '"true"', "true", "false"]  # fmt: skip
+         "'''\nmany\nlines'''", '"%s%n%d"', '"$(touch x)"', '"nan"', '"inf"', '"2.5 mm"', '"3 MPa*sqrt(m)"', '"-1e400 m"', '"5 furlongs"', '"0.1 mm * load"', '"1/"', '"true"', "true", "false"]  # fmt: skip
 EXPRESSIONS = ["1/0", "0/0", "load/0", "ln(-1)", "sqrt(-load)", "1e308*10*load", "x^x^x^x", "1e-3*load", "load*load*1e-4", "rint(load)",
                "load > 0.3 ? 1 : -1", "load > 0.6 ? 1/0 : 0", "(((((load", "load)", "x x", "x = 1", "y", "z", "q", "1,5", "sin()",
                "atan2(1)", "min()", "-" * 2000 + "1", "(" * 3000 + "1" + ")" * 3000, "+".join(["x"] * 3000), "1e-400", "load#", "load;x",
-               "x = y = load", "_pi", "pi", "spacing", "1e-4*sin(300*load)", "0 < x < 1", "x ? 1", "\"", "'", "\\", "load\u00b2", "∞", "1e-3*t", "sin(300*t)/t",
+               "x = y = load", "_pi", "pi", "spacing", "1e-4*sin(300*load)", "0 < x < 1", "0.1 mm*load", "5 MPa*y/(2 mm)", "1 mm + 1 s", "(1 mm)^99", "x ? 1", "\"", "'", "\\", "load\u00b2", "∞", "1e-3*t", "sin(300*t)/t",
                "table('missing.csv', load)", "table('points.csv', load)", "table(load, load)", "table('/dev/zero', x)", "table('case.toml', 'x', t)", "table('"]  # fmt: skip
 STRUCTURES = ["[]", "{}", "[[]]", "[1, 2]", "[1, 2, 3, 4]", "[1, \"a\"]", "[" * 500 + "]" * 500, "{a = {b = {c = 1}}}", "[" + "0," * 50_000 + "]",
               "{ disk = { centre = [0, 0], radius = -1 } }", "{ box = {} }", '["free", "free", "free"]', "[nan, inf]", "[[0, 0], [1, 1]]"]  # fmt: skip
 WORDS = """dimension title lattice points ratio spacing horizon_ratio thickness area origin perturbation cell_perturbation lloyd_steps seed shape layer add subtract min max
     centre radius radii grey scale translate axis length vertices name side where file horizon set crack from to outline quadrature form volume_correction horizon_shape normals weights
     surface_correction material model plane influence youngs_modulus micromodulus poisson_ratio calibration c1 c2 c3 density damage law onset
-    critical rate peak hardening fracture_energy strength no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step
+    critical rate peak hardening fracture_energy fracture_toughness strength no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step
     max_broken_bonds stop_below solver mode linear preconditioner tangent predictor projection relative_tolerance max_iterations fragments
     elastic_horizon_ratio relaxation iterations ramp breaking damping mass_factor quiet_iterations displacement_tolerance method flow_tolerance peak_tolerance output
     directory every count_cracks probe field other threshold control weights table table2 arc_length bifurcation region interface between
@@ -33,7 +33,7 @@ WORDS = """dimension title lattice points ratio spacing horizon_ratio thickness 
     correlation_length rigid roller at normal constraint term symmetry period gradient rotation gravity traction pressure depth eigenstrain
     strain temperature change thermal_expansion volumes neighbours dynamics end_time time_step step_share history_every initial velocity scheme
     spectral_radius absorbing degree traction_form boundary statistic expected
-    kinematics operator stabilisation foundation""".split()
+    kinematics operator stabilisation foundation units force time mass stress energy length_unit""".split()
 CHOICES = """rms_error max_error divergence blue_noise none linear exact exact_centroids volume energy mean bulk bond cpd lps collocation full paper surface stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended piecewise_constant cubic quintic septic gaussian inverse newton
     relaxation adaptive flow dynamic auto cholesky pcg minres gmres lu bicgstab local_operator jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk ellipse image stl polygon

@@ -39,6 +39,18 @@ class Fracture(PrintedTest, Folder):
                     rectangle.history[-1]["max_stretch"] / 0.033, square.history[-1]["max_stretch"] / 0.015,
                     page="docs/theory.md")  # fmt: skip
 
+    def test_crack_on_a_mesh(self):
+        self.page = "cases/mesh/crack_from_hole.toml"
+        plate = run("mesh/crack_from_hole")
+        torn = next(row for row in plate.history if row["broken_bonds"] > 1000)
+        before = plate.history[plate.history.index(torn) - 1]
+        self.prints("{} bonds break between", torn["broken_bonds"], within=COUNTS)
+        self.prints("load factors {} and {}:", before["load_factor"], torn["load_factor"], within=0.03)  # a step
+        places = plate.points("reference")[plate.field("damage") > 0.35]
+        self.prints("over {} mm, within", 1e3 * (places[:, 0].max() - places[:, 0].min()), within=0.02)
+        self.assertLess(abs(places[:, 1]).max(), 2.7e-3)  # the horizon
+        self.prints("within {} mm of the axis", 1e3 * abs(places[:, 1]).max(), within=0.4)  # the last points
+
     def test_toughness(self):
         self.page = "cases/three_point_bending/toughness.toml"
         beam = run("three_point_bending/toughness")

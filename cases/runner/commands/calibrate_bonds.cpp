@@ -161,8 +161,9 @@ std::string bond_calibration(const MaterialSpecification& material, const std::s
   return fmt::format("{{\n  {}\n}}\n", fmt::join(pairs, ",\n  "));
 }
 
-std::string damage_calibration(const MaterialSpecification& material, const std::string& key,
+std::string damage_calibration(const MaterialSpecification& given, const std::string& key,
                                const BondSetting& setting, double spacing, bool with_strengths) {
+  const MaterialSpecification material = with_fracture_energy(given, key, setting, spacing);
   if (material.damage.law == DamageLaw::energy_density) {
     return object(
         {exact_pair("energy_density", bearable_energy_density(material.damage, setting.horizon)),

@@ -141,6 +141,16 @@ void print_fracture(const Formulation& formulation, const PointMaterials::Materi
   print_strengths(damage, name, scale, setting.dimension);
 }
 
+/// Prints a toughness with the fracture energy that follows from it.
+void print_toughness(const MaterialSpecification& given, const std::string& key,
+                     const std::string& name, const BondSetting& setting, double spacing) {
+  if (!given.damage.fracture_toughness) return;
+  fmt::print("{} {:.6g} Pa sqrt(m): fracture energy {:.6g} J/m2 by a modulus of {:.6g} Pa\n",
+             heading("toughness", name), *given.damage.fracture_toughness,
+             *with_fracture_energy(given, key, setting, spacing).damage.fracture_energy,
+             modulus_of_tip(given, key, setting, spacing));
+}
+
 /// Prints the error of the quadrature of bonds, whatever their constants.
 void print_quadrature(const Case& from, const Body& body, int threads) {
   Bonds bonds = body.model.bonds();
@@ -171,9 +181,12 @@ void print_constants(const Case& from, const Body& body, int threads) {
     print_quadrature(from, body, threads);
   }
   for (const std::string& remark : body.remarks) fmt::print("{}\n", remark);
-  for (const auto& material : all) {
-    print_fracture(formulation, material, from.regions.empty() ? "" : material.name, body.setting,
-                   spacing);
+  const PointMaterials as_given(from, body.points);
+  const auto given = all_materials(from, as_given);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const std::string name = from.regions.empty() ? "" : all[k].name;
+    print_toughness(*given[k].of, all[k].key, name, body.setting, spacing);
+    print_fracture(formulation, all[k], name, body.setting, spacing);
   }
   const BondFailure* const bonds = body.model.failing_bonds();
   const ToothedStrength teeth = bonds ? toothed_strength(bonds->potential()) : ToothedStrength();

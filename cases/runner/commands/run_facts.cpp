@@ -107,7 +107,8 @@ std::vector<PointCounts> constant_fields_of(const Case& from, const Body& body) 
         {"source_row",
          body.points.mesh ? "number of each point's element or node in the file, from 0"
                           : "number of each point in the file's order, from 0",
-         body.points.mesh ? body.points.source_row : source_rows(source->file, body.points, own)});
+         body.points.mesh ? body.points.source_row
+                          : source_rows(source->file, body.points, own, source->length_unit)});
   }
   const auto own = [&](auto values) {
     values.resize(std::size_t(body.points.owned.value_or(body.points.own())));

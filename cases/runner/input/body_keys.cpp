@@ -12,6 +12,7 @@
 
 #include "cases/runner/input/key_kinds.hpp"
 #include "cases/runner/input/shape_keys.hpp"
+#include "cases/runner/input/unit_system.hpp"
 #include "cases/runner/input/value_schema.hpp"
 #include "solvers/formulations/formulations.hpp"
 #include "src/core/number_text.hpp"
@@ -239,6 +240,15 @@ Table<Case> points_keys() {
            .required()
            .early()
            .describes([](auto& all) { point_horizon_keys().describe(all); })
+           .on_ranks(),
+       K("length_unit", in(points, &PointSource::length_unit), positive("m"),
+         "unit of the coordinates in the file; its volumes are in this unit cubed")
+           .otherwise(
+               [](auto& result, auto&) {
+                 points(result).length_unit = unit_system(result.units).length.size();
+               },
+               "1, or the `length` of `[units]`")
+           .written_if([](auto& from, auto&) { return points(from).length_unit != 1.0; })
            .on_ranks(),
        K("neighbours", in(points, &PointSource::neighbours), file_beside_the_case(),
          "file with the neighbours of the points and the shares of their volumes that count, "

@@ -7,7 +7,9 @@
 #include "cases/runner/input/case_file.hpp"
 #include "cases/runner/input/given_values.hpp"
 #include "cases/runner/input/key_table.hpp"
+#include "cases/runner/input/si_document.hpp"
 #include "cases/runner/input/toml_table.hpp"
+#include "cases/runner/input/unit_system.hpp"
 #include "solvers/formulations/check_specification.hpp"
 #include "solvers/observe/point_fields.hpp"
 #include "src/conditions/loading_programme.hpp"
@@ -130,6 +132,19 @@ bool PointSource::is_mesh() const {
   return std::ranges::any_of(known, [&](const char* one) { return end == one; });
 }
 
+namespace {
+
+/// Units of the case's own table; SI units without one.
+UnitSystem units_of(const TomlValue& document, const Case& result) {
+  UnitNames names;
+  const auto table = document.entries.find("units");
+  if (table != document.entries.end())
+    unit_keys().read({TomlTable(table->second, "units", result.file), "", result}, names);
+  return unit_system(names);
+}
+
+}  // namespace
+
 int LoadingSpecification::steps_to_entry() const {
   const bool is_of_step = std::any_of(tables.begin(), tables.end(), [](const LoadTable& table) {
     return !table.expression.empty();
@@ -162,6 +177,7 @@ Case read_case(const std::filesystem::path& file, const std::string& text,
   TomlValue document = parse_toml(result.as_read, result.file);
   for (const auto& [key, value] : overrides) apply_override(document, key, value);
   collect_locations(document, "", result.locations);
+  convert_to_si(document, units_of(document, result), result.file);
   try {
     document_keys().read({TomlTable(document, "", result.file), "", result}, result);
     refuse_idle_tables(result);

@@ -25,6 +25,12 @@
 
 namespace peristat {
 
+/// Table [units]: units of the plain numbers and expressions of a case file. Empty: the unit
+/// follows from the others, see unit_system.
+struct UnitNames {
+  std::string length, time, force, stress, energy, mass;
+};
+
 /// Horizon of points from a file: one length for all, or a multiple of each point's size.
 struct PointHorizon {
   double length = 0.0;  ///< [m]
@@ -37,6 +43,8 @@ struct PointSource {
   std::filesystem::path neighbours{};  ///< absolute; empty: the points within the horizon
   double cross_section = 1.0;          ///< 1D: area [m2]; 2D: thickness [m]
   PointHorizon horizon{};
+  /// Unit of the coordinates in the file, whose cube is the unit of its volumes [m].
+  double length_unit = 1.0;
   PointsAt at = PointsAt::elements;  ///< of a mesh
   bool cut_bonds = true;             ///< of a mesh: bonds must not leave it
 
@@ -126,6 +134,7 @@ struct OutputSpecification {
 /// A case, read and checked once and constant from then on: the specification of the body, which
 /// knows no file, and all the rest.
 struct Case : BodySpecification {
+  UnitNames units;  ///< of the file; all members here are in SI units
   std::string title;
   int dimension = 2;
   std::variant<Lattice, PointSource> body;

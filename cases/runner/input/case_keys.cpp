@@ -12,6 +12,7 @@
 #include "cases/runner/input/output_keys.hpp"
 #include "cases/runner/input/shape_keys.hpp"
 #include "cases/runner/input/solver_keys.hpp"
+#include "cases/runner/input/unit_system.hpp"
 
 namespace peristat {
 namespace {
@@ -38,6 +39,12 @@ Table<Case> all_keys() {
            .on_ranks(),
        K("dimension", &Case::dimension, integer(1, 3), "dimension of the body")
            .required()
+           .early()
+           .on_ranks(),
+       K("units", &Case::units, unit_keys(),
+         "table: [units](#units) of the plain numbers and expressions of the file")
+           .written_if([](auto&, auto&) { return false; })
+           .default_words("SI units")
            .early()
            .on_ranks(),
        K("lattice", itself, lattice_keys(), "table: points on a lattice")

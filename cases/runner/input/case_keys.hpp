@@ -10,9 +10,15 @@ struct Case;
 template <class Spec>
 struct Table;
 
+/// What the values of a key are made of: numbers in its unit, numbers or expressions whose values
+/// have its unit, or something else. Where the unit is a unit of measure, each number may be a
+/// string with a number and a unit.
+enum class ValueForm { other, number, expression };
+
 /// Entry of a key in the reference, in markdown.
 struct KeyDescription {
   std::string name, meaning, unit, fallback, allowed;
+  ValueForm form = ValueForm::other;
   bool extends = false;   ///< may change when a run is resumed
   bool on_ranks = false;  ///< runs on several ranks; a table: with all keys below it
 };

@@ -90,8 +90,11 @@ JsonObject polygon_schema(std::size_t count) {
 
 Kind<double> number(const Range& range, std::string allowed, std::string unit) {
   return {[=](const Entry& at) { return at.from.number(at.key, range); },
-          [](double value, const Case&) { return toml_number(value); }, number_schema(range, unit),
-          std::move(allowed), std::move(unit)};
+          [](double value, const Case&) { return toml_number(value); },
+          number_schema(range, unit),
+          std::move(allowed),
+          std::move(unit),
+          ValueForm::number};
 }
 
 Kind<double> positive(const std::string& unit, double high) {
@@ -113,8 +116,12 @@ Kind<Spacing> spacing() {
                                : array_text(components_of(along, from), toml_number);
   };
   const JsonObject one = number_schema(Range::positive("m"), "m");
-  return {read, text, either_schema({one, components_schema(one)}),
-          "positive, or a list with one number per dimension", "m"};
+  return {read,
+          text,
+          either_schema({one, components_schema(one)}),
+          "positive, or a list with one number per dimension",
+          "m",
+          ValueForm::number};
 }
 
 Kind<double> between(double low, double high, std::string unit) {
@@ -263,7 +270,10 @@ Kind<Coordinates> coordinates(std::string unit) {
           [](const Coordinates& place, const Case& from) {
             return array_text(components_of(place, from), toml_number);
           },
-          components_schema(number_schema({}, unit)), "a number per dimension", std::move(unit)};
+          components_schema(number_schema({}, unit)),
+          "a number per dimension",
+          std::move(unit),
+          ValueForm::number};
 }
 
 Kind<Coordinates> stiffnesses(const std::string& unit) {
@@ -280,8 +290,12 @@ Kind<Coordinates> stiffnesses(const std::string& unit) {
     return any.text(stiffness, from);
   };
   const Range from_zero{0.0, Range().high, ""};
-  return {read, text, components_schema(number_schema(from_zero, unit)),
-          "numbers from 0, not all 0", unit};
+  return {read,
+          text,
+          components_schema(number_schema(from_zero, unit)),
+          "numbers from 0, not all 0",
+          unit,
+          ValueForm::number};
 }
 
 Kind<Side> side() {
@@ -307,8 +321,12 @@ Kind<std::optional<Side>> optional_side() {
 }
 
 Kind<std::vector<std::array<double, 2>>> pairs() {
-  return {[](const Entry& at) { return at.from.pairs(at.key); }, tuples_text<2>, polygon_schema(2),
-          "3 or more pairs `[x, y]`", "m"};
+  return {[](const Entry& at) { return at.from.pairs(at.key); },
+          tuples_text<2>,
+          polygon_schema(2),
+          "3 or more pairs `[x, y]`",
+          "m",
+          ValueForm::number};
 }
 
 Kind<std::array<double, 2>> range_of_numbers() {
@@ -322,8 +340,12 @@ Kind<std::array<double, 2>> range_of_numbers() {
 }
 
 Kind<std::vector<std::array<double, 3>>> triples() {
-  return {[](const Entry& at) { return at.from.triples(at.key); }, tuples_text<3>,
-          polygon_schema(3), "3 or more `[x, y, z]`", "m"};
+  return {[](const Entry& at) { return at.from.triples(at.key); },
+          tuples_text<3>,
+          polygon_schema(3),
+          "3 or more `[x, y, z]`",
+          "m",
+          ValueForm::number};
 }
 
 Kind<int> axis() {
@@ -343,7 +365,7 @@ Kind<std::string> condition() {
       at.refuse(error.allowed());
     }
   };
-  return {read, string_text, text_schema(), "an expression of place"};
+  return {read, string_text, text_schema(), "an expression of place", "", ValueForm::expression};
 }
 
 Kind<LoadTable> load_table() {
@@ -368,11 +390,14 @@ Kind<LoadTable> load_table() {
     return table.expression.empty() ? array_text(table.entries, toml_number)
                                     : toml_string(table.expression);
   };
-  return {read, text,
+  return {read,
+          text,
           either_schema({list_schema(number_schema({}, ""), 2),
                          list_schema(list_schema(number_schema({}, ""), 2, 2), 2), text_schema()}),
           "at least two numbers, the first 0, or an expression of `step`, 0 at step 0; in mode "
-          "`dynamics` two or more pairs `[t, value]`, from t = 0 to `end_time`, ascending"};
+          "`dynamics` two or more pairs `[t, value]`, from t = 0 to `end_time`, ascending",
+          "",
+          ValueForm::expression};
 }
 
 Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
@@ -395,7 +420,9 @@ Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
             });
           },
           components_schema(expression_schema()),
-          "number, expression of place and `load` (mode `dynamics`: `t`), or `\"free\"`", "m"};
+          "number, expression of place and `load` (mode `dynamics`: `t`), or `\"free\"`",
+          "m",
+          ValueForm::expression};
 }
 
 Kind<std::array<std::optional<std::string>, 3>> free_components(Components kind,
@@ -422,7 +449,8 @@ Kind<std::array<std::optional<std::string>, 3>> free_components(Components kind,
           components_schema(expression_schema()),
           kind == Components::of_load ? "number, expression of `load` (`t`) alone, or `\"free\"`"
                                       : "number, expression of `load` alone, or `\"free\"`",
-          unit};
+          unit,
+          ValueForm::expression};
 }
 
 namespace {
@@ -439,10 +467,13 @@ Kind<std::string> expression(bool of_place, bool or_free) {
       at.refuse(error.allowed());
     }
   };
-  return {read, string_text, expression_schema(),
+  return {read,
+          string_text,
+          expression_schema(),
           std::string("number, or expression of ") +
               (of_place ? "place and `load`" : "`load` alone") + (or_free ? ", or `\"free\"`" : ""),
-          "m"};
+          "m",
+          ValueForm::expression};
 }
 
 }  // namespace
@@ -464,7 +495,10 @@ Kind<std::array<std::string, 3>> components_of_place(const std::string& unit) {
           [](const auto& values, const Case& from) {
             return array_text(components_of(values, from), toml_string);
           },
-          components_schema(expression_schema()), "number or expression of place", unit};
+          components_schema(expression_schema()),
+          "number or expression of place",
+          unit,
+          ValueForm::expression};
 }
 
 Kind<std::string> expression_or_free() { return expression(true, true); }
@@ -492,9 +526,12 @@ Kind<double> stretch() {
       at.refuse("is " + number_text(value) + "; must be between 1e-09 and 1000");
     return value;
   };
-  return {read, [](double value, const Case&) { return toml_number(value); },
+  return {read,
+          [](double value, const Case&) { return toml_number(value); },
           either_schema({number_schema(range, "1"), text_schema()}),
-          "1e-09 to 1000, or an expression of `horizon` and `spacing`", "1"};
+          "1e-09 to 1000, or an expression of `horizon` and `spacing`",
+          "1",
+          ValueForm::expression};
 }
 
 namespace {
@@ -515,13 +552,21 @@ std::string read_field(const Entry& at, bool has_parameters) {
 }  // namespace
 
 Kind<std::string> scalar_field(const std::string& unit) {
-  return {[](const Entry& at) { return read_field(at, true); }, string_text, expression_schema(),
-          "number or expression of place and `load` (mode `dynamics`: `t`)", unit};
+  return {[](const Entry& at) { return read_field(at, true); },
+          string_text,
+          expression_schema(),
+          "number or expression of place and `load` (mode `dynamics`: `t`)",
+          unit,
+          ValueForm::expression};
 }
 
 Kind<std::string> field_of_place(const std::string& unit) {
-  return {[](const Entry& at) { return read_field(at, false); }, string_text, expression_schema(),
-          "number or expression of place", unit};
+  return {[](const Entry& at) { return read_field(at, false); },
+          string_text,
+          expression_schema(),
+          "number or expression of place",
+          unit,
+          ValueForm::expression};
 }
 
 namespace {
@@ -545,7 +590,8 @@ Kind<std::array<std::string, 3>> located_components(bool has_place, const std::s
           components_schema(expression_schema()),
           has_place ? "number or expression of place and `load` (mode `dynamics`: `t`)"
                     : "number or expression of `load` (`t`) alone",
-          unit};
+          unit,
+          ValueForm::expression};
 }
 
 }  // namespace
@@ -567,9 +613,12 @@ Kind<std::vector<std::string>> stress_components() {
     }
     return values;
   };
-  return {read, [](const auto& values, const Case&) { return array_text(values, toml_string); },
+  return {read,
+          [](const auto& values, const Case&) { return array_text(values, toml_string); },
           list_schema(expression_schema(), 3, 6),
-          "numbers or expressions of place and `load` (mode `dynamics`: `t`)", "Pa"};
+          "numbers or expressions of place and `load` (mode `dynamics`: `t`)",
+          "Pa",
+          ValueForm::expression};
 }
 
 Kind<std::vector<std::string>> expected_components() {
@@ -581,11 +630,13 @@ Kind<std::vector<std::string>> expected_components() {
     }
     return values;
   };
-  return {read, [](const auto& values, const Case&) { return array_text(values, toml_string); },
+  return {read,
+          [](const auto& values, const Case&) { return array_text(values, toml_string); },
           list_schema(expression_schema(), 1),
           "list of numbers or expressions of place and `load` (mode `dynamics`: `t`), one for each "
           "component of the field",
-          ""};
+          "",
+          ValueForm::expression};
 }
 
 Kind<std::array<std::string, 3>> force_components(bool is_total, const std::string& unit) {

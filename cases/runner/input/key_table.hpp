@@ -20,12 +20,12 @@ struct Kind : UntypedKind {
   /// @param schema of its values (value_schema.hpp)
   template <class Reads, class Writes>
   Kind(Reads reads, Writes writes, JsonObject has_schema, std::string is_allowed,
-       std::string has_unit = {})
+       std::string has_unit = {}, ValueForm has_form = ValueForm::other)
       : UntypedKind([=](const Entry& at, void* value) { *static_cast<Value*>(value) = reads(at); },
                     [=](const void* value, const Case& from) -> std::string {
                       return writes(*static_cast<const Value*>(value), from);
                     },
-                    std::move(has_schema), std::move(is_allowed), std::move(has_unit)) {}
+                    std::move(has_schema), std::move(is_allowed), std::move(has_unit), has_form) {}
 
   [[nodiscard]] Value read(const Entry& at) const {
     Value value{};

@@ -34,8 +34,8 @@ namespace {
 /// other materials.
 void require_law(const Entry& at, DamageSpecification&) {
   if (at.from.has("law")) return;
-  for (const char* key :
-       {"fracture_energy", "strength", "critical", "onset", "peak", "hardening", "rate"}) {
+  for (const char* key : {"fracture_energy", "fracture_toughness", "strength", "critical", "onset",
+                          "peak", "hardening", "rate"}) {
     if (!at.from.has(key)) continue;
     at.from.refuse(key,
                    "needs a law in the same table, such as law = \"linear\"; without a law there "
@@ -81,6 +81,14 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
            .unless(is_whole, "")
            .by_rules(damage_rules)
            .early(),
+       K("fracture_toughness", &Spec::fracture_toughness, positive("Pa*sqrt(m)"),
+         "$K_{Ic}$, another way to give `fracture_energy`, $G_c = K_{Ic}^2/E'$, with $E' = E$ in "
+         "plane stress (and with `cpd` in 2D) and $E/(1 - \\nu^2)$ in plane strain and 3D, by the "
+         "moduli of the model")
+           .unless(is_whole, "")
+           .unless(in_dimension<1>, "is for dimension 2 and 3; give fracture_energy")
+           .by_rules(damage_rules)
+           .early(),
        K("strength", &Spec::strength, positive("Pa"),
          "$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the "
          "mean over directions ([theory](theory.md#strength)); `onset` follows from it, for "
@@ -94,7 +102,7 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
            .unless(is_whole, "")
            .by_rules(damage_rules)
            .then(require_key([](auto& damage) { return damage.critical == 0.0; }))
-           .default_words("this or `fracture_energy` is required with a law"),
+           .default_words("this, `fracture_energy` or `fracture_toughness` is required with a law"),
        K("onset", &Spec::onset, stretch(),
          "laws that soften: stretch $s_m$ beyond which a bond loses stiffness")
            .unless(is_whole, "")
@@ -109,7 +117,7 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
            .unless(is_whole, "")
            .by_rules(damage_rules)
            .then(require_key([](auto& damage) {
-             return damage.peak == 0.0 && (damage.onset != 0.0 || !damage.fracture_energy);
+             return damage.peak == 0.0 && (damage.onset != 0.0 || !damage.has_fracture_energy());
            }))
            .written_if([](auto& damage, auto&) { return damage.peak != 0.0; })
            .moreover("from `onset` to below `critical`")
@@ -364,7 +372,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .unless(without(Option::calibration), is_for(Option::calibration))
            .default_words("`\"lattice\"` with `cpd`, `\"continuum\"` with `bond`")
            .on_ranks(),
-       K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "per K"),
+       K("thermal_expansion", &Spec::thermal_expansion, between(-1.0, 1.0, "1/K"),
          "coefficient α of linear expansion, for `[temperature]`")
            .on_ranks(),
        K("density", &Spec::density, positive("kg/m3"),

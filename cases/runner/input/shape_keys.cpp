@@ -8,6 +8,7 @@
 #include <tuple>
 #include <variant>
 
+#include "cases/runner/input/unit_system.hpp"
 #include "cases/runner/input/value_schema.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/closed_surface.hpp"
@@ -33,6 +34,15 @@ Key<Rectangular> upper_corner() {
 constexpr const char* meaning_of_file =
     "polygon (in place of `vertices`), image, stl: file with corners x, y, with a PNG or TIFF "
     "picture, with an STL surface; its path is relative to the case file's folder";
+
+template <class FromFile>
+Key<FromFile> scale_of_file() {
+  return Key<FromFile>("scale", &FromFile::scale, positive("m"),
+                       "polygon, stl: length that 1 in the file stands for")
+      .otherwise(
+          [](auto& shape, auto& from) { shape.scale = unit_system(from.units).length.size(); },
+          "1, or the `length` of `[units]`");
+}
 
 /// Calls `read`; puts the file's key in front of the errors that name no place.
 template <class Read>
@@ -100,11 +110,16 @@ const Table<Polygon>& keys_of(const Polygon&) {
            .one_of(),
        K("file", &Polygon::file, file_beside_the_case(), meaning_of_file)
            .written_if([](auto& polygon, auto&) { return !polygon.file.empty(); })
-           .one_of()},
+           .one_of()
+           .early(),
+       scale_of_file<Polygon>()
+           .unless([](auto& polygon, auto&) { return polygon.file.empty(); }, "is for a file")
+           .written_if([](auto& polygon, auto&) { return !polygon.file.empty(); })},
       {},
       [](auto& at, auto& polygon) {
         if (polygon.file.empty()) return;
-        polygon.vertices = read_from_file(at, [&] { return read_outline(polygon.file); });
+        polygon.vertices =
+            read_from_file(at, [&] { return read_outline(polygon.file, polygon.scale); });
       }};
   return table;
 }
@@ -133,8 +148,7 @@ const Table<StlBody>& keys_of(const StlBody&) {
   static const Table<StlBody> table{
       "set.shape.stl",
       {K("file", &StlBody::file, file_beside_the_case(), meaning_of_file).required(),
-       K("scale", &StlBody::scale, positive("m"),
-         "stl: length that a file's 1 stands for; STL files have no unit"),
+       scale_of_file<StlBody>(),
        K("translate", &StlBody::translate, coordinates(), "stl: shift after the scaling")},
       {},
       [](auto& at, auto& body) {

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "cases/runner/input/case_keys.hpp"
-#include "cases/runner/input/unit_remark.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/nearest_name.hpp"
 #include "src/core/number_text.hpp"
@@ -40,33 +39,63 @@ std::optional<std::int64_t> whole_number(const TomlValue& value) {
   return static_cast<std::int64_t>(number);
 }
 
-/// Symbols of data sheets and papers, in small letters without underscores, and the keys for them.
+/// Symbols and names of data sheets and papers, in small letters without underscores, and the keys
+/// for them.
 const std::map<std::string, std::string>& keys_of_symbols() {
-  static const std::string energy = "material.damage.fracture_energy";
-  static const std::string from_toughness = energy +
-                                            ", K_Ic^2/E in plane stress and K_Ic^2 (1 - nu^2)/E in "
-                                            "plane strain and 3D,";
+  static const std::string modulus = "material.youngs_modulus", ratio = "material.poisson_ratio",
+                           expansion = "material.thermal_expansion",
+                           energy = "material.damage.fracture_energy",
+                           toughness = "material.damage.fracture_toughness",
+                           strength = "material.damage.strength",
+                           critical = "material.damage.critical";
   static const std::map<std::string, std::string> keys{
-      {"e", "material.youngs_modulus"},
-      {"young", "material.youngs_modulus"},
-      {"nu", "material.poisson_ratio"},
-      {"poisson", "material.poisson_ratio"},
+      {"e", modulus},
+      {"young", modulus},
+      {"youngs", modulus},
+      {"youngmodulus", modulus},
+      {"emodulus", modulus},
+      {"elasticmodulus", modulus},
+      {"nu", ratio},
+      {"poisson", ratio},
+      {"poissons", ratio},
+      {"poissonsratio", ratio},
       {"rho", "material.density"},
-      {"alpha", "material.thermal_expansion"},
+      {"massdensity", "material.density"},
+      {"alpha", expansion},
+      {"cte", expansion},
+      {"expansion", expansion},
+      {"thermalexpansioncoefficient", expansion},
       {"g", energy},
       {"gc", energy},
       {"gf", energy},
+      {"g0", energy},
       {"gic", energy},
       {"g1c", energy},
-      {"kic", from_toughness},
-      {"k1c", from_toughness},
-      {"kc", from_toughness},
-      {"ft", "material.damage.strength"},
-      {"sc", "material.damage.critical"},
-      {"s0", "material.damage.critical"},
+      {"energyreleaserate", energy},
+      {"kic", toughness},
+      {"k1c", toughness},
+      {"kc", toughness},
+      {"toughness", toughness},
+      {"ft", strength},
+      {"sigmat", strength},
+      {"sigmac", strength},
+      {"tensilestrength", strength},
+      {"sc", critical},
+      {"s0", critical},
       {"delta", "lattice.horizon_ratio or points.horizon"},
       {"dx", "lattice.spacing"}};
   return keys;
+}
+
+/// A key of the material as it is called seen from a table: by its name alone if it belongs there,
+/// otherwise by that of its tables, which are those of a region if the table is.
+std::string seen_from(const std::string& table, const std::string& key) {
+  const std::string name = "material";
+  const std::size_t at = table.rfind(name);
+  const bool is_inside = at != std::string::npos && key.starts_with(name);
+  const std::string whole = is_inside ? table.substr(0, at) + key : key;
+  const std::size_t dot = whole.rfind('.');
+  return whole.substr(0, dot) == table ? whole.substr(dot + 1) : whole;
 }
 
 /// "horizon_ratio" for "horizon": the one key that begins with the word.
@@ -82,20 +111,21 @@ std::string completed(const std::string& word, const std::vector<std::string>& k
 
 /// Suggests a key in place of an unknown one: that of a symbol, one that begins with it or is
 /// similar in this table, or the same one of another table.
-std::string suggestion(const std::string& key, const std::vector<std::string>& known) {
+std::string suggestion(const std::string& table, const std::string& key,
+                       const std::vector<std::string>& known) {
   std::string symbol;
   for (const char c : key)
     if (c != '_') symbol += char(std::tolower(static_cast<unsigned char>(c)));
   const auto meant = keys_of_symbols().find(symbol);
-  if (meant != keys_of_symbols().end()) return "; did you mean " + meant->second + "?";
+  if (meant != keys_of_symbols().end()) return "; the key is " + seen_from(table, meant->second);
   const std::string whole = completed(key, known);
   if (!whole.empty()) return "; did you mean " + whole + "?";
   std::string text = did_you_mean(key, known);
   if (!text.empty()) return text;
   std::vector<std::string> elsewhere;
-  for (const auto& [table, keys] : case_keys())
-    if (contains(keys, key) && !repeats_another(table))
-      elsewhere.push_back(table.empty() ? key : table + "." + key);
+  for (const auto& [other, keys] : case_keys())
+    if (contains(keys, key) && !repeats_another(other))
+      elsewhere.push_back(other.empty() ? key : other + "." + key);
   constexpr std::size_t most_listed = 3;
   if (elsewhere.empty() || elsewhere.size() > most_listed) return "";
   for (const auto& place : elsewhere) {
@@ -139,8 +169,9 @@ TomlTable::TomlTable(const TomlValue& value, std::string path, const std::string
   }
   if (first != nullptr) {
     refuse_unknown_kind();
-    refuse(*first, this->path(unknown),
-           "unknown key" + suggestion(unknown, known) + "  (allowed: " + listed(known) + ")");
+    refuse(
+        *first, this->path(unknown),
+        "unknown key" + suggestion(path_, unknown, known) + "  (allowed: " + listed(known) + ")");
   }
   if (in_array && value.entries.empty())
     refuse(value, path_, "is empty (allowed: " + listed(known) + ")");
@@ -222,7 +253,7 @@ double TomlTable::checked_number(const TomlValue& value, const std::string& path
                                  const Range& range) const {
   const bool is_integer = value.kind == TomlValue::Kind::integer;
   if (!is_integer && value.kind != TomlValue::Kind::real)
-    refuse(value, path, range.words + ", not " + kind_name(value) + remark_on_unit(value.string));
+    refuse(value, path, range.words + ", not " + kind_name(value));
   const double number = is_integer ? static_cast<double>(value.integer) : value.real;
   if (number >= range.low && number <= range.high) return number;
   const bool beyond_limits =

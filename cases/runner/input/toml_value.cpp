@@ -11,7 +11,7 @@
 #define TOML_MAX_NESTED_VALUES 16
 #include <toml++/toml.h>
 
-#include "cases/runner/input/unit_remark.hpp"
+#include "cases/runner/input/quantity.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/readable_text.hpp"
 
@@ -104,6 +104,17 @@ class Lines {
   std::vector<std::string_view> lines_;
   mutable std::vector<std::vector<std::uint32_t>> code_points_;  // first bytes, per line
 };
+
+/// "; write … in quotes" if the text is a number with a unit behind it (5 mm), which is no TOML.
+std::string remark_on_quotes(std::string text) {
+  text = text.substr(0, text.find_first_of("#\r\n"));
+  while (text.starts_with(' ')) text.erase(0, 1);
+  while (text.ends_with(' ')) text.pop_back();
+  const std::size_t number = length_of_number(text);
+  std::string why_not;
+  if (number == 0 || !parse_unit(std::string_view(text).substr(number), why_not)) return "";
+  return "; write a number with a unit in quotes: \"" + text + "\"";
+}
 
 CaseLocation at(const toml::source_region& region) {
   return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), {}};
@@ -231,7 +242,7 @@ TomlValue parse_toml(const std::string& text, const std::string& file) {
     const Lines lines(text);
     throw InputError("", "",
                      "not valid TOML: " + std::string(error.description()) +
-                         remark_on_unit(lines.value_in(error.source().begin.line)),
+                         remark_on_quotes(lines.value_in(error.source().begin.line)),
                      at(error.source()).text(file));
   }
 }

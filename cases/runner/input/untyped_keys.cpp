@@ -6,12 +6,13 @@
 namespace peristat {
 
 UntypedKind::UntypedKind(Read reads, Text writes, JsonObject has_schema, std::string is_allowed,
-                         std::string has_unit)
+                         std::string has_unit, ValueForm has_form)
     : read_into(std::move(reads)),
       text_of(std::move(writes)),
       schema(std::move(has_schema)),
       allowed(std::move(is_allowed)),
-      unit(std::move(has_unit)) {}
+      unit(std::move(has_unit)),
+      form(has_form) {}
 UntypedKind::UntypedKind(const UntypedKind&) = default;
 UntypedKind::UntypedKind(UntypedKind&&) noexcept = default;
 UntypedKind::~UntypedKind() = default;
@@ -21,7 +22,7 @@ UntypedKind::~UntypedKind() = default;
 UntypedKey::UntypedKey(std::string_view name, const UntypedMember& member,
                        const ValueOfMember& value, const UntypedKind& kind,
                        std::string_view meaning)
-    : description_{std::string(name), std::string(meaning), kind.unit, {}, kind.allowed},
+    : description_{std::string(name), std::string(meaning), kind.unit, {}, kind.allowed, kind.form},
       member_(member),
       value_(value),
       kind_(std::make_shared<UntypedKind>(kind)) {}

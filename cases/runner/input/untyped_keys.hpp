@@ -38,9 +38,10 @@ struct UntypedKind {
   JsonObject schema;          ///< of a value
   JsonObject schemas_beside;  ///< of keys that stand beside the value and that this kind reads
   std::string allowed, unit;
+  ValueForm form;
 
   UntypedKind(Read read_into, Text text_of, JsonObject schema, std::string allowed,
-              std::string unit);
+              std::string unit, ValueForm form);
   UntypedKind(const UntypedKind&);
   UntypedKind(UntypedKind&&) noexcept;
   ~UntypedKind();

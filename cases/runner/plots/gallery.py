@@ -10,7 +10,8 @@ import stat
 from pathlib import Path
 
 LIST = ".pictures"
-PICTURE_NAME = re.compile(r"[A-Za-z0-9_]+\.(png|pdf|svg|gif)")
+SCRIPT = "show_in_paraview.py"
+PICTURE_NAME = re.compile(rf"[A-Za-z0-9_]+\.(png|pdf|svg|gif)|{re.escape(SCRIPT)}")
 MOST_BYTES = 100_000  # size limit of the list
 
 

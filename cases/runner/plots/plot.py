@@ -12,7 +12,7 @@ import sys
 import traceback
 from pathlib import Path
 
-from gallery import Gallery, NoPlace
+from gallery import SCRIPT, Gallery, NoPlace
 from results_folder import NotAResultsFolder, ResultsFolder, read_results_folder
 
 DONE, BUG, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 1, 2, 5, 130
@@ -198,6 +198,18 @@ def draw(directory: Path, ending: str) -> None:
     print(f"plot: {gallery.path}: {', '.join(drawn) if drawn else 'nothing could be drawn'}")
 
 
+def add_script(directory: Path) -> None:
+    """Puts the script for ParaView into `plots`, and prints how to start it."""
+    read_results_folder(directory)
+    if not (directory / "results.xdmf").is_file():
+        raise NotAResultsFolder(f"{directory}: no step has fields, so that there is no results.xdmf to show")
+    text = (Path(__file__).parent / SCRIPT).read_text()
+    known = text.replace("FOLDER = None", f"FOLDER = {str(directory.resolve())!r}", 1)
+    gallery = Gallery(directory)
+    gallery.add(SCRIPT, known.encode())
+    print(f"plot: paraview --script={gallery.path / SCRIPT}")
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="peristat plot", allow_abbrev=False,
@@ -209,6 +221,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("directory", metavar="DIR", type=Path, help="results folder of a run")
     parser.add_argument("--format", choices=FORMATS, default="png",
                         help="of the pictures (default: png; pdf and svg are vector graphics)")  # fmt: skip
+    parser.add_argument("--paraview", action="store_true",
+                        help=f"instead of pictures, write DIR/plots/{SCRIPT}, which shows damage and cracks in ParaView")  # fmt: skip
     return parser
 
 
@@ -218,7 +232,10 @@ def main(words: list[str]) -> int:
     except SystemExit as ending:
         return DONE if ending.code in (0, None) else WRONG_INPUT
     try:
-        draw(arguments.directory, arguments.format)
+        if arguments.paraview:
+            add_script(arguments.directory)
+        else:
+            draw(arguments.directory, arguments.format)
     except (NotAResultsFolder, NoPlace) as error:
         return _told(str(error), WRONG_INPUT)
     except OSError as error:

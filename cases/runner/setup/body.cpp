@@ -89,9 +89,9 @@ Points make_points_of(const Case& from) {
       std::optional<NeighbourFile> neighbours;
       if (!source.neighbours.empty())
         neighbours = {source.neighbours, source.horizon.length, source.cross_section};
-      points = source.is_mesh()
-                   ? read_mesh_points(source, from.dimension)
-                   : read_points(source.file, from.dimension, source.cross_section, neighbours);
+      points = source.is_mesh() ? read_mesh_points(source, from.dimension)
+                                : read_points(source.file, from.dimension, source.cross_section,
+                                              neighbours, source.length_unit);
     }
     for (std::size_t k = 0; k < from.sets.size(); ++k) {
       const SetRule& rule = from.sets[k];

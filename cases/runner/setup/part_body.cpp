@@ -115,7 +115,7 @@ Part make_slab_of(const Case& from, const Communicator& ranks) {
   const auto* const lattice = std::get_if<Lattice>(&from.body);
   if (lattice == nullptr) {
     const auto& source = std::get<PointSource>(from.body);
-    return read_slab(source.file, from.dimension, source.cross_section, ranks);
+    return read_slab(source.file, from.dimension, source.cross_section, ranks, source.length_unit);
   }
   Part slab = make_slab(*lattice, ranks);
   if (slab.points.lattice && lattice->perturbation == 0.0 && lattice->cell_perturbation == 0.0) {

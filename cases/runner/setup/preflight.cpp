@@ -253,7 +253,7 @@ void add_materials(const Case& from, const Body& body, Preflight& to) {
     const DamageSpecification& asked = given[k].of->damage;
     to.fractures.push_back({of.regions.empty() ? "" : found[k].name, key, scale.youngs_modulus,
                             scale.energy(damage), strength, damage.critical,
-                            asked.strength || asked.onset > 0.0 || !asked.fracture_energy,
+                            asked.strength || asked.onset > 0.0 || !asked.has_fracture_energy(),
                             asked.strength.has_value(), damage.softens()});
   }
 }
@@ -423,7 +423,6 @@ Preflight preflight_of(const Case& from, const Body& body, const Communicator& r
   of.steps = from.loading.steps_to_entry() * std::max(1, int(body.conditions->programme().end()));
   if (!of.is_quasi_static) of.steps = 1;
   of.begins_moving = !from.initial.empty();
-  of.has_horizons = !body.points.horizons.empty();
   of.has_notch = !of.cracks.empty() || !of.openings.empty();
   of.idle = idle_keys(from);
   return of;

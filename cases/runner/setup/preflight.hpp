@@ -94,7 +94,6 @@ struct Preflight {
   std::vector<Stiffness> stiffnesses;
   std::vector<Idle> idle;
   bool begins_moving = false;  ///< by initial fields
-  bool has_horizons = false;   ///< of points, the largest of which is `horizon`
   bool has_notch = false;      ///< a crack or a subtracted shape, at which stress concentrates
 
   /// The shortest length of a kind; null: there is none.

@@ -110,10 +110,11 @@ void add_stiffnesses(const Preflight& of, Warnings& warnings) {
   constexpr double no_dimension = 2.5;  // moduli of problems without units are about 1
   for (const auto& [key, modulus] : of.stiffnesses) {
     if (modulus <= no_dimension || modulus >= softest_gel) continue;
-    warnings.push_back(fmt::format(
-        "{} = {:g} Pa is softer than any solid; all numbers are in SI units: {:g} GPa is {:g}e9, "
-        "{:g} MPa is {:g}e6",
-        key, modulus, modulus, modulus, modulus, modulus));
+    warnings.push_back(
+        fmt::format("{} = {:g} Pa is softer than any solid; numbers without a unit are in SI "
+                    "units: {:g} GPa is {:g}e9, "
+                    "{:g} MPa is {:g}e6",
+                    key, modulus, modulus, modulus, modulus, modulus));
   }
 }
 
@@ -143,13 +144,7 @@ void add_fracture(const Preflight& of, const Preflight::Fracture& fracture, Warn
                     name, zone, zone / of.horizon, shortest_zone,
                     of.spacing * zone / (shortest_zone * of.horizon)));
   }
-  if (!fracture.has_strength && !of.has_notch && of.has_horizons) {
-    warnings.push_back(fmt::format(
-        "there is no crack, notch or hole to start from: each horizon sets a strength "
-        "of its own{}, {:.4g} MPa the largest and more the smaller ones, so that cracks "
-        "begin where points are large; give a crack, or the stretches of all bonds",
-        name, fracture.strength * 1e-6));
-  } else if (!fracture.has_strength && !of.has_notch) {
+  if (!fracture.has_strength && !of.has_notch) {
     warnings.push_back(
         fmt::format("{}.damage.strength is missing, and there is no crack, notch or hole to start "
                     "from: the horizon sets a strength of {:.4g} MPa, and the peak grows with each "

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "cases/runner/input/case.hpp"
+#include "src/core/decimal.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/machine_error.hpp"
 #include "src/geometry/mesh_body.hpp"
@@ -171,8 +172,8 @@ Mesh read_mesh(const fs::path& file) {
 }
 
 Points read_mesh_points(const PointSource& source, int dimension) {
-  const Mesh mesh = read_mesh(source.file);
-  // A scale of [units] belongs here: the coordinates are the file's, the rest works in metres.
+  Mesh mesh = read_mesh(source.file);
+  for (double& at : mesh.nodes) at = in_metres(at, source.length_unit);
   Points points = make_points(make_mesh_body(mesh, dimension, source.file.string()), source.at,
                               source.cross_section, source.file.string());
   if (source.cut_bonds) points.interior = std::make_shared<const MeshInterior>(points.mesh);

@@ -9,6 +9,9 @@ import tomllib
 
 from variations import WrongInput
 
+# Units of [units] that a length may have, in m; with others a sweep over lattices is refused.
+LENGTHS = {"m": 1.0, "dm": 1e-1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "km": 1e3,
+           "in": 0.0254, "ft": 0.3048}  # fmt: skip
 FUNCTIONS = {"abs": abs, "min": min, "max": max, "round": round, "floor": math.floor, "ceil": math.ceil,
              "sqrt": math.sqrt, "exp": math.exp, "log": math.log, "sin": math.sin, "cos": math.cos,
              "tan": math.tan}  # fmt: skip
@@ -50,8 +53,16 @@ class Keys:
             except (KeyError, IndexError, TypeError):
                 raise WrongInput(f"{key} stands neither in the case file nor on the command line") from None
         if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise WrongInput(f"{key} is no number")
+            raise WrongInput(f"{key} is no number; a number with a unit in quotes can't be computed with")
         return value
+
+    def length_unit(self) -> float:
+        """The unit of plain lengths [m]. @raises WrongInput for an unusual one"""
+        units = self._case.get("units")
+        name = units.get("length", "m") if isinstance(units, dict) else "m"
+        if name not in LENGTHS:
+            raise WrongInput(f"units.length = {name}: must be one of {', '.join(LENGTHS)}")
+        return LENGTHS[name]
 
     def numbers(self, key: str) -> list[float | int]:
         """A number, or the numbers of a list. @raises WrongInput if there is none"""

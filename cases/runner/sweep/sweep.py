@@ -57,6 +57,7 @@ class Sweep:
     overwrite: bool  # replaces runs of another case in the folders, too
     jobs: int = 1  # runs at once
     refined: int | None = None  # number of the key that --refine varies
+    length_unit: float = 1.0  # of the spacings that --refine varies [m]
     linked: frozenset[int] = frozenset()  # numbers of that key, of the keys that vary with it, and of computed ones
 
 
@@ -250,7 +251,7 @@ def _refinements(sweep: Sweep, rows: list[dict]) -> list[tuple[tuple[str, ...], 
             told = f" of {', '.join(others)}" if others else ""
             say(f"sweep: nothing is extrapolated{told}: a lattice has no completed run")
             continue
-        spacings = [_spacing(row[sweep.keys[sweep.refined]]) for row in lattices]
+        spacings = [_spacing(row[sweep.keys[sweep.refined]]) * sweep.length_unit for row in lattices]
         found += [(others, refine(name, spacings, values)) for name, values in quantities(lattices).items()]
     return found
 
@@ -416,7 +417,9 @@ def _read_axes(sweep: Sweep, arguments: argparse.Namespace) -> tuple[list[Axis],
         if option == "--refine":
             if refined is not None:
                 raise WrongInput(f"--refine {text}: is given twice")
-            axes.append(_lattices(text, arguments.ratio, Keys(sweep.case_text, arguments.settings)))
+            keys = Keys(sweep.case_text, arguments.settings)
+            axes.append(_lattices(text, arguments.ratio, keys))
+            sweep.length_unit = keys.length_unit()
             refined = axes[-1]
         elif option == "--vary":
             axes.append(vary(text))

@@ -20,7 +20,7 @@ MadeModel make_bond_model(const ModelSetting& setting, Bonds bonds) {
   }
   CutBonds cut = cut_bonds(bonds, setting.points, of.cracks);
   auto [potential, never_fails] =
-      mixed.potential(bonds, stretch_factors(setting.points, bonds, setting.bonds));
+      mixed.potential(bonds, fineness_of_bonds(setting.points, bonds, setting.bonds));
   return {Model(std::move(bonds), std::move(potential), std::move(never_fails)), std::move(cut)};
 }
 

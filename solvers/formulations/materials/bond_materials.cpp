@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "solvers/formulations/materials/bond_potential.hpp"
+#include "solvers/formulations/materials/fracture_data.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/materials/bulk_bonds.hpp"
@@ -162,28 +163,30 @@ void BondMaterials::weigh(Bonds& bonds) const {
 
 std::optional<BondMaterials::Strength> BondMaterials::strength(std::size_t kind,
                                                                const Coordinates& n,
-                                                               double by_energy) const {
+                                                               double fineness) const {
   const auto& [constant, material] = kinds_[kind];
   const DamageSpecification& damage = material->damage;
   if (damage.law == DamageLaw::none) return {};
-  double share = damage.is_by_energy ? by_energy : 1.0;  // relative to those of the material
+  const auto [onset, critical] = damage.is_by_energy ? stretches_of(damage, fineness)
+                                                     : LawStretches{damage.onset, damage.critical};
+  double share = 1.0;  // relative to the stretches along the fibres
   if (material->fibre && material->fibre->transverse_critical) {
     const double t = constant.alignment(n);
-    share *= t + (1.0 - t) * *material->fibre->transverse_critical / damage.critical;
+    share = t + (1.0 - t) * *material->fibre->transverse_critical / damage.critical;
   }
-  const double onset = damage.law == DamageLaw::critical_stretch ? damage.critical : damage.onset;
-  return Strength{kind, share * onset, share * damage.critical};
+  const bool is_brittle = damage.law == DamageLaw::critical_stretch;
+  return Strength{kind, share * (is_brittle ? critical : onset), share * critical};
 }
 
 /// Bonds between equal laws have the mean of their stretches; between different ones the weaker law
 /// decides. If one of the materials does not fail, the bond has the law of the other.
 std::optional<BondMaterials::Strength> BondMaterials::strength(std::size_t a, std::size_t b,
                                                                const Coordinates& n,
-                                                               double by_energy) const {
-  if (a == b) return strength(a, n, by_energy);
+                                                               double fineness) const {
+  if (a == b) return strength(a, n, fineness);
   const Pair& pair = pairs_[a * materials_.all().size() + b];
-  if (pair.own >= 0) return strength(std::size_t(pair.own), n, by_energy);
-  const auto one = strength(a, n, by_energy), other = strength(b, n, by_energy);
+  if (pair.own >= 0) return strength(std::size_t(pair.own), n, fineness);
+  const auto one = strength(a, n, fineness), other = strength(b, n, fineness);
   if (!one || !other) return one ? one : other;
   if (!same_law(kinds_[a].material->damage, kinds_[b].material->damage)) {
     return one->critical <= other->critical ? one : other;
@@ -209,8 +212,8 @@ bool BondMaterials::has_one_law() const {
 }
 
 BondMaterials::Failing BondMaterials::potential(const Bonds& bonds,
-                                                const std::vector<double>& by_energy) const {
-  Failing result = smooth_potential(bonds, by_energy);
+                                                const std::vector<double>& fineness) const {
+  Failing result = smooth_potential(bonds, fineness);
   if (from_.teeth == 0) return result;
   try {
     result.potential = with_teeth(result.potential, from_.teeth);
@@ -221,14 +224,14 @@ BondMaterials::Failing BondMaterials::potential(const Bonds& bonds,
 }
 
 BondMaterials::Failing BondMaterials::smooth_potential(const Bonds& bonds,
-                                                       const std::vector<double>& by_energy) const {
+                                                       const std::vector<double>& fineness) const {
   const auto fails = [](const Kind& kind) { return kind.material->damage.law != DamageLaw::none; };
   const auto failing = std::ranges::find_if(kinds_, fails);
   if (failing == kinds_.end()) return {bond_potential(*kinds_.front().material, modulus_), {}};
 
   Failing result{bond_potential(*failing->material, modulus_),
                  never_failing_bonds(all_materials(from_, materials_), points_, bonds)};
-  const bool has_one = has_one_law() && (by_energy.empty() || !are_any_by_energy());
+  const bool has_one = has_one_law() && (fineness.empty() || !are_any_by_energy());
   if (has_one && std::ranges::all_of(kinds_, fails)) return result;
   result.never_fails.resize(std::size_t(bonds.count()));
   std::vector<AnyBondLaw> laws;
@@ -237,7 +240,7 @@ BondMaterials::Failing BondMaterials::smooth_potential(const Bonds& bonds,
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       const Index j = bonds.partner[bond];
-      const double of_horizons = by_energy.empty() ? 1.0 : by_energy[std::size_t(bond)];
+      const double of_horizons = fineness.empty() ? 1.0 : fineness[std::size_t(bond)];
       const auto own =
           strength(materials_.of(i), materials_.of(j), direction(bonds, i, bond), of_horizons);
       if (!own) {

@@ -53,15 +53,15 @@ class BondMaterials {
     BondPotential potential;
     std::vector<char> never_fails;
   };
-  /// @param by_energy factors of stretches that follow from a fracture energy, per bond, see
-  ///        stretch_factors; empty: 1
+  /// @param fineness per bond, see fineness_of_bonds, for stretches that follow from a fracture
+  ///        energy; empty: 1
   [[nodiscard]] Failing potential(const Bonds& bonds,
-                                  const std::vector<double>& by_energy = {}) const;
+                                  const std::vector<double>& fineness = {}) const;
 
  private:
   /// The potential with smoothly falling laws, without a saw-tooth.
   [[nodiscard]] Failing smooth_potential(const Bonds& bonds,
-                                         const std::vector<double>& by_energy) const;
+                                         const std::vector<double>& fineness) const;
 
   /// Constants and law of one kind of bond.
   struct Kind {
@@ -80,11 +80,11 @@ class BondMaterials {
 
   [[nodiscard]] Coordinates direction(const Bonds& bonds, Index i, Offset bond) const;
   [[nodiscard]] double constant(std::size_t a, std::size_t b, const Coordinates& n) const;
-  /// @param by_energy factor of stretches that follow from a fracture energy
+  /// @param fineness the body's horizon over the bond's
   [[nodiscard]] std::optional<Strength> strength(std::size_t kind, const Coordinates& n,
-                                                 double by_energy) const;
+                                                 double fineness) const;
   [[nodiscard]] std::optional<Strength> strength(std::size_t a, std::size_t b, const Coordinates& n,
-                                                 double by_energy) const;
+                                                 double fineness) const;
   /// True if all bonds that fail have the same law with the same stretches.
   [[nodiscard]] bool has_one_law() const;
   /// True if the stretches of a material follow from a fracture energy.

@@ -416,6 +416,20 @@ DamageSpecification with_stretches(const DamageSpecification& damage, const std:
   return found;
 }
 
+LawStretches stretches_of(const DamageSpecification& damage, double fineness) {
+  if (damage.of_horizons.empty()) {
+    const double factor = std::sqrt(fineness);
+    return {factor * damage.onset, factor * damage.critical};
+  }
+  const double place = horizon_steps * std::log2(std::max(fineness, 1.0));
+  const std::size_t last = damage.of_horizons.size() - 1;
+  const std::size_t low = std::min(std::size_t(place), last), high = std::min(low + 1, last);
+  const double share = place - double(low);
+  const LawStretches &from = damage.of_horizons[low], &to = damage.of_horizons[high];
+  return {from.onset * std::pow(to.onset / from.onset, share),
+          from.critical * std::pow(to.critical / from.critical, share)};
+}
+
 double total_work(const DamageSpecification& damage) {
   return law_of(damage).work(Harmonic{1.0}, damage.critical);
 }

@@ -46,6 +46,17 @@ struct FractureScale {
                                                  const std::string& key,
                                                  const FractureScale& scale);
 
+/// Steps from one horizon to half of it in DamageSpecification::of_horizons, which has the
+/// stretches of the body's horizon times 2^(-k / horizon_steps) in entry k.
+inline constexpr int horizon_steps = 16;
+
+/// Stretches of bonds whose horizon is the body's over `fineness`, of a law by its fracture energy.
+/// G / (c A) = W is proportional to 1 / horizon, and so are squared stretches if the shape of the
+/// law is the same: with G alone. With a strength or onset beside G it is not. Then logarithms of
+/// stretches are interpolated linearly: within 1e-4 of those of the very horizon.
+/// @param fineness from 1 to that of the last entry
+[[nodiscard]] LawStretches stretches_of(const DamageSpecification& damage, double fineness);
+
 /// W of the whole law, for the modulus 1: c A W is the fracture energy of bonds.
 [[nodiscard]] double total_work(const DamageSpecification& damage);
 

@@ -10,6 +10,7 @@ namespace {
 /// True if a datum differs from its default.
 bool is_given(const DamageSpecification& damage, std::string_view key) {
   if (key == "fracture_energy") return damage.fracture_energy.has_value();
+  if (key == "fracture_toughness") return damage.fracture_toughness.has_value();
   if (key == "strength") return damage.strength.has_value();
   if (key == "critical") return damage.critical != 0.0;
   if (key == "onset") return damage.onset != 0.0;
@@ -19,9 +20,11 @@ bool is_given(const DamageSpecification& damage, std::string_view key) {
 /// Refuses a law with too little or too much data to find its stretches.
 void check_data(const DamageSpecification& damage, const std::string& table) {
   require_positive(damage.fracture_energy, table + "fracture_energy");
+  require_positive(damage.fracture_toughness, table + "fracture_toughness");
   require_positive(damage.strength, table + "strength");
   if (damage.law == DamageLaw::none) {
-    for (const std::string key : {"fracture_energy", "strength", "critical"}) {
+    for (const std::string key :
+         {"fracture_energy", "fracture_toughness", "strength", "critical"}) {
       require_absent(is_given(damage, key), table + key, "needs a law");
     }
     return;
@@ -30,16 +33,16 @@ void check_data(const DamageSpecification& damage, const std::string& table) {
     require_absent(is_given(damage, key) && is_idle(damage), table + key, why);
   }
   if (damage.law == DamageLaw::energy_density) {
-    require(damage.fracture_energy.has_value(), table + "fracture_energy", "", "is missing");
+    require(damage.has_fracture_energy(), table + "fracture_energy", "", "is missing");
     return;
   }
   require(is_given(damage, "critical") || is_sized(damage), table + "critical", "",
-          "is missing; give it, or fracture_energy");
+          "is missing; give it, fracture_energy or fracture_toughness");
   if (!damage.softens()) return;
   require(is_given(damage, "onset") || damage.is_by_data(), table + "onset", "",
           "is missing; give it, or strength");
   require(damage.law != DamageLaw::blended || is_given(damage, "peak") || damage.strength ||
-              (damage.fracture_energy && !is_given(damage, "onset")),
+              (damage.has_fracture_energy() && !is_given(damage, "onset")),
           table + "peak", "", "is missing; give it, or strength");
 }
 

@@ -9,7 +9,7 @@ namespace peristat {
 
 /// True if the critical stretch follows from other data.
 constexpr bool is_sized(const DamageSpecification& damage) {
-  return damage.fracture_energy || (damage.strength && !damage.softens());
+  return damage.has_fracture_energy() || (damage.strength && !damage.softens());
 }
 
 /// When a datum of a law has no effect, and why.
@@ -18,12 +18,15 @@ struct DamageRule {
   bool (*is_idle)(const DamageSpecification&);
   const char* why;
 };
-inline constexpr std::array<DamageRule, 9> damage_rules{
-    {{"strength", [](auto& damage) { return damage.law == DamageLaw::energy_density; },
+inline constexpr std::array<DamageRule, 10> damage_rules{
+    {{"fracture_toughness", [](auto& damage) { return damage.fracture_energy.has_value(); },
+      "is another way to give fracture_energy; give one of them"},
+     {"strength", [](auto& damage) { return damage.law == DamageLaw::energy_density; },
       "is for the laws of stretches"},
      {"critical", [](auto& damage) { return damage.law == DamageLaw::energy_density; },
       "is for the laws of stretches"},
-     {"critical", is_sized, "follows from fracture_energy or strength; give one of them"},
+     {"critical", is_sized,
+      "follows from fracture_energy, fracture_toughness or strength; give one of them"},
      {"onset", [](auto& damage) { return !damage.softens(); }, "is for the laws that soften"},
      {"onset", [](auto& damage) { return damage.strength && damage.law != DamageLaw::blended; },
       "follows from strength; give one of them"},

@@ -38,6 +38,11 @@ enum class DamageLaw {
   blended
 };
 
+/// Stretches of a law of bonds; those of `critical_stretch` are equal.
+struct LawStretches {
+  double onset = 0.0, critical = 0.0;
+};
+
 struct DamageSpecification {
   DamageLaw law = DamageLaw::none;
   double onset = 0.0;                  ///< s_m, of the laws that soften
@@ -49,16 +54,24 @@ struct DamageSpecification {
   /// In the place of `critical`: fracture energy of a plane crack, the mean over its directions
   /// [J/m2].
   std::optional<double> fracture_energy{};
+  /// In the place of `fracture_energy`: toughness K_Ic of a plane crack, see with_fracture_energy
+  /// [Pa sqrt(m)].
+  std::optional<double> fracture_toughness{};
   /// In the place of `onset` (of `critical` for the law critical_stretch): largest stress of the
   /// bulk under a pull, see with_stretches [Pa].
   std::optional<double> strength{};
   /// True if the stretches were computed from a fracture energy: those of a bond then depend on the
   /// horizons of its points, and these are for the body's horizon.
   bool is_by_energy = false;
+  /// Stretches by horizon, see stretches_of; empty: proportional to the root of 1 / horizon.
+  std::vector<LawStretches> of_horizons{};
 
+  [[nodiscard]] constexpr bool has_fracture_energy() const {
+    return fracture_energy || fracture_toughness;
+  }
   /// True if some stretches are still to be computed from these data.
   [[nodiscard]] bool is_by_data() const {
-    return law != DamageLaw::energy_density && (fracture_energy || strength);
+    return law != DamageLaw::energy_density && (has_fracture_energy() || strength);
   }
 
   /// True if bonds break one by one, by their stretches.

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "cases/runner/commands/unknown_option.hpp"
-#include "cases/runner/input/unit_remark.hpp"
 #include "cases/runner/process/folded_text.hpp"
 #include "cases/runner/process/time_left.hpp"
 
@@ -62,17 +61,6 @@ TEST(TimeLeft, SaysNothingWhileTheRateChangesOrBondsBreak) {
   TimeLeft instant;
   for (int step = 1; step <= 8; ++step) instant.accepted(0.0, 0.1 * step, false);
   EXPECT_FALSE(instant.seconds());
-}
-
-TEST(RemarkOnUnit, TellsTheNumberInSIUnits) {
-  EXPECT_EQ(remark_on_unit("3.2 GPa"),
-            "; numbers carry no unit, all are in SI units: write 3.2e+09");
-  EXPECT_EQ(remark_on_unit(" 5mm  # wide"),
-            "; numbers carry no unit, all are in SI units: write 0.005");
-  EXPECT_EQ(remark_on_unit("20 %"), "; numbers carry no unit, all are in SI units");
-  for (const std::string text : {"", "1e-3", "fine", "3, 4", "-2.5  # m", "[1, 2]", "1e-3*load"}) {
-    EXPECT_EQ(remark_on_unit(text), "") << text;
-  }
 }
 
 TEST(DescribeUnknown, NamesTheKeyOrTheOptionThatWasMeant) {

@@ -125,6 +125,20 @@ INSTANTIATE_TEST_SUITE_P(
                of.material.damage = {.law = DamageLaw::critical_stretch, .critical = 0.02};
                of.material.damage.fracture_energy = 10.0;
              }},
+        Rule{
+            "ToughnessBesideAnEnergy", "material.damage.fracture_toughness",
+            damage + "law = \"critical_stretch\"\nfracture_energy = 10.0\nfracture_toughness = 1e6",
+            [](auto& of) {
+              of.material.damage = {.law = DamageLaw::critical_stretch};
+              of.material.damage.fracture_energy = 10.0;
+              of.material.damage.fracture_toughness = 1e6;
+            }},
+        Rule{"CriticalBesideAToughness", "material.damage.critical",
+             damage + "law = \"critical_stretch\"\nfracture_toughness = 1e6\ncritical = 0.02",
+             [](auto& of) {
+               of.material.damage = {.law = DamageLaw::critical_stretch, .critical = 0.02};
+               of.material.damage.fracture_toughness = 1e6;
+             }},
         Rule{"PeakOfALinearLaw", "material.damage.peak",
              damage + "law = \"linear\"\nonset = 0.01\npeak = 0.015\ncritical = 0.02",
              [](auto& of) {
@@ -176,9 +190,9 @@ TEST(RefusedAlikeWithPoints, WhatNeedsOneHorizon) {
   refused.emplace_back("[material]\nmicromodulus = 1.0", make(MaterialModel::bond));
   refused.back().second.material.youngs_modulus.reset();
   refused.back().second.material.micromodulus = 1.0;
-  refused.emplace_back(damage + "law = \"linear\"\nfracture_energy = 10.0\nstrength = 1e6",
+  refused.emplace_back(damage + "law = \"blended\"\nfracture_energy = 10.0\nstrength = 1e6",
                        make(MaterialModel::bond));
-  refused.back().second.material.damage.law = DamageLaw::linear;
+  refused.back().second.material.damage.law = DamageLaw::blended;
   refused.back().second.material.damage.fracture_energy = 10.0;
   refused.back().second.material.damage.strength = 1e6;
   refused.emplace_back("[quadrature]\nvolume_correction = \"exact\"\n" + bond,

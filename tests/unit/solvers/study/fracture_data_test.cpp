@@ -153,6 +153,41 @@ TEST(FractureData, OfTheWrongUnitAreNotCalledThoseOfATanhLaw) {
   EXPECT_TRUE(tells(told, "The strength is in Pa: 3 MPa are 3e6")) << told;
 }
 
+/// G = K^2 / E' with the Poisson ratio of the model.
+TEST(FractureToughness, GivesTheFractureEnergyOfEveryModel) {
+  constexpr double modulus = 70e9, toughness = 0.8e6;
+  struct Of {
+    MaterialModel model;
+    int dimension;
+    PlaneState plane;
+    double poisson_ratio;
+    bool is_thin;
+  };
+  for (const Of& of : {Of{MaterialModel::bond, 2, PlaneState::stress, 1.0 / 3.0, true},
+                       Of{MaterialModel::bond, 2, PlaneState::strain, 0.25, false},
+                       Of{MaterialModel::bond, 3, PlaneState::stress, 0.25, false},
+                       Of{MaterialModel::lps, 2, PlaneState::strain, 0.4, false},
+                       Of{MaterialModel::lps, 2, PlaneState::stress, 0.4, true},
+                       Of{MaterialModel::cpd, 2, PlaneState::stress, 0.4, true},
+                       Of{MaterialModel::cpd, 3, PlaneState::stress, 0.3, false}}) {
+    BondSetting setting{{of.dimension, 2.015e-3, 1.0}, of.plane};
+    setting.lattice = {Spacing(1e-3)};
+    MaterialSpecification material;
+    material.model = of.model;
+    material.plane = of.plane;
+    material.youngs_modulus = modulus;
+    if (of.model != MaterialModel::bond) material.poisson_ratio = of.poisson_ratio;
+    material.damage = law(DamageLaw::critical_stretch);
+    material.damage.fracture_toughness = toughness;
+    const MaterialSpecification found = with_fracture_energy(material, "m", setting, 1e-3);
+    const double nu = of.poisson_ratio;
+    const double effective = of.is_thin ? modulus : modulus / (1.0 - nu * nu);
+    EXPECT_NEAR(*found.damage.fracture_energy / (toughness * toughness / effective), 1.0, 1e-12)
+        << int(of.model) << " in " << of.dimension;
+    EXPECT_FALSE(found.damage.fracture_toughness);
+  }
+}
+
 /// The strength is that of the body, whatever its lattice and law, not E times the force of a bond.
 TEST(FractureData, GiveABodyItsStrength) {
   for (const int dimension : {2, 3}) {

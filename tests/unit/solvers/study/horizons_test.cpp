@@ -13,7 +13,8 @@
 
 #include "assembly/assembler.hpp"
 #include "solvers/body/body.hpp"
-#include "solvers/formulations/materials/bond_materials.hpp"
+#include "solvers/formulations/formulations.hpp"
+#include "solvers/formulations/materials/fracture_data.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/point_sizes.hpp"
 #include "src/neighbourhood/influence.hpp"
@@ -272,13 +273,13 @@ TEST(HorizonsOfPoints, AreRefusedWhereOneNumberIsNeeded) {
        }},
       {"material.damage.strength",
        [](auto& of) {
-         of.material.damage.law = DamageLaw::linear;
+         of.material.damage.law = DamageLaw::blended;
          of.material.damage.fracture_energy = 1.0;
          of.material.damage.strength = 1e-3;
        }},
       {"material.damage.onset",
        [](auto& of) {
-         of.material.damage.law = DamageLaw::linear;
+         of.material.damage.law = DamageLaw::blended;
          of.material.damage.fracture_energy = 1.0;
          of.material.damage.onset = 1e-3;
        }},
@@ -347,6 +348,41 @@ TEST(HorizonsOfPoints, GiveBondsTheStretchOfTheirEnergy) {
     most = std::max(most, found);
   });
   EXPECT_GT(most / least, 1.7);  // of sizes of 4 to 1: nearly 2
+}
+
+/// With a strength or an onset beside the fracture energy a bond has the law of its own horizon.
+TEST(HorizonsOfPoints, GiveBondsTheStrengthOfTheirHorizon) {
+  for (const DamageLaw law : {DamageLaw::linear, DamageLaw::exponential, DamageLaw::tanh}) {
+    for (const bool has_strength : {true, false}) {
+      BodySpecification of = with_ratio(2);
+      of.material.damage.law = law;
+      of.material.damage.fracture_energy = 1e-3;
+      if (has_strength) of.material.damage.strength = 0.03;
+      if (!has_strength) of.material.damage.onset = 5e-3;
+      const DamageSpecification damage = of.material.damage;
+      const auto body = make_body(graded_cloud(2), of, 1);
+      const Points& points = body->points;
+      const Bonds& bonds = body->model.bonds();
+      const auto& laws =
+          std::get<DegradedByBond<Harmonic>>(body->model.bond_failure()->potential());
+      const std::vector<double> fineness = fineness_of_bonds(points, bonds, body->setting);
+      int compared = 0;
+      for (Offset bond = 0; bond < bonds.count(); bond += 97, ++compared) {
+        BondSetting own = body->setting;
+        own.horizon /= fineness[std::size_t(bond)];
+        const FractureScale scale = fracture_scale_of(of.material, "material", own, own.horizon);
+        const DamageSpecification expected = with_stretches(damage, "material", scale);
+        const AnyBondLaw found = laws.laws->at(bond);
+        ASSERT_NEAR(found.onset() / expected.onset, 1.0, 2e-4);
+        ASSERT_NEAR(found.critical() / expected.critical, 1.0, 2e-4);
+        ASSERT_NEAR(found.work(Harmonic{1.0}, found.critical()) / total_work(expected), 1.0, 2e-4);
+      }
+      EXPECT_GT(compared, 10);
+      const auto [least, most] = std::ranges::minmax(fineness);
+      EXPECT_LT(least, 1.2);
+      EXPECT_GT(most, 3.0);
+    }
+  }
 }
 
 /// A quarter of a ring from radius 1 to 4.25 of rectangles whose sizes grow as the radius.

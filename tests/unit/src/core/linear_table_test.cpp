@@ -27,8 +27,11 @@ class LinearTables : public ::testing::Test {
   }
   ~LinearTables() override { std::filesystem::remove_all(folder_); }
 
-  LinearTable read(const std::string& text, const std::string& column = "") const {
+  void write(const std::string& text) const {
     std::ofstream(file(), std::ios::binary) << text;
+  }
+  LinearTable read(const std::string& text, const std::string& column = "") const {
+    write(text);
     return {file(), column};
   }
 
@@ -97,7 +100,7 @@ TEST_F(LinearTables, NameTheLineOfWhatIsWrong) {
 }
 
 TEST_F(LinearTables, StandInExpressions) {
-  (void)read("t u v\n0 1 0\n2 3 4\n");
+  write("t u v\n0 1 0\n2 3 4\n");
   const Expression of_load = expression("'u', load^2 + 0*max(x, 1)");
   EXPECT_EQ(of_load({}, std::array{1.0}), 4.0);
   EXPECT_TRUE(of_load.has_parameters());
@@ -143,7 +146,7 @@ TEST_F(LinearTables, RefuseCallsThatAreNone) {
            "max(" + name + ", x)"}) {
     EXPECT_THROW((void)Expression(text, 1, 1.0)({}), InputError) << text;
   }
-  EXPECT_EQ(Expression("table (\t" + name + " , x)", 1, 1.0)({1, 0, 0}), 2.0);
+  EXPECT_EQ(Expression("table(\t" + name + " , x )", 1, 1.0)({1, 0, 0}), 2.0);
 }
 
 TEST_F(LinearTables, GetOtherNames) {

@@ -43,6 +43,22 @@ class PointFile : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
+TEST_F(PointFile, IsInTheUnitOfLengthToTheLastBit) {
+  const std::string text = "x,y,volume\n0.1,0.3,0.7\n1.1,-2.5e0,0.7\n";
+  static_cast<void>(read(text));
+  const auto in_unit = [&](double unit) { return read_points(file(), 2, unit, {}, unit); };
+  const Points mm = in_unit(1e-3), um = in_unit(1e-6), inches = in_unit(0.0254);
+  EXPECT_EQ(mm.reference, (std::vector<double>{1e-4, 3e-4, 1.1e-3, -2.5e-3}));
+  EXPECT_EQ(mm.volume, (std::vector<double>{0.7e-9, 0.7e-9}));
+  EXPECT_EQ(um.reference, (std::vector<double>{1e-7, 3e-7, 1.1e-6, -2.5e-6}));
+  EXPECT_DOUBLE_EQ(inches.reference[3], -2.5 * 0.0254);
+  EXPECT_DOUBLE_EQ(inches.volume[0], 0.7 * 0.0254 * 0.0254 * 0.0254);
+  EXPECT_EQ(source_rows(file(), mm, 2, 1e-3), (std::vector<std::int32_t>{0, 1}));
+  EXPECT_EQ(source_rows(file(), mm, 2), (std::vector<std::int32_t>{-1, -1}));
+  static_cast<void>(read("x,y,volume\n0,0,1e-320\n"));
+  EXPECT_THROW(static_cast<void>(in_unit(1e-3)), InputError);
+}
+
 const std::vector<double> three_places{0, 0, 1, 0, 2, 0};
 
 TEST_F(PointFile, ReadsCommaSeparatedColumnsInAnyOrder) {
