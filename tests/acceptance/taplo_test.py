@@ -22,7 +22,7 @@ VALID = """#:schema SCHEMA
 dimension = 2
 [lattice]
 spacing = 1e-3
-thickness = 1.0
+thickness = "1000 mm"
 [[lattice.shape]]
 add = "box"
 min = [0, 0.0]
@@ -43,7 +43,7 @@ set = "left"
 displacement = [0, "0.0"]
 [[support]]
 set = "corner"
-displacement = ["1e-5*load", "free"]
+displacement = ["0.01 mm * load", "free"]
 [loading]
 steps = 2
 adaptive = true

@@ -1,20 +1,14 @@
 #include "cases/runner/input/value_schema.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "cases/runner/input/quantity.hpp"
 
 namespace peristat {
 namespace {
 
-/// True if a number of this unit may be a text with a unit of its own.
-bool has_dimension(const std::string& unit) {
-  constexpr std::array without{"", "-", "1", "degrees", "rad", "per K", "spacings"};
-  return std::ranges::find(without, unit) == without.end();
-}
-
-/// Pattern of a number, and a unit behind it.
-constexpr const char* quantity = R"(^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[^\s\d.eE].*$)";
+/// Pattern of a number, and a unit behind it: "210 GPa", "2.5mm", "1e-5 1/K".
+constexpr const char* quantity = R"(^ *[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)? *( 1/)?[^ \d.eE].*$)";
 
 void add_limits(JsonObject& schema, const Range& range) {
   if (!range.limits_are_remote)
@@ -29,7 +23,7 @@ void add_limits(JsonObject& schema, const Range& range) {
 
 JsonObject number_schema(const Range& range, const std::string& unit) {
   std::vector<std::string> types{"number"};
-  if (has_dimension(unit)) types.emplace_back("string");
+  if (is_unit_of_measure(unit)) types.emplace_back("string");
   if (std::isinf(range.high)) types.emplace_back("null");  // JSON has no infinity
   JsonObject schema;
   if (types.size() == 1)
@@ -37,7 +31,7 @@ JsonObject number_schema(const Range& range, const std::string& unit) {
   else
     schema.add("type", types);
   add_limits(schema, range);
-  if (has_dimension(unit)) schema.add("pattern", quantity);
+  if (is_unit_of_measure(unit)) schema.add("pattern", quantity);
   return schema;
 }
 

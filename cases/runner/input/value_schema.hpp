@@ -12,7 +12,7 @@
 namespace peristat {
 
 /// A number of the range. Remote limits only say whether it may be zero or negative. With a
-/// dimension also a text such as "210 GPa".
+/// unit of measure also a text such as "210 GPa".
 [[nodiscard]] JsonObject number_schema(const Range& range, const std::string& unit);
 [[nodiscard]] JsonObject integer_schema(std::int64_t low, std::int64_t high);
 [[nodiscard]] JsonObject boolean_schema();

@@ -103,7 +103,7 @@ class CaseSchema(unittest.TestCase):
         modulus = self.table("material")["properties"]["youngs_modulus"]
         self.assertEqual((modulus["type"], modulus["exclusiveMinimum"]), (["number", "string"], 0))
         self.assertIn("[Pa]", modulus["description"])
-        for text, is_quantity in {"210 GPa": 1, "2.5e-3mm": 1, "-1 N/m": 1, "5 °C": 1, "GPa": 0, "210": 0, "2e3": 0, "1.5.2": 0}.items():
+        for text, is_quantity in {"210 GPa": 1, "2.5e-3mm": 1, "-1 N/m": 1, "5 °C": 1, "1e-5 1/K": 1, "GPa": 0, "210": 0, "2e3": 0, "1.5.2": 0}.items():
             self.assertEqual(bool(re.search(modulus["pattern"], text)), bool(is_quantity), text)
         self.assertIn("adaptive", self.table("solver")["properties"]["mode"]["enum"])
         vertices = self.table("set.shape.polygon")["properties"]["vertices"]
