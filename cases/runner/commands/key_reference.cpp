@@ -27,8 +27,9 @@ std::string header(const TableDescription& table) {
   return table.is_array ? "`[[" + table.name + "]]`" : "`[" + table.name + "]`";
 }
 
-/// The table that a key of another one names; null if it has a value.
+/// The table that a key of another one names; null if it has a value, which may be a table, too.
 const TableDescription* table_of(const TableDescription& table, const KeyDescription& key) {
+  if (!key.allowed.empty()) return nullptr;
   const std::string name = table.name.empty() ? key.name : table.name + "." + key.name;
   const auto found = std::ranges::find(table_descriptions(), name, &TableDescription::name);
   return found == table_descriptions().end() ? nullptr : &*found;

@@ -183,8 +183,7 @@ const Table<PointHorizon>& point_horizon_keys() {
       "points.horizon",
       {K("ratio", &PointHorizon::ratio, between(1.0, 1000.0),
          "horizon of each point over its size, the edge of a square or cube of its volume")
-           .required()
-           .on_ranks()}};
+           .required()}};
   return keys;
 }
 
