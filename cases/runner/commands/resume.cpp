@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,19 @@ std::string case_text(const EarlierRun& earlier, const Settings& settings) {
                   "again with `run`; give keys that only extend a run with --set",
                   fmt::join(changes, "; ")),
       earlier.case_file().string());
+}
+
+/// Refuses files that have changed since the run began.
+void require_same_files(const EarlierRun& earlier, const Case& from) {
+  if (earlier.files().empty()) return;
+  std::istringstream lines(checksums_of_files(from));
+  for (std::string line; std::getline(lines, line);) {
+    if (("\n" + earlier.files()).find("\n" + line + "\n") != std::string::npos) continue;
+    throw InputError("", "",
+                     "has changed since the run began, which reads it. Restore it to resume, or "
+                     "start again with `run`",
+                     line.substr(line.find(' ') + 1));
+  }
 }
 
 LoadingProgramme programme_of(const Case& from) {
@@ -113,6 +127,7 @@ Exit resume(const std::filesystem::path& directory, const Settings& settings,
   all.insert(all.end(), settings.begin(), settings.end());
   const Case from = read_case(earlier.case_file(), text, all);
   if (ranks.count() > 1) refuse_keys_without_ranks(from);
+  require_same_files(earlier, from);
   require_same_beginning(programme_of(then), programme_of(from), earlier.checkpoint().path);
   require_stand_in(earlier.checkpoint().path, from);
   if (std::any_of(settings.begin(), settings.end(),

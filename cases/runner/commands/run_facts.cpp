@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <variant>
 #include <vector>
 
@@ -34,8 +37,9 @@ std::filesystem::path resolved(const std::filesystem::path& path) {
   return error ? std::filesystem::absolute(path).lexically_normal() : found;
 }
 
-std::vector<std::filesystem::path> inputs(const Case& from) {
-  std::vector<std::filesystem::path> files{from.file};
+/// Files that the case reads.
+std::vector<std::filesystem::path> files_of(const Case& from) {
+  std::vector<std::filesystem::path> files;
   if (const auto* points = std::get_if<PointSource>(&from.body)) {
     files.push_back(points->file);
     if (!points->neighbours.empty()) files.push_back(points->neighbours);
@@ -50,7 +54,30 @@ std::vector<std::filesystem::path> inputs(const Case& from) {
   return files;
 }
 
+std::vector<std::filesystem::path> inputs(const Case& from) {
+  std::vector<std::filesystem::path> files = files_of(from);
+  files.emplace_back(from.file);
+  return files;
+}
+
+/// FNV-1a.
+std::uint64_t checksum(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::uint64_t sum = 14695981039346656037U;
+  for (auto at = std::istreambuf_iterator<char>(stream); at != std::istreambuf_iterator<char>();
+       ++at)
+    sum = (sum ^ static_cast<unsigned char>(*at)) * 1099511628211U;
+  return sum;
+}
+
 }  // namespace
+
+std::string checksums_of_files(const Case& from) {
+  std::string lines;
+  for (const std::filesystem::path& file : files_of(from))
+    lines += fmt::format("{:016x} {}\n", checksum(file), file.string());
+  return lines;
+}
 
 void keep_inputs_and_log_apart(const Case& from, const std::string& log_file) {
   const std::filesystem::path results = resolved(from.output.directory);

@@ -27,6 +27,9 @@ void keep_inputs_and_log_apart(const Case& from, const std::string& log_file);
 /// Canonical path of the case file, by which a later run recognises it.
 [[nodiscard]] std::filesystem::path identity(const std::filesystem::path& case_file);
 
+/// Checksum and path of each file that the case reads, in a line each.
+[[nodiscard]] std::string checksums_of_files(const Case& from);
+
 /// Names of the sets and constraints whose reactions are reported.
 [[nodiscard]] std::vector<std::string> support_sets(const Case& from);
 

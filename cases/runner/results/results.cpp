@@ -263,6 +263,10 @@ void Results::Files::describe(const CaseText& text) {
   master.write("/case/as_read", text.as_read, {"none", "text of the case file (TOML)"});
   master.write("/case/as_resolved", text.as_resolved,
                {"none", "the case with overrides and defaults in place (TOML)"});
+  if (!text.files.empty()) {
+    master.write("/case/files", text.files,
+                 {"none", "checksum (FNV-1a) and path of each file that the case reads"});
+  }
   write_settings(master, text.settings);
   master.make_table("/history", history_header);
   master.make_table("/iterations", iteration_columns());
