@@ -59,6 +59,8 @@ std::vector<Coordinates> MeshInterior::places(const FacetPart& part) const {
   return at;
 }
 
+/// A bond that leaves through a part of the boundary goes from the inner side of its plane to the
+/// outer one.
 bool MeshInterior::may_leave(const Coordinates& a, const Coordinates& b) const {
   const int dimension = mesh_->dimension;
   const Box around = box_with({a, b}, dimension, 0.0);
@@ -68,10 +70,10 @@ bool MeshInterior::may_leave(const Coordinates& a, const Coordinates& b) const {
     const Coordinates along = minus(at[1], at[0]);
     Coordinates normal{along[1], -along[0], 0.0};
     if (dimension == 3) normal = cross(along, minus(at[2], at[0]));
-    const double slack = 1e-6 * boundary_slack_[part] * length(normal);
+    const double slack = boundary_slack_[part] * length(normal);
     const double height_a = dot(normal, minus(a, at[0]));
     const double height_b = dot(normal, minus(b, at[0]));
-    return std::max(height_a, height_b) > -slack && std::min(height_a, height_b) < slack;
+    return std::max(height_a, height_b) > slack && std::min(height_a, height_b) <= slack;
   });
 }
 
