@@ -52,6 +52,18 @@ MeshInterior::MeshInterior(std::shared_ptr<const MeshBody> of) : mesh_(std::move
   boundary_ = BoxGrid(mesh.dimension, boundary_boxes_, mean);
 }
 
+double MeshInterior::bytes() const {
+  const auto of = [](const auto& values) {
+    return double(values.size()) * double(sizeof(values.front()));
+  };
+  const MeshElements& elements = mesh_->elements;
+  return of(elements.nodes) + of(elements.kind) + of(elements.offset) + of(elements.corners) +
+         of(mesh_->file_element) + of(mesh_->measure) + of(mesh_->centroid) + of(mesh_->boundary) +
+         of(first_part_) + of(element_parts_) + of(slack_) + of(element_boxes_) +
+         of(boundary_parts_) + of(boundary_slack_) + of(boundary_boxes_) + elements_.bytes() +
+         boundary_.bytes();
+}
+
 std::vector<Coordinates> MeshInterior::places(const FacetPart& part) const {
   std::vector<Coordinates> at;
   for (std::size_t k = 0; k < std::size_t(mesh_->dimension); ++k)

@@ -27,6 +27,9 @@ class MeshInterior {
   [[nodiscard]] bool leaves(const Coordinates& a, const Coordinates& b,
                             const std::vector<ImageKind>& kinds) const;
 
+  /// Memory of this and of the mesh.
+  [[nodiscard]] double bytes() const;
+
  private:
   [[nodiscard]] bool may_leave(const Coordinates& a, const Coordinates& b) const;
   /// Appends the stretches of a bond that elements cover.
