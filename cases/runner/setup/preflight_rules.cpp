@@ -98,10 +98,11 @@ void add_stiffnesses(const Preflight& of, Warnings& warnings) {
   constexpr double no_dimension = 2.5;  // moduli of problems without units are about 1
   for (const auto& [key, modulus] : of.stiffnesses) {
     if (modulus <= no_dimension || modulus >= softest_gel) continue;
-    warnings.push_back(fmt::format(
-        "{} = {:g} Pa is softer than any solid; numbers without a unit are in SI units: {:g} GPa is {:g}e9, "
-        "{:g} MPa is {:g}e6",
-        key, modulus, modulus, modulus, modulus, modulus));
+    warnings.push_back(
+        fmt::format("{} = {:g} Pa is softer than any solid; numbers without a unit are in SI "
+                    "units: {:g} GPa is {:g}e9, "
+                    "{:g} MPa is {:g}e6",
+                    key, modulus, modulus, modulus, modulus, modulus));
   }
 }
 
