@@ -113,11 +113,8 @@ TEST(UnitParser, RefusesWhatIsNoUnit) {
                            "sqrt(m",
                            "sqrt(m)^0.5",
                            "sqrt(sqrt(m))",
-<<<<<<< HEAD
-=======
                            "((((m^99)^99)^99)^99)",
                            "(((%^99)^99)^99)^99",
->>>>>>> units
                            "((((((m",
                            "1",
                            "5",
