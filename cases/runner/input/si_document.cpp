@@ -167,9 +167,9 @@ class Conversion {
 
  private:
   /// Converts the times of a table over time, pairs of a time and a load.
-  void convert_times(TomlValue& table, const std::string& path) const {
+  void convert_times(TomlValue& table, const std::string& path) {
     if (table.kind != TomlValue::Kind::array) return;
-    const KeyConversion time(ValueForm::number, "s", units_, file_);
+    const KeyConversion time(ValueForm::number, "s", units_, file_, typed);
     for (std::size_t k = 0; k < table.items.size(); ++k) {
       std::vector<TomlValue>& pair = table.items[k].items;
       if (!pair.empty()) time.convert(pair[0], path + "[" + std::to_string(k) + "][0]");
