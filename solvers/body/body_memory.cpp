@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "src/geometry/mesh_interior.hpp"
 #include "src/parallel/index_map.hpp"
 
 namespace peristat {
@@ -86,6 +87,7 @@ MemoryEstimate estimate_memory(const Body& body) {
   if (body.specification.eigenstrains.are_there()) {
     estimate.body_bytes += states_with_environment * sizeof(double) * double(body.points.count());
   }
+  if (body.points.interior) estimate.body_bytes += body.points.interior->bytes();
   return estimate;
 }
 

@@ -35,6 +35,10 @@ class BoxGrid {
     return false;
   }
 
+  [[nodiscard]] double bytes() const {
+    return double(offset_.size() * sizeof(std::size_t) + members_.size() * sizeof(Index));
+  }
+
  private:
   using Range = std::array<std::size_t, 3>;
   /// Cell of a place, the nearest one if it is outside of the grid.

@@ -52,6 +52,7 @@ class MeshReading {
     measure_elements();
     refuse_nodes_at_one_place();
     find_mesh_boundary(*body_, file_);
+    remark_idle_faces();
     take_groups();
     return body_;
   }
@@ -225,6 +226,28 @@ class MeshReading {
            std::to_string(numbers[std::size_t(pair->first)] + 1) +
            ": elements are joined by common nodes only, so the body would be parted there; merge "
            "the nodes, and give a crack as [[crack]]");
+  }
+
+  /// Shells and the like are no part of the body.
+  void remark_idle_faces() {
+    const std::size_t corners_of_line = 2;
+    std::vector<std::vector<Index>> around(body_->node_count());
+    for (std::size_t e = 0; e < body_->count(); ++e)
+      for (const Index node : body_->corners_of(e)) around[std::size_t(node)].push_back(Index(e));
+    const auto idle = std::ranges::count_if(lower_, [&](const auto& element) {
+      const std::vector<Index>& nodes = element.second;
+      const bool is_side = (nodes.size() == corners_of_line) == (body_->dimension == 2);
+      return is_side && nodes.size() > 1 &&
+             std::ranges::none_of(around[std::size_t(nodes[0])], [&](Index e) {
+               const std::vector<Index> corners = body_->corners_of(std::size_t(e));
+               return std::ranges::all_of(
+                   nodes, [&](Index node) { return std::ranges::count(corners, node) > 0; });
+             });
+    });
+    if (idle > 0)
+      body_->remarks.push_back(
+          count_words(std::size_t(idle), body_->dimension == 2 ? "line" : "face") +
+          " that are no side of an element are left out");
   }
 
   /// Refuses names that tables and datasets of results can't have.

@@ -52,6 +52,18 @@ MeshInterior::MeshInterior(std::shared_ptr<const MeshBody> of) : mesh_(std::move
   boundary_ = BoxGrid(mesh.dimension, boundary_boxes_, mean);
 }
 
+double MeshInterior::bytes() const {
+  const auto of = [](const auto& values) {
+    return double(values.size()) * double(sizeof(values.front()));
+  };
+  const MeshElements& elements = mesh_->elements;
+  return of(elements.nodes) + of(elements.kind) + of(elements.offset) + of(elements.corners) +
+         of(mesh_->file_element) + of(mesh_->measure) + of(mesh_->centroid) + of(mesh_->boundary) +
+         of(first_part_) + of(element_parts_) + of(slack_) + of(element_boxes_) +
+         of(boundary_parts_) + of(boundary_slack_) + of(boundary_boxes_) + elements_.bytes() +
+         boundary_.bytes();
+}
+
 std::vector<Coordinates> MeshInterior::places(const FacetPart& part) const {
   std::vector<Coordinates> at;
   for (std::size_t k = 0; k < std::size_t(mesh_->dimension); ++k)
@@ -59,6 +71,8 @@ std::vector<Coordinates> MeshInterior::places(const FacetPart& part) const {
   return at;
 }
 
+/// A bond that leaves through a part of the boundary goes from the inner side of its plane to the
+/// outer one.
 bool MeshInterior::may_leave(const Coordinates& a, const Coordinates& b) const {
   const int dimension = mesh_->dimension;
   const Box around = box_with({a, b}, dimension, 0.0);
@@ -68,10 +82,10 @@ bool MeshInterior::may_leave(const Coordinates& a, const Coordinates& b) const {
     const Coordinates along = minus(at[1], at[0]);
     Coordinates normal{along[1], -along[0], 0.0};
     if (dimension == 3) normal = cross(along, minus(at[2], at[0]));
-    const double slack = 1e-6 * boundary_slack_[part] * length(normal);
+    const double slack = boundary_slack_[part] * length(normal);
     const double height_a = dot(normal, minus(a, at[0]));
     const double height_b = dot(normal, minus(b, at[0]));
-    return std::max(height_a, height_b) > -slack && std::min(height_a, height_b) < slack;
+    return std::max(height_a, height_b) > slack && std::min(height_a, height_b) <= slack;
   });
 }
 

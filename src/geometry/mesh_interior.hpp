@@ -15,7 +15,8 @@ namespace peristat {
 /// A bond leaves the body if elements do not cover its whole length. An element is divided into
 /// triangles (2D) or tetrahedra from its centroid to its sides, each widened by a thousandth of the
 /// element's size: so bonds along the boundary stay, and bonds that pass outside by less than that.
-/// The test is needed only for bonds that meet the planes of facets of the boundary near them.
+/// The test is needed only for bonds that go to the outer side of a facet of the boundary near
+/// them.
 class MeshInterior {
  public:
   explicit MeshInterior(std::shared_ptr<const MeshBody> mesh);
@@ -25,6 +26,9 @@ class MeshInterior {
   /// @param kinds of the body's images
   [[nodiscard]] bool leaves(const Coordinates& a, const Coordinates& b,
                             const std::vector<ImageKind>& kinds) const;
+
+  /// Memory of this and of the mesh.
+  [[nodiscard]] double bytes() const;
 
  private:
   [[nodiscard]] bool may_leave(const Coordinates& a, const Coordinates& b) const;

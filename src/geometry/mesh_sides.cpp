@@ -73,9 +73,11 @@ void refuse_overlap(const MeshBody& body, const std::string& file, const Element
   if (sorted(a.element) == sorted(b.element))
     refuse_mesh(file, both + " have the same nodes: the mesh has an element twice");
   if (!see_same_order(nodes_of(body, a), nodes_of(body, b))) return;
-  refuse_mesh(file, both +
-                        " lie on the same side of the side that they share, and so overlap: one "
-                        "of them is inverted, or a node is in a wrong place");
+  refuse_mesh(file,
+              both +
+                  " lie on the same side of the side that they share, and so overlap: one "
+                  "of them is inverted, or a node is in a wrong place; mesh again, perhaps with "
+                  "another algorithm or size");
 }
 
 /// Parts of the boundary's facets, with a grid to find them.

@@ -282,7 +282,7 @@ class Tables(Folder):
         # The resolved case is complete: it may be moved.
         with h5py.File(read / "results.h5") as file:
             resolved = file["case/as_resolved"].asstr()[()]
-            self.assertIn("amplitude.csv", file["case/tables"].asstr()[()])
+            self.assertIn("amplitude.csv", file["case/files"].asstr()[()])
         moved = self.run_case(self.write("elsewhere/case.toml", resolved), name="moved")
         numpy.testing.assert_array_equal(displacements[1], [step.displacement for step in Results(moved).steps])
 

@@ -219,6 +219,10 @@ class Bodies(Comparison):
             self.assertEqual(list(row), list(several["points/source_row"][()]))
             places = [[float(word) for word in rows[1 + k].split(",")[:2]] for k in row]
             self.assertEqual(places, several["points/reference"][()].tolist())
+        scaled = self.compare_settings(text, 'points.length_unit="2 m"', "points.horizon=0.32", 'points.thickness="2 cm"', 'units.stress="kPa"',
+                                       ranks=(2,))  # fmt: skip
+        with h5py.File(scaled / "results.h5") as file:
+            self.assertEqual([[2 * x for x in place] for place in places], file["points/reference"][()].tolist())
 
     def test_a_horizon_per_point(self):
         ring = GradedRing(16)

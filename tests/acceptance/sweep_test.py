@@ -232,6 +232,13 @@ class Sweep(Folder):
         self.write("points.csv", "x, y, volume, set\n" + "\n".join(rows[:-1]) + "\n")
         self.assert_ends(self.sweep("--vary", "loading.steps=1"), 0, "done")
 
+    def test_a_changed_outline_runs_again(self):
+        hole = '[[lattice.shape]]\nsubtract = "polygon"\nfile = "outline.csv"\n[material]'
+        self.write("strip.toml", STRIP.replace("[material]", hole, 1))
+        for width, ends in (("6.4e-3", "done"), ("6.4e-3", "skipped"), ("6.3e-3", "done")):
+            self.write("outline.csv", f"4e-3 1e-3\n{width} 1e-3\n{width} 3e-3\n4e-3 3e-3\n")
+            self.assert_ends(self.sweep("--vary", "loading.steps=1"), 0, ends)
+
     # ---- keys that vary together, and refinement --------------------------------------------------
 
     def test_linked_and_computed_keys(self):

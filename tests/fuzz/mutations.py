@@ -31,7 +31,7 @@ WORDS = """dimension title lattice points ratio spacing horizon_ratio thickness 
     directory every count_cracks probe field other threshold control weights table table2 arc_length bifurcation region interface between
     rule fibre angle direction transverse_modulus shear_modulus transverse_critical scatter of factor distribution weibull_modulus
     correlation_length rigid roller at normal constraint term symmetry period gradient rotation gravity traction pressure depth eigenstrain
-    strain temperature change thermal_expansion volumes neighbours dynamics end_time time_step step_share history_every initial velocity scheme
+    strain temperature change thermal_expansion volumes neighbours at cut_bonds dynamics end_time time_step step_share history_every initial velocity scheme
     spectral_radius absorbing degree traction_form boundary statistic expected
     kinematics operator stabilisation foundation units force time mass stress energy length_unit""".split()
 CHOICES = """rms_error max_error divergence blue_noise none linear exact exact_centroids volume energy mean bulk bond cpd lps collocation full paper surface stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended piecewise_constant cubic quintic septic gaussian inverse newton
@@ -51,7 +51,7 @@ KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness latt
     solver.relative_tolerance solver.max_iterations solver.fragments solver.elastic_horizon_ratio relaxation.steps relaxation.load
     relaxation.iterations relaxation.ramp relaxation.breaking relaxation.damping relaxation.mass_factor relaxation.max_iterations
     control[0].weights control[0].set control[1].set loading.table loading.table2 arc_length.steps arc_length.largest_step
-    arc_length.bifurcation lattice.angle lattice.volumes points.neighbours material.fibre.angle material.fibre.transverse_modulus
+    arc_length.bifurcation lattice.angle lattice.volumes points.neighbours points.at points.cut_bonds material.fibre.angle material.fibre.transverse_modulus
     material.fibre.shear_modulus material.scatter[0].weibull_modulus material.scatter[0].factor material.scatter[0].correlation_length material.scatter[0].seed
     material.thermal_expansion material.density region[0].set region[0].material.youngs_modulus region[0].material.c1
     region[0].material.damage.critical interface[0].rule interface[0].between rigid[0].set rigid[0].centre rigid[0].displacement

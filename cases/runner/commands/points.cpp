@@ -65,8 +65,8 @@ void print_spacings(const Points& points) {
   if (coarsest <= graded_ratio * finest) return;
   fmt::print(
       "warning: the mesh is graded: this horizon is {:.3g} spacings where the mesh is coarsest and "
-      "{:.3g} where it is finest. One horizon for all needs {:.4g} m, {} of the coarsest; the "
-      "strength of a graded mesh calls for a horizon per point\n",
+      "{:.3g} where it is finest. One horizon for all needs {:.4g} m, {} of the coarsest; "
+      "a horizon per point would follow the mesh\n",
       horizon / coarsest, horizon / finest, usual_horizon_ratio * coarsest, usual_horizon_ratio);
 }
 
@@ -111,6 +111,8 @@ Exit print_points(const PointsQuestion& question) {
   if (!source.is_mesh())
     throw InputError("", question.mesh.string(),
                      "is no mesh; meshes end in .msh, .inp, .vtu, .vtk, .exo, .e, .ex2 or .med");
+  if (!std::isfinite(question.thickness) || !(question.thickness > 0.0))
+    throw InputError("--thickness", fmt::format("{}", question.thickness), "must be positive");
   std::error_code error;
   if (!std::filesystem::is_regular_file(question.mesh, error))
     throw InputError("", question.mesh.string(), "no such file");

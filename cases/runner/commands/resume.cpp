@@ -60,6 +60,19 @@ std::string case_text(const EarlierRun& earlier, const Settings& settings) {
       earlier.case_file().string());
 }
 
+/// Refuses files that have changed since the run began.
+void require_same_files(const EarlierRun& earlier, const Case& from) {
+  if (earlier.files().empty()) return;
+  std::istringstream lines(checksums_of_files(from));
+  for (std::string line; std::getline(lines, line);) {
+    if (("\n" + earlier.files()).find("\n" + line + "\n") != std::string::npos) continue;
+    throw InputError("", "",
+                     "has changed since the run began, which reads it. Restore it to resume, or "
+                     "start again with `run`",
+                     line.substr(line.find(' ') + 1));
+  }
+}
+
 LoadingProgramme programme_of(const Case& from) {
   if (from.end_time) return LoadingProgramme::of_time(*from.end_time, from.loads_over_time);
   return from.programme.empty() ? LoadingProgramme() : LoadingProgramme(from.programme);
@@ -81,23 +94,6 @@ void require_same_loads(const LoadingProgramme& then, const LoadingProgramme& no
                     "reach {:.6g} s; a run is resumed with tables that begin as before",
                     at, time));
   }
-}
-
-/// Refuses files of tables that have changed since the run began.
-void require_same_tables(const EarlierRun& earlier, const Case& now) {
-  const std::string found = fingerprints_of_tables(now);
-  if (found == earlier.tables()) return;
-  std::string file = "a file";
-  std::istringstream lines(found);
-  for (std::string line; std::getline(lines, line);) {
-    const bool is_same = earlier.tables().find(line + "\n") != std::string::npos;
-    if (!is_same) file = line.substr(line.find(' ') + 1);
-  }
-  throw InputError("", "",
-                   file +
-                       " of a table has changed since the run began. Undo the change to "
-                       "resume, or start again with `run`",
-                   earlier.case_file().string());
 }
 
 /// Refuses load tables that differ from the run's up to the stage that it has reached.
@@ -153,9 +149,9 @@ Exit resume(const std::filesystem::path& directory, const Settings& settings,
   all.insert(all.end(), settings.begin(), settings.end());
   const Case from = read_case(earlier.case_file(), text, all);
   if (ranks.count() > 1) refuse_keys_without_ranks(from);
+  require_same_files(earlier, then);
   require_same_beginning(programme_of(then), programme_of(from), earlier.checkpoint().path);
   require_stand_in(earlier.checkpoint().path, from);
-  require_same_tables(earlier, then);
   if (std::any_of(settings.begin(), settings.end(),
                   [](const auto& setting) { return setting.first.starts_with("solver."); })) {
     earlier.forget_solvers();

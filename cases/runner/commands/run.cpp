@@ -225,13 +225,9 @@ class CaseRun {
 
   void open_results() {
     Assembler& assembler = study_->equations().assembler();
-    const CaseText text{from_.as_read,
-                        from_.as_resolved,
-                        from_.title,
-                        versions(),
-                        identity(from_.file),
-                        from_.settings,
-                        fingerprints_of_tables(from_)};
+    const CaseText text{
+        from_.as_read,  from_.as_resolved,        from_.title, versions(), identity(from_.file),
+        from_.settings, checksums_of_files(from_)};
     const Points points = only_recorded({body_->points, *body_->index_map});
     if (earlier_) {
       results_.emplace(*earlier_, earlier_results_, points, text, support_sets_, probes_, further_,

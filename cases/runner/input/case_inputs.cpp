@@ -54,11 +54,12 @@ std::vector<std::filesystem::path> inputs_of(const Case& from) {
   return files;
 }
 
-std::string fingerprints_of_tables(const Case& from) {
+std::string checksums_of_files(const Case& from) {
+  std::vector<std::filesystem::path> files = inputs_of(from);
+  files.erase(files.begin());
   std::string lines;
-  for (const std::filesystem::path& file : *from.tables) {
+  for (const std::filesystem::path& file : files)
     lines += fmt::format("{:016x} {}\n", checksum_of(file), file.string());
-  }
   return lines;
 }
 

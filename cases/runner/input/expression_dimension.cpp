@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdlib>
 #include <string>
 
 #include "src/core/input_error.hpp"
@@ -12,8 +13,7 @@ namespace {
 
 constexpr Dimension no_dimension{};
 
-/// Thrown where the text is no expression.
-struct NoExpression {};
+[[noreturn]] void refuse_form() { throw InputError("", "", "is not a valid expression"); }
 
 /// None: that of zero, which fits any.
 using Measured = std::optional<Dimension>;
@@ -48,7 +48,7 @@ class DimensionReader {
 
   Measured whole() {
     const Measured value = choice();
-    if (at_ < tokens_.size()) throw NoExpression();
+    if (at_ < tokens_.size()) refuse_form();
     return value;
   }
 
@@ -67,15 +67,29 @@ class DimensionReader {
     return std::ranges::any_of(marks, [&](std::string_view mark) { return take(mark); });
   }
 
+  /// Counts calls that are under way.
+  class Deeper {
+   public:
+    explicit Deeper(int& depth) : depth_(depth) {
+      if (++depth_ > deepest)
+        throw InputError("", "", "is nested too deeply for an expression with units");
+    }
+    ~Deeper() { --depth_; }
+    Deeper(const Deeper&) = delete;
+    Deeper& operator=(const Deeper&) = delete;
+
+   private:
+    int& depth_;
+  };
+
   Measured choice() {
-    if (++depth_ > deepest) throw NoExpression();
+    const Deeper deeper(depth_);
     Measured value = logical();
     if (take("?")) {
       value = choice();
-      if (!take(":")) throw NoExpression();
+      if (!take(":")) refuse_form();
       value = common_dimension(value, choice());
     }
-    --depth_;
     return value;
   }
 
@@ -121,6 +135,7 @@ class DimensionReader {
   }
 
   Measured power() {
+    const Deeper deeper(depth_);
     const Measured base = unary();
     if (!take("^")) return base;
     const std::size_t begin = at_;
@@ -133,7 +148,10 @@ class DimensionReader {
     constexpr int largest = 20;
     if (at_ != begin + 1 || parsed.ptr != text.data() + text.size() || number > largest)
       throw InputError("", "", "a number with a unit may only have a whole number as its exponent");
-    return Unit{*base}.power(2 * number).dimension;
+    const Dimension value = Unit{*base}.power(2 * number).dimension;
+    constexpr int remote = 1000;  // keeps powers of powers from overflow
+    if (std::ranges::any_of(value, [](int e) { return std::abs(e) > remote; })) refuse_form();
+    return value;
   }
 
   Measured unary() {
@@ -145,16 +163,16 @@ class DimensionReader {
   Measured primary() {
     if (take("(")) {
       const Measured value = choice();
-      if (!take(")")) throw NoExpression();
+      if (!take(")")) refuse_form();
       return value;
     }
-    if (at_ == tokens_.size()) throw NoExpression();
+    if (at_ == tokens_.size()) refuse_form();
     const ExpressionToken& token = *tokens_[at_++];
     if (token.kind == Kind::quantity) return token.unit.dimension;
     if (token.kind == Kind::number)
       return token.text.find_first_not_of("0.") == std::string_view::npos ? Measured()
                                                                           : no_dimension;
-    if (token.kind != Kind::word) throw NoExpression();
+    if (token.kind != Kind::word) refuse_form();
     if (take("(")) return function(std::string(token.text));
     if (is_length(token.text)) return unit_of_key("m").dimension;
     return is_time(token.text) ? unit_of_key("s").dimension : no_dimension;
@@ -179,7 +197,7 @@ class DimensionReader {
       else if (name != "sign" && name != "table" && !(turns && argument == angle))
         require_plain(argument, "the argument of " + name);
     } while (take(","));
-    if (!take(")")) throw NoExpression();
+    if (!take(")")) refuse_form();
     return keeps || name == "sqrt" ? value : no_dimension;
   }
 
@@ -197,11 +215,7 @@ class DimensionReader {
 }  // namespace
 
 std::optional<Dimension> dimension_of_expression(const std::vector<ExpressionToken>& tokens) {
-  try {
-    return DimensionReader(tokens).whole();
-  } catch (const NoExpression&) {
-    return std::nullopt;
-  }
+  return DimensionReader(tokens).whole();
 }
 
 }  // namespace peristat

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <stdexcept>
 
@@ -192,6 +193,13 @@ class UnitReader {
     return number;
   }
 
+  /// False for exponents that are never meant, whose powers could overflow.
+  static bool is_moderate(const Unit& unit) {
+    constexpr int largest = 200;
+    return std::abs(unit.half_tens) <= 10 * largest &&
+           std::ranges::all_of(unit.dimension, [](int e) { return std::abs(e) <= largest; });
+  }
+
   /// Applies an exponent, if there is one.
   std::optional<Unit> raised(const std::optional<Unit>& unit) {
     if (!unit) return unit;
@@ -211,7 +219,8 @@ class UnitReader {
     const bool is_half = halves % 2 != 0;
     if (is_half && std::ranges::any_of(unit->dimension, [](int e) { return e % 2 != 0; }))
       return std::nullopt;
-    return unit->power(sign * halves);
+    const Unit power = unit->power(sign * halves);
+    return is_moderate(power) ? std::optional(power) : std::nullopt;
   }
 
   std::string_view text_;

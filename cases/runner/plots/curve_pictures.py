@@ -107,7 +107,19 @@ def _what_grows(results, load, control) -> tuple[np.ndarray, str, str]:
         return control / size, f"controlled displacement [{unit}]", f"at {{}} {unit}"
     if results.is_of_motion:
         return load, "time [s]", "at load factor {}"
+    if _is_a_displacement(results, load):
+        unit, size = unit_for(np.abs(load).max(), LENGTHS)
+        return load / size, f"load factor, a displacement [{unit}]", f"at {{}} {unit}"
     return load, "load factor", "at load factor {}"
+
+
+def _is_a_displacement(results, load) -> bool:
+    """Whether a displacement is prescribed as the load factor itself: `displacement = "-load"`."""
+    largest = np.abs(load).max(initial=0.0)
+    columns = [results.numbers(name) for name in results.history
+               if name.startswith(tuple(f"displacement_{axis}:" for axis in AXES))]  # fmt: skip
+    return largest > 0.0 and any(values is not None and np.abs(np.abs(values) - np.abs(load)).max() <= 1e-12 * largest
+                                 for values in columns)  # fmt: skip
 
 
 def reactions(results) -> list[Reaction]:
@@ -173,21 +185,26 @@ def _varying(results, table: str, *keys: str) -> list[tuple[str, int]]:
 def find_abscissa(results, curves: list[Reaction]) -> Abscissa | None:
     """The displacement to draw over; None if none is known.
 
-    It is the displacement of the driven support with the largest reaction, in its driven component: from a probe of
-    it, else from the fields. If loads drive the body: a probe of the loaded set in the component of the load, else
-    any probe of a displacement. The case says which support is driven; without it, the support that moves most is
-    used.
+    It is the displacement of the driven support with the largest reaction, in its driven component: from the history,
+    in older folders from a probe of it, else from the fields. If loads drive the body: the displacement of the loaded
+    set in the component of the load, else any probe of a displacement. The case says which support is driven; without
+    it, the support that moves most is used.
     """
     shown = {(curve.name, curve.axis) for curve in curves}
     driven = driven_components(results)
     for name, axis in sorted(driven, key=lambda entry: entry not in shown):
-        found = _between_grips(results, driven, name, axis) or _probe_of(results, name, axis) or _mean_of(results, name, axis)
+        found = (_between_grips(results, driven, name, axis) or _column_of(results, name, axis)
+                 or _probe_of(results, name, axis) or _mean_of(results, name, axis))  # fmt: skip
         if found is not None:
             return _turned(found, name if name in {curve.name for curve in curves} else None)
     for name, axis in _varying(results, "load", "body_force", "total_force"):
-        found = _probe_of(results, name, axis)
+        found = _column_of(results, name, axis) or _probe_of(results, name, axis)
         if found is not None:
             return _turned(found, None)
+    loaded = [_column_of(results, *column) for column in _loaded(results)]
+    loaded = [entry for entry in loaded if entry is not None]
+    if loaded:
+        return _turned(max(loaded, key=lambda entry: np.abs(entry[1]).max()), None)
     moved = [] if driven else [_mean_of(results, curve.name, curve.axis) for curve in curves]
     known = [(found, curve.name) for found, curve in zip(moved, curves) if found is not None]
     if known:
@@ -229,9 +246,25 @@ def _probe_of(results, name, axis: int) -> tuple[str, np.ndarray] | None:
     return None
 
 
+def _column_of(results, name: str, axis: int) -> tuple[str, np.ndarray] | None:
+    """The displacement of what is driven, from the history: words (with a place for its sign) and values."""
+    values = results.numbers(f"displacement_{AXES[axis]}:{name}")
+    if values is None or not np.abs(values).max() > 0.0:
+        return None
+    return f"displacement of “{name}” in {{}}{AXES[axis]}", values
+
+
+def _loaded(results) -> list[tuple[str, int]]:
+    """Names and components with a load, as the history has them."""
+    return [(column[len("force_x:") :], axis) for column in results.history
+            for axis, letter in enumerate(AXES) if column.startswith(f"force_{letter}:")]  # fmt: skip
+
+
 def _mean_of(results, name: str, axis: int) -> tuple[str, np.ndarray] | None:
-    """Mean displacement of a set at the accepted steps if all have fields: words (with a place for its sign) and
-    values."""
+    """Mean displacement of a set at the accepted steps, from the history, else from the fields if all steps have them:
+    words (with a place for its sign) and values."""
+    if (known := _column_of(results, name, axis)) is not None:
+        return known
     steps = [int(step) for step in results.history.get("step", [])]
     if not steps or set(steps) - set(results.step_numbers) - results.resting_steps or not len(results.sets.get(name, ())):
         return None  # the fields of some steps were not written

@@ -281,9 +281,9 @@ void Results::Files::describe(const CaseText& text) {
   master.write("/case/as_read", text.as_read, {"none", "text of the case file (TOML)"});
   master.write("/case/as_resolved", text.as_resolved,
                {"none", "the case with overrides and defaults in place (TOML)"});
-  if (!text.tables.empty()) {
-    master.write("/case/tables", text.tables,
-                 {"none", "files of the tables in expressions, with checksums (FNV-1a)"});
+  if (!text.files.empty()) {
+    master.write("/case/files", text.files,
+                 {"none", "checksum (FNV-1a) and path of each file that the case reads"});
   }
   write_settings(master, text.settings);
   master.make_table("/history", history_header);

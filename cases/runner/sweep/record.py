@@ -8,7 +8,6 @@ import hashlib
 import json
 import subprocess
 import sys
-import tomllib
 from pathlib import Path
 
 from own_files import RECORD, write_own
@@ -75,23 +74,15 @@ def _write(folder: Path, settings: list[str]) -> None:
     import h5py
 
     with h5py.File(folder / "results.h5", "r") as file:
-        as_read, as_resolved = (_bytes(file[f"case/{name}"][()]) for name in ("as_read", "as_resolved"))
+        as_read = _bytes(file["case/as_read"][()])
+        lines = _text(file["case/files"][()]).splitlines() if "case/files" in file else []
     record = {
         "case_sha256": _checksum(as_read),
         "settings": settings,
-        "files": {file: _checksum(Path(file).read_bytes()) for file in _files(tomllib.loads(as_resolved.decode()))},
+        "files": {file: _checksum(Path(file).read_bytes()) for file in (line.split(" ", 1)[1] for line in lines)},
         "summary_sha256": _checksum((folder / "summary.json").read_bytes()),
     }
     write_own(folder / "sweep.json", (json.dumps(record, indent=2) + "\n").encode(), RECORD)
-
-
-def _files(case: dict) -> list[str]:
-    """The files that a resolved case reads: points, their neighbours, and shapes."""
-    points = case.get("points", {})
-    shapes = case.get("lattice", {}).get("shape", [])
-    in_sets = [shape for rule in case.get("set", []) for shape in rule.get("shape", {}).values()]
-    files = [points.get("neighbours"), *(table.get("file") for table in [points, *shapes, *in_sets])]
-    return [file for file in files if file]
 
 
 def _bytes(value) -> bytes:

@@ -22,7 +22,7 @@ FIELD_UNITS = {
     "first_piola_stress": "Pa", "stress": "Pa", "von_mises": "Pa", "principal_stress": "Pa",
 }  # fmt: skip
 COSTS = ["seconds_total", "peak_memory_bytes"]
-
+DRIVEN = tuple(f"{kind}_{axis}:" for kind in ("displacement", "force") for axis in "xyz")  # columns of the history
 
 def figures(folder: Path) -> dict:
     """The columns that come from a results folder; empty if its run has not ended."""
@@ -44,7 +44,9 @@ def figures(folder: Path) -> dict:
 
 
 def _probe_columns(name: str, value) -> dict:
-    """A scalar probe is one column, a vector one per component."""
+    """A scalar probe is one column, a vector one per component. Displacements and loads of what is driven are none."""
+    if name.startswith(DRIVEN):
+        return {}
     if not isinstance(value, list):
         return {f"probe:{name}": value}
     return {f"probe:{name}_{axis}": component for axis, component in zip("xyz", value)}

@@ -769,6 +769,26 @@ class Pictures(unittest.TestCase):
         found = find_abscissa(results, reactions(results))
         self.assertEqual(found.label, "probe end: mean displacement of “right” in −x")
         self.assertEqual(found.values.tolist(), [1.0, 2.0, 3.0])
+        results.history |= {"displacement_x:right": [0.1, 0.2, 0.3]}
+        found = find_abscissa(results, reactions(results))
+        self.assertEqual((found.label, found.values.tolist()), ("displacement of “right” in x", [0.1, 0.2, 0.3]))
+
+    def test_what_is_loaded_needs_no_probe(self):
+        write_folder(self.folder, lattice(10, 10))
+        results = read_results_folder(self.folder)
+        results.case |= {"load": [{"side": "y+", "traction": ["0", "-1e8*load"]}]}
+        results.history |= {"displacement_y:y+": [-0.1, -0.2, -0.3], "force_y:y+": [-1.0, -2.0, -3.0]}
+        found = find_abscissa(results, reactions(results))
+        self.assertEqual((found.label, found.values.tolist()), ("displacement of “y+” in −y", [0.1, 0.2, 0.3]))
+
+    def test_a_load_factor_that_is_a_displacement_has_a_unit(self):
+        write_folder(self.folder, lattice(10, 10))
+        results = read_results_folder(self.folder)
+        labels = lambda: [axes.get_xlabel() for axes in draw_load_displacement(results).axes]
+        self.assertIn("load factor", labels())
+        load = results.numbers("load_factor")
+        results.history |= {"displacement_y:right": list(-load)}
+        self.assertIn("load factor, a displacement [m]", labels())
 
     def test_dead_loads_are_drawn_over_the_loaded_set(self):
         write_folder(self.folder, lattice(10, 10))

@@ -151,7 +151,7 @@ void EarlierRun::read(Generation which) {
   }
   case_file_ = file.text_attribute("/case", "file");
   case_text_ = file.text("/case/as_read");
-  if (file.has("/case/tables")) tables_ = file.text("/case/tables");
+  if (file.has("/case/files")) files_ = file.text("/case/files");
   settings_ = read_settings(file);
   // A run writes each step before its checkpoint, so that the tables must have its rows.
   static_cast<void>(

@@ -43,8 +43,8 @@ class EarlierRun {
   [[nodiscard]] const std::filesystem::path& case_file() const { return case_file_; }
   [[nodiscard]] const std::string& case_text() const { return case_text_; }
   [[nodiscard]] const Settings& settings() const { return settings_; }
-  /// Fingerprints of the tables' files, as fingerprints_of_tables returns them.
-  [[nodiscard]] const std::string& tables() const { return tables_; }
+  /// CaseText::files; empty if there are none.
+  [[nodiscard]] const std::string& files() const { return files_; }
   /// The checkpoint; its arrays are empty before load().
   [[nodiscard]] const Checkpoint& checkpoint() const { return checkpoint_; }
   /// Reads the arrays of the checkpoint's state. Collective.
@@ -95,7 +95,7 @@ class EarlierRun {
   std::filesystem::path results_;          // the file to resume from
   bool is_gathered_ = false;               // it has no parts
   std::filesystem::path case_file_;
-  std::string case_text_, tables_, remark_;
+  std::string case_text_, files_, remark_;
   Settings settings_;
   Checkpoint checkpoint_;
 };

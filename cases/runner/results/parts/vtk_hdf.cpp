@@ -112,7 +112,7 @@ void write_vtk_hdf(Hdf5File& file, const std::vector<WrittenStep>& steps, StepSh
   for (const XdmfSeries::Field& field : constant) {
     const std::string array = array_name(field.name);
     const std::vector<Hdf5File::ViewedRows> rows{{{results_file, field.dataset}, {points}}};
-    const DatasetLabel label{"", field.name + " of all steps"};
+    const DatasetLabel label{"see results.h5", field.name + " of all steps"};
     if (field.is_flag) {
       file.write_view<std::uint8_t>(data + array, {points}, rows, label);
     } else {

@@ -113,6 +113,11 @@ TEST(UnitParser, RefusesWhatIsNoUnit) {
                            "sqrt(m",
                            "sqrt(m)^0.5",
                            "sqrt(sqrt(m))",
+<<<<<<< HEAD
+=======
+                           "((((m^99)^99)^99)^99)",
+                           "(((%^99)^99)^99)^99",
+>>>>>>> units
                            "((((((m",
                            "1",
                            "5",
@@ -179,8 +184,19 @@ TEST(DimensionOfExpression, FollowsFromItsUnitsAndVariables) {
   EXPECT_EQ(dimension_of("9.81 m/s^2*2.4 t/m3*y"), "a stress");
   EXPECT_EQ(dimension_of("abs(y) < 1 mm && x > 0"), "a number without a unit");
   EXPECT_EQ(dimension_of("(2 mm)^2"), "an area");
-  for (const char* broken : {"(", "1 mm +", "1 mm)", "", "0"})
-    EXPECT_EQ(dimension_of(broken), "any") << broken;
+  EXPECT_EQ(dimension_of("0"), "any");
+  EXPECT_EQ(dimension_of("0*x"), "any");
+}
+
+TEST(DimensionOfExpression, RefusesWhatIsNoExpression) {
+  for (const char* broken : {"(", "1 mm +", "1 mm)", "", "1 mm 2", "sin", "2^", "x ? 1", "\"",
+                             "(((((((1 m)^20)^20)^20)^20)^20)^20)^20"})
+    EXPECT_NE(dimension_of(broken), "any") << broken;
+  for (const char* part : {"(", "2^", "1 ? 2 : "}) {
+    std::string deep;
+    for (int k = 0; k < 50'000; ++k) deep += part;
+    EXPECT_NE(dimension_of(deep + "1").find("nested too deeply"), std::string::npos) << part;
+  }
 }
 
 TEST(DimensionOfExpression, RefusesUnitsThatDoNotFit) {

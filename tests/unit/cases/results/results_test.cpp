@@ -338,8 +338,9 @@ TEST_F(ResultsTest, ClosedFileHoldsEverythingByItself) {
       names.insert(entry.path().filename().string());
     }
     EXPECT_EQ(names, (std::set<std::string>{"broken_bonds.csv", "convergence.csv", "decisions.csv",
-                                            "history.csv", "iterations.csv", "peristat.json",
-                                            "results.h5", "results.xdmf", "summary.json"}));
+                                            "history.csv", "iterations.csv",
+                                            "load_displacement.csv", "peristat.json", "results.h5",
+                                            "results.vtkhdf", "results.xdmf", "summary.json"}));
     const fs::path alone = base / "alone.h5";
     fs::rename(directory / "results.h5", alone);
     expect_contents(Reader(alone), dimension);
@@ -380,7 +381,7 @@ TEST_F(ResultsTest, XdmfRefersToDatasetsOfItsDimensions) {
         const std::string dataset = std::regex_replace((*i)[2].str(), std::regex("&quot;"), "\"");
         EXPECT_EQ(file.shape(dataset), dimensions) << dataset;
       }
-      // number, geometry, four fields, volume and the sets
+      // topology, geometry, four fields, volume and the sets
       const auto sets = example_points(dimension).sets;
       EXPECT_EQ(items, 2 * int(6 + 1 + sets.size()));
       for (const auto& [name, members] : sets) {
@@ -702,8 +703,63 @@ TEST_F(ResultsTest, BondsToImagesAreTold) {
   EXPECT_EQ(file.numbers("/points/images/shift"), (std::vector<double>{4, 0, 0, -3}));
   EXPECT_EQ(file.numbers("/steps/000001/history/second_image"), (std::vector<double>{2, 0}));
   EXPECT_EQ(file.numbers("/broken_bonds/second_image"), (std::vector<double>{2, 0}));
+  EXPECT_EQ(file.numbers("/cracks/000001/bonds"), (std::vector<double>{3, 1}));
+  EXPECT_EQ(file.numbers("/cracks/000001/step"), (std::vector<double>{1}));
   EXPECT_EQ(read_text(directory / "broken_bonds.csv"),
             "step,load_factor,first_point,second_point,second_image\n1,0.1,0,0,2\n1,0.1,3,1,0\n");
+}
+
+TEST_F(ResultsTest, LinesAreTheBondsBrokenSoFar) {
+  for (const bool closed : {false, true}) {
+    {
+      Results results = open_results(directory);
+      add_step(results, 1);
+      results.add({{2, 0.2, 0, 3, 0}, {2, 0.2, 1, 3, 0}});
+      add_step(results, 2);
+      results.add({{3, 0.3, 0, 5, 0}});
+      add_step(results, 3);
+      if (closed) results.close({});
+    }
+    const Reader file(directory / "results.h5");
+    EXPECT_FALSE(file.has("/cracks/000001"));
+    EXPECT_EQ(file.numbers("/cracks/000002/bonds"), (std::vector<double>{0, 3, 1, 3}));
+    EXPECT_EQ(file.numbers("/cracks/000003/bonds"), (std::vector<double>{0, 3, 1, 3, 0, 5}));
+    EXPECT_EQ(file.numbers("/cracks/000003/step"), (std::vector<double>{2, 2, 3}));
+  }
+}
+
+TEST_F(ResultsTest, VtkHdfShowsAllStepsTheLastOneFirst) {
+  for (const int dimension : {1, 2, 3}) {
+    for (const bool closed : {false, true}) {
+      {
+        Results results = open_results(directory, dimension);
+        for (const int step : {1, 2, 3}) add_step(results, step, dimension);
+        if (closed) results.close({});
+      }
+      const Reader file(directory / "results.vtkhdf");
+      EXPECT_EQ(file.numbers("/VTKHDF/Steps/Values"), (std::vector<double>{1, 2, 3}));
+      const std::vector<double> first = file.numbers("/VTKHDF/Steps/CellDataOffsets/damage");
+      EXPECT_EQ(first.back(), 0.0);  // which readers without steps show
+      const std::vector<double> damage = file.numbers("/VTKHDF/CellData/damage"),
+                                moved = file.numbers("/VTKHDF/CellData/displacement");
+      ASSERT_EQ(damage.size(), 3u * count);
+      ASSERT_EQ(moved.size(), 9u * count);
+      for (const int step : {1, 2, 3}) {
+        const ExampleFields fields(step, dimension);
+        const auto row = std::size_t(first.at(std::size_t(step) - 1));
+        for (std::size_t i = 0; i < std::size_t(count); ++i) {
+          EXPECT_EQ(damage[row + i], fields.damage[i]);
+          for (std::size_t c = 0; c < 3; ++c) {
+            const auto d = std::size_t(dimension);
+            EXPECT_EQ(moved[3 * (row + i) + c], c < d ? fields.displacement[d * i + c] : 0.0);
+          }
+        }
+      }
+      EXPECT_EQ(file.numbers("/VTKHDF/CellData/volume"), example_points(dimension).volume);
+      EXPECT_EQ(file.shape("/VTKHDF/Points"), (std::vector<hsize_t>{count, 3}));
+      EXPECT_EQ(file.numbers("/VTKHDF/Types"), std::vector<double>(count, 1.0));
+    }
+  }
 }
 
 TEST_F(ResultsTest, AnEmptyFolderIsAccepted) {

@@ -117,6 +117,16 @@ TEST(MeshBody, ReordersMirroredElements) {
   for (const double area : body->measure) EXPECT_NEAR(area, 1.0, 1e-15);
 }
 
+TEST(MeshBody, RemarksOnFacesThatAreNoSides) {
+  EXPECT_TRUE(body_of(plate(2, 1))->remarks.empty());
+  Mesh mesh = plate(2, 1);
+  mesh.blocks[0].nodes = {0, 5};  // across both squares
+  mesh.groups.clear();
+  const auto body = body_of(mesh);
+  ASSERT_EQ(body->remarks.size(), 1U);
+  EXPECT_NE(body->remarks[0].find("1 line"), std::string::npos);
+}
+
 TEST(MeshBody, RefusesWhatIsBroken) {
   Mesh mesh = plate(2, 2);
   mesh.blocks.pop_back();
