@@ -393,7 +393,7 @@ Kind<LoadTable> load_table() {
   return {read,
           text,
           either_schema({list_schema(number_schema({}, "m"), 2),
-                         list_schema(list_schema(number_schema({}, ""), 2, 2), 2), text_schema()}),
+                         list_schema(list_schema(number_schema({}, "s"), 2, 2), 2), text_schema()}),
           "at least two numbers, the first 0, or an expression of `step`, 0 at step 0; in mode "
           "`dynamics` two or more pairs `[t, value]`, from t = 0 to `end_time`, ascending",
           "",
