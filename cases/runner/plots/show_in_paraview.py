@@ -12,7 +12,7 @@ import math
 import sys
 from pathlib import Path
 
-from paraview import servermanager, simple
+from paraview import simple
 
 FOLDER = None  # where the results were when this file was written
 LARGEST = 0.02  # displacement that is shown, per size of the body

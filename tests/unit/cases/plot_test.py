@@ -676,6 +676,24 @@ class Pictures(unittest.TestCase):
             self.assertTrue((self.folder / "plots" / "deformed.png").exists())  # from the same run, and still valid
         self.plot(2, "--format", "jpg")
 
+    def test_the_script_for_paraview(self):
+        write_folder(self.folder, lattice(10, 10))
+        script = self.folder / "plots" / "show_in_paraview.py"
+        self.assertIn("no results.xdmf", self.plot(2, "--paraview"))
+        self.assertFalse(script.exists())
+        (self.folder / "results.xdmf").write_text("<Xdmf/>")
+        for _ in range(2):  # it may be written again
+            self.assertIn(f"paraview --script={script}", self.plot(0, "--paraview"))
+        self.assertEqual([path.name for path in script.parent.iterdir() if path.suffix != ""], [script.name])
+        text = script.read_text()
+        compile(text, script.name, "exec")
+        self.assertIn(f"FOLDER = {str(self.folder.resolve())!r}  #", text)
+        script.unlink()
+        (self.folder / "plots" / ".pictures").unlink()
+        script.write_text("somebody's own")
+        self.assertIn("was not drawn by this command", self.plot(2, "--paraview"))
+        self.assertEqual(script.read_text(), "somebody's own")
+
     # ---- cracks -----------------------------------------------------------------------------------
 
     def test_a_pre_crack_opens_without_damage(self):
