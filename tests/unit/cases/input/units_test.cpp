@@ -368,7 +368,7 @@ TEST_F(Units, OfThePointFileAreThatOfLength) {
   EXPECT_EQ(source(text).length_unit, 1.0);
   const std::string units = "[units]\nlength = \"mm\"\n";
   EXPECT_EQ(source(text + units).length_unit, 0.001);
-  EXPECT_EQ(source(text + units).horizon, 0.003);
+  EXPECT_EQ(source(text + units).horizon.length, 0.003);
   EXPECT_NE(resolved(text + units).find("length_unit = 0.001"), std::string::npos);
   EXPECT_EQ(resolved(resolved(text + units)), resolved(text + units));
   const std::string own = with(text, "horizon", "length_unit = \"1 um\"\nhorizon");
