@@ -2,7 +2,7 @@
 
     /usr/bin/python3 -BEs benchmarks/same_histories.py OLD NEW [--seconds N] [CASE...]
 
-A run ends after N seconds; the rows that both have are compared.
+A run ends after N seconds; the rows and columns that both have are compared.
 """
 
 import argparse
@@ -17,7 +17,13 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 
 def rows(folder):
     path = folder / "history.csv"
-    return list(csv.reader(path.open())) if path.exists() else []
+    return list(csv.DictReader(path.open())) if path.exists() else []
+
+
+def are_alike(old, new):
+    """Whether the rows that both have are the same in the columns of both."""
+    common = list(zip(old, new))
+    return bool(common) and all(one[column] == other[column] for one, other in common for column in one.keys() & other.keys())
 
 
 def run(programs, case, seconds, folder):
@@ -42,8 +48,7 @@ def main():
     for case in cases:
         with tempfile.TemporaryDirectory() as folder:
             codes, (old, new) = run((given.old, given.new), case, given.seconds, pathlib.Path(folder))
-        common = min(len(old), len(new))
-        alike = common > 1 and old[:common] == new[:common]
+        alike = are_alike(old, new)
         same, ended = same + alike, ended + (codes == [0, 0])
         print(case, codes, len(old), len(new), "same" if alike else "DIFFERENT", flush=True)
     print(f"{same} of {len(cases)} the same, {ended} to their end,",

@@ -24,7 +24,7 @@ HISTORY_COLUMNS = [
     "step", "load_factor", "mode", "newton_iterations", "relaxation_iterations", "stored_energy",
     "dissipated_energy", "drained_energy", "external_work", "balance_error", "broken_bonds",
     "max_damage", "max_stretch", "reaction_x:left", "reaction_y:left", "reaction_z:left",
-    "reaction_x:right", "reaction_y:right", "reaction_z:right", "end_x", "end_y",
+    "reaction_x:right", "reaction_y:right", "reaction_z:right", "displacement_x:right", "end_x", "end_y",
     "numerical_work", "pin_force", "settled", "stage",
     "control", "negative_pivots", "on_response", "released_energy", "stability",
 ]  # fmt: skip

@@ -342,7 +342,7 @@ class Refused(Resumed):
 
     def test_an_older_layout(self):
         version = self.peristat("--version").output.split()[1]
-        self.change_checkpoint(lambda data: data.replace(f"checkpoint 8 {version}".encode(), b"checkpoint 0 0.0.7"))
+        self.change_checkpoint(lambda data: data.replace(f"checkpoint 9 {version}".encode(), b"checkpoint 0 0.0.7"))
         self.refuses(["layout 0 of peristat 0.0.7", f"this is peristat {version}, which resumes from layout 9"])
 
     def test_points_that_are_others(self):
