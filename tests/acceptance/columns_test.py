@@ -358,6 +358,12 @@ class Tables(Folder):
                 for fragment in ("case.toml:", "support[1].displacement[0]", *said):
                     self.assertIn(fragment, errors)
 
+    def test_a_load_whose_table_is_too_short_is_refused_before_the_run(self):
+        self.write("amplitude.csv", AMPLITUDE)
+        text = SHAKEN.format(value="0") + "[[load]]\nset = 'right'\nbody_force = [\"table('amplitude.csv', 'u', 2*t)\"]\n"
+        self.assertIn("load[0].body_force[0]", self.refusal(text))
+        self.assertIn("goes from 0 to 2, but its value at 4 is needed", self.ended.errors)
+
     def test_a_resumed_run_needs_the_same_table(self):
         self.write("amplitude.csv", AMPLITUDE)
         text = SHAKEN.format(value='1e-3*table("amplitude.csv", "u", t)').replace("end_time = 2.0", "end_time = 1.0")

@@ -27,9 +27,7 @@ class LinearTables : public ::testing::Test {
   }
   ~LinearTables() override { std::filesystem::remove_all(folder_); }
 
-  void write(const std::string& text) const {
-    std::ofstream(file(), std::ios::binary) << text;
-  }
+  void write(const std::string& text) const { std::ofstream(file(), std::ios::binary) << text; }
   LinearTable read(const std::string& text, const std::string& column = "") const {
     write(text);
     return {file(), column};
