@@ -13,6 +13,7 @@
 #include "src/conditions/with_key.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/core/table_calls.hpp"
 #include "src/geometry/body_cells.hpp"
 #include "src/geometry/expression_at_points.hpp"
 #include "src/geometry/nearest_point.hpp"
@@ -353,10 +354,23 @@ void Conditions::find_shared() {
 
 void Conditions::try_stages() {
   std::vector<double> values(prescribed_.size(), 0.0), force(prescribed_.size());
+  // A table of a file that is too short is refused before the run.
+  const auto try_tables_of_loads = [&](const LoadPoint& at) {
+    const std::vector<double> loads = parameters(at);
+    for (const Load& load : loads_) {
+      if (table_calls(load.value.text()).empty()) continue;
+      with_key(load.key, [&] {
+        for (const Index point : load.on->points) {
+          static_cast<void>(value_at(load.value, points_, point, loads));
+        }
+      });
+    }
+  };
   const auto try_at = [&](const LoadPoint& at) {
     prescribe(at, values);
     const bool floats = floats_ != std::array<bool, 3>{};
     if (floats) external_force(at, force);
+    try_tables_of_loads(at);
     const SharedEnvironment there = environment(at);
     if (floats && !pressures_.empty()) {
       require_balance(face_forces(pressed_, there->pressure, points_.dimension),

@@ -239,7 +239,7 @@ steps = 10
             ('factor = "1 + product/80"', 'factor = "1"\nseed = 3', "seed", "leave it out with factor"),
             ('factor = "1 + product/80"', 'factor = "load"', "unknown variable load"),
             ('of = "stiffness"', 'of = "strength"', "strength needs a law of damage"),
-            ("is_right > 0.5", "1/(is_right - 1) < 0", "where"),
+            ("is_right > 0.5", "1/(is_right - 1)", "set[1].where", "inf"),
         ):  # fmt: skip
             with self.subTest(new=new):
                 self.assertIn(old, text)
@@ -248,6 +248,7 @@ steps = 10
                     self.assertIn(fragment, errors)
         lattice = self.refusal(PULLED.replace("{value}", "product*load"))
         self.assertIn("unknown variable product; allowed are x, load", lattice)
+        text = (CLOUD + STILL).format(**TYPED)
         for header, value, said in (("t", "1", "points.csv:1: the name 't' of a column is taken"), ("sin", "1", "points.csv:1"),
                                     ("a b", "1", "points.csv:1: the name 'a b'"), ("T", "inf", "points.csv:2: T = 'inf' is not finite"),
                                     ("T", "hot", "points.csv:2"), ("T", "", "points.csv:2")):  # fmt: skip
@@ -289,7 +290,7 @@ class Tables(Folder):
     def test_a_table_in_motion_and_of_place(self):
         self.write("amplitude.csv", AMPLITUDE)
         polygon = "1e-3*(t < 0.5 ? 2*t : t < 0.75 ? 1 : 4 - 4*t)"
-        initial = '[[initial]]\nvelocity = [\'{}\']\n'
+        initial = '[[initial]]\nvelocity = ["{}"]\n'
         typed = self.run_case(SHAKEN.format(value=polygon) + initial.format(polygon.replace("t", "x/2")), name="typed")
         text = SHAKEN.format(value='1e-3*table("amplitude.csv", "u", t)')
         text += initial.format("table('amplitude.csv', 'u', min(max(x, 0), 2)/2)*1e-3")
@@ -357,6 +358,12 @@ class Tables(Folder):
                 for fragment in ("case.toml:", "support[1].displacement[0]", *said):
                     self.assertIn(fragment, errors)
 
+    def test_a_load_whose_table_is_too_short_is_refused_before_the_run(self):
+        self.write("amplitude.csv", AMPLITUDE)
+        text = SHAKEN.format(value="0") + "[[load]]\nset = 'right'\nbody_force = [\"table('amplitude.csv', 'u', 2*t)\"]\n"
+        self.assertIn("load[0].body_force[0]", self.refusal(text))
+        self.assertIn("goes from 0 to 2, but its value at 4 is needed", self.ended.errors)
+
     def test_a_resumed_run_needs_the_same_table(self):
         self.write("amplitude.csv", AMPLITUDE)
         text = SHAKEN.format(value='1e-3*table("amplitude.csv", "u", t)').replace("end_time = 2.0", "end_time = 1.0")
@@ -376,7 +383,7 @@ class Tables(Folder):
         longer = ("dynamics.end_time=2.0", "loading.table=[[0, 0], [1, 1], [2, -1]]")
         whole = self.run_case(text, *longer, name="whole")
         ended = self.resume("out", "dynamics.end_time=2.0", "loading.table=[[0, 0], [0.5, 1], [2, -1]]", code=2)
-        self.assertIn("the loads at 0.5 s have changed", ended.errors)
+        self.assertIn("the loads at 1 s have changed", ended.errors)
         self.resume("out", *longer)
         numpy.testing.assert_array_equal(*(Results(folder).steps[-1].displacement for folder in (self.folder / "out", whole)))
 

@@ -5,8 +5,8 @@ import unittest
 import h5py
 import numpy
 
-from tests.acceptance.columns_test import AMPLITUDE, CLOUD, MOVING, NAMED, PLACES, POLYGON, STILL, TYPED
-from tests.acceptance.on_ranks import PLATE, SOLVER, Comparison, on
+from tests.acceptance.columns_test import AMPLITUDE, CLOUD, MOVING, NAMED, PLACES, STILL, TYPED
+from tests.acceptance.on_ranks import PLATE, STORED, Comparison, on
 
 
 class ColumnsOnRanks(Comparison):
@@ -18,8 +18,8 @@ class ColumnsOnRanks(Comparison):
 
     def test_columns(self):
         self.write_points()
-        self.compare((CLOUD + STILL).format(**NAMED), (2,))
-        folders = [self.run_case((CLOUD + STILL).format(**names) + SOLVER, name=name, words=on(2))
+        self.compare((CLOUD + STILL).format(**NAMED), (2,), solver=STORED)
+        folders = [self.run_case((CLOUD + STILL).format(**names) + STORED, name=name, words=on(2))
                    for name, names in (("typed", TYPED), ("named", NAMED))]  # fmt: skip
         displacements = []
         for folder in folders:
