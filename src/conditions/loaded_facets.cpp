@@ -17,6 +17,10 @@ namespace {
 /// Least cosine of the angle between a facet's normal and the side that it faces.
 constexpr double facing_a_side = 0.99;
 
+/// Points that a corner moves with: of more than the first number, as many hundreds as there may be
+/// around a corner of tetrahedra, the nearest ones.
+constexpr std::size_t most_around = 64, least_around = 24;
+
 /// Part of the body's extent within which facets lie on its outermost plane.
 constexpr double outermost_plane = 1e-6;
 
@@ -33,7 +37,7 @@ Coordinates area_vector(const MeshBody& mesh, const MeshBody::Facet& facet) {
 class PointsOfMesh {
  public:
   explicit PointsOfMesh(const Points& points)
-      : mesh_(*points.mesh), are_elements_(!points.elements.empty()) {
+      : at_(points), mesh_(*points.mesh), are_elements_(!points.elements.empty()) {
     std::map<std::int32_t, Index> by_row;
     for (Index i = 0; i < points.own(); ++i) by_row[points.source_row[std::size_t(i)]] = i;
     elements_of_.resize(mesh_.node_count());
@@ -76,10 +80,26 @@ class PointsOfMesh {
     }
     std::sort(points.begin(), points.end());
     points.erase(std::unique(points.begin(), points.end()), points.end());
+    if (points.size() > most_around) keep_nearest(points, mesh_.node(corner));
     return points;
   }
 
  private:
+  /// Keeps the nearest points, and those as far away as the last of them.
+  void keep_nearest(std::vector<Index>& points, const Coordinates& place) const {
+    constexpr double round_off = 1e-9;
+    std::vector<double> distances;
+    for (const Index point : points) distances.push_back(length(minus(at_.position(point), place)));
+    std::vector<double> sorted = distances;
+    std::sort(sorted.begin(), sorted.end());
+    const double farthest = sorted[least_around - 1] * (1.0 + round_off);
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < points.size(); ++k)
+      if (distances[k] <= farthest) points[kept++] = points[k];
+    points.resize(kept);
+  }
+
+  const Points& at_;
   const MeshBody& mesh_;
   bool are_elements_;
   std::vector<std::vector<Index>> elements_of_;  // by node

@@ -11,7 +11,7 @@ namespace peristat {
 /// it names no facets, those of the elements (or all of whose nodes are) in the set; and with a
 /// `side` those that face it, without a set those on the outermost plane. A corner moves with the
 /// points at the elements around it and those next to them, or at the nodes of the elements around
-/// it.
+/// it; among very many with the nearest.
 /// @throws InputError (KEY.set, KEY.side) if there are none
 void add_pressed_facets(const Points& points, const LoadSpecification& load, const std::string& key,
                         PressedBoundary& boundary);

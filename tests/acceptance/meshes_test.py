@@ -1,5 +1,6 @@
 """Points of meshes: formats, groups, boundaries, loads on facets, and meshes that are broken."""
 
+import itertools
 import json
 import subprocess
 import unittest
@@ -262,6 +263,29 @@ class Meshes(Folder):
             folder = self.run_case(text, f'points.at="{at}"')
             reaction = json.loads((folder / "summary.json").read_text())["reactions"]["left"]
             np.testing.assert_allclose(reaction[:2], [1e3 * 4 * 0.5, -1e3 * 1 * 0.5], rtol=1e-5)
+
+    def test_loads_on_facets_of_tetrahedra(self):
+        nodes = [(i, j, k) for k in range(4) for j in range(4) for i in range(4)]
+        number = {node: k + 1 for k, node in enumerate(nodes)}
+        elements = []
+        for i, j, k in itertools.product(range(3), repeat=3):  # six from corner to corner of each cube
+            for order in itertools.permutations(range(3)):
+                way = [(i, j, k)]
+                for axis in order:
+                    way.append(tuple(x + (c == axis) for c, x in enumerate(way[-1])))
+                elements.append((TETRAHEDRON, 1, [number[node] for node in way]))
+        self.mesh(nodes, elements, [(3, 1, "cube")])
+        text = CASE.replace("dimension = 2", "dimension = 3").replace("thickness = 0.5\n", "").replace("horizon = 3.1", "horizon = 1.5")
+        text = text.replace("[0, 0]", "[0, 0, 0]").replace('set = "right"', 'side = "x+"')
+        text += '[[set]]\nname = "left"\nwhere = "x < 1"\n'
+        for load in ('[1e3, 0, 0]', None):
+            changed_load = text.replace('["1e6*load", 0]', load) if load else text.replace('traction = ["1e6*load", 0]', "pressure = 1e3")
+            for at in ("elements", "nodes"):
+                folder = self.run_case(changed_load, f'points.at="{at}"')
+                reaction = json.loads((folder / "summary.json").read_text())["reactions"]["left"]
+                expected = [-9e3 if load else 9e3, 0, 0]
+                np.testing.assert_allclose(reaction, expected, rtol=1e-5, atol=1e-2)
+        self.assertIn("18 faces, 9 m2", self.checked(text.replace('traction = ["1e6*load", 0]', "pressure = 1e3")))
 
     def test_loads_without_facets_are_refused(self):
         self.mesh(*squares(12, 4))

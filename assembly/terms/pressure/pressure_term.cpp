@@ -274,7 +274,7 @@ PressureTerm::PressureTerm(const Points& points, PressedBoundary boundary)
     }
     for (const std::array<Index, 3>& triangle :
          {std::array{a, b, c}, std::array{a, c, d}, std::array{a, b, d}, std::array{b, c, d}}) {
-      elements_.push_back({triangle, number, 0.5});
+      if (triangle[1] != triangle[2]) elements_.push_back({triangle, number, 0.5});
     }
   }
   std::vector<std::set<Index>> rows(std::size_t(points.count()));
@@ -295,8 +295,16 @@ std::unique_ptr<TermPasses> PressureTerm::passes(const TermSetting& setting) con
 }
 
 double PressureTerm::area() const {
-  return double(boundary_.face.size()) * std::pow(points_.spacing, points_.dimension - 1) *
-         boundary_.cross_section;
+  const std::vector<double> unit_pressure(boundary_.face.size(), 1.0);
+  const std::vector<double> forces = face_forces(boundary_, unit_pressure, points_.dimension);
+  const auto d = std::size_t(points_.dimension);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < forces.size(); k += d) {
+    double squared = 0.0;
+    for (std::size_t c = 0; c < d; ++c) squared += forces[k + c] * forces[k + c];
+    sum += std::sqrt(squared);
+  }
+  return sum;
 }
 
 PressureTerm::Stiffness PressureTerm::stiffness(const StateView& at, const Constraints& constraints,

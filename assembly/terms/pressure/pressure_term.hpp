@@ -16,10 +16,10 @@ namespace peristat {
 ///
 /// spread over the points around the corner by the weights that the corner moves with, which are
 /// exact for linear displacement fields, such as a rotation. A quadrangle is the mean of its two
-/// divisions into triangles. On a closed boundary a constant p has the potential p V, V the volume
-/// within, and forces and moments add up to zero. On other boundaries forces have no potential. The
-/// energy of the term is zero, its gradient minus the forces, and the tangent the symmetric part of
-/// their derivative.
+/// divisions into triangles; one whose last corners coincide is a triangle. On a closed boundary a
+/// constant p has the potential p V, V the volume within, and forces and moments add up to zero. On
+/// other boundaries forces have no potential. The energy of the term is zero, its gradient minus
+/// the forces, and the tangent the symmetric part of their derivative.
 ///
 /// The pressure of each face comes from the environment.
 class PressureTerm : public Term {
