@@ -14,7 +14,7 @@ COSTS = ["seconds", "peak_memory_bytes", "factorisations", "linear_iterations"]
 
 def _datasets(file):
     found = {}
-    for group in ("points", "steps", "xdmf", "history", "iterations", "decisions", "broken_bonds"):
+    for group in ("points", "steps", "xdmf", "cracks", "history", "iterations", "decisions", "broken_bonds"):
         if group in file:
             file[group].visititems(lambda name, object, of=group: found.update({f"{of}/{name}": object[...]})
                                    if isinstance(object, h5py.Dataset) else None)  # fmt: skip
