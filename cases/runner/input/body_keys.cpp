@@ -203,7 +203,7 @@ Kind<PointHorizon> point_horizon() {
                                : length.text(horizon.length, from);
   };
   return {read, text, either_schema({length.schema, point_horizon_keys().schema()}),
-          "positive, or `{ ratio = … }`", "m"};
+          "positive, or `{ ratio = … }`", "m", ValueForm::number};
 }
 
 }  // namespace

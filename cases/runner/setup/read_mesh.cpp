@@ -1,28 +1,20 @@
 #include "cases/runner/setup/read_mesh.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <csignal>
 #include <cstring>
 #include <string>
 #include <vector>
 
 #include <dlfcn.h>
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "cases/runner/input/case.hpp"
 #include "src/core/decimal.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/machine_error.hpp"
+#include "src/core/program_output.hpp"
 #include "src/geometry/mesh_body.hpp"
 #include "src/geometry/mesh_interior.hpp"
 #include "src/geometry/mesh_points.hpp"
-
-extern char** environ;
 
 namespace peristat {
 namespace {
@@ -60,51 +52,15 @@ fs::path find_script() {
   return script;
 }
 
-/// Reads everything from a descriptor.
-std::string read_all(int descriptor) {
-  std::string text;
-  std::vector<char> some(1 << 20);
-  for (;;) {
-    const ssize_t count = ::read(descriptor, some.data(), some.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return text;
-    text.append(some.data(), std::size_t(count));
+std::string answer_of_script(const fs::path& file) {
+  const std::string script = find_script().string();
+  try {
+    return program_output({python, "-BEs", script, file.string()});
+  } catch (const MachineError& error) {
+    refuse_mesh_file(file, std::string("meshio could not read it to the end; the file may be "
+                                       "broken or too large (") +
+                               error.what() + ")");
   }
-}
-
-/// Output of a process, and how it ended.
-struct Answer {
-  std::string text;
-  int status = 0;
-};
-
-Answer answer_of_script(const fs::path& file) {
-  const std::string script = find_script().string(), name = file.string();
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw MachineError(std::string("no pipe can be opened: ") + std::strerror(errno));
-  std::array<char*, 5> arguments{const_cast<char*>(python), const_cast<char*>("-BEs"),
-                                 const_cast<char*>(script.c_str()), const_cast<char*>(name.c_str()),
-                                 nullptr};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
-  pid_t child = 0;
-  const int error = posix_spawn(&child, python, &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  ::close(ends[1]);
-  if (error != 0) {
-    ::close(ends[0]);
-    if (error == ENOENT)
-      refuse_mesh_file(file, std::string("meshes are read by ") + python +
-                                 " and meshio, which are missing; install python3-meshio");
-    throw MachineError(std::string(python) + " can't be started: " + std::strerror(error));
-  }
-  Answer answer{read_all(ends[0]), 0};
-  ::close(ends[0]);
-  while (waitpid(child, &answer.status, 0) < 0 && errno == EINTR) {
-  }
-  return answer;
 }
 
 /// Values of the script's answer, one after another.
@@ -160,15 +116,11 @@ Mesh mesh_of(AnswerReader answer) {
 }  // namespace
 
 Mesh read_mesh(const fs::path& file) {
-  const Answer answer = answer_of_script(file);
+  const std::string answer = answer_of_script(file);
   const std::string mesh = "mesh\n", refused = "refused\n";
-  if (answer.text.starts_with(refused)) refuse_mesh_file(file, answer.text.substr(refused.size()));
-  if (answer.text.starts_with(mesh) && answer.status == 0)
-    return mesh_of(AnswerReader(answer.text, mesh.size(), file));
-  if (WIFSIGNALED(answer.status) &&
-      (WTERMSIG(answer.status) == SIGXCPU || WTERMSIG(answer.status) == SIGKILL))
-    refuse_mesh_file(file, "meshio was ended: it took too long, or too much memory");
-  refuse_mesh_file(file, "meshio has failed; the file may be broken");
+  if (answer.starts_with(refused)) refuse_mesh_file(file, answer.substr(refused.size()));
+  if (!answer.starts_with(mesh)) refuse_mesh_file(file, "meshio has answered nothing");
+  return mesh_of(AnswerReader(answer, mesh.size(), file));
 }
 
 Points read_mesh_points(const PointSource& source, int dimension) {
