@@ -303,7 +303,7 @@ class CrackSurfaces(unittest.TestCase):
         return types.SimpleNamespace(
             reference=reference, edges=np.eye(3), spacing=1.0, volume=np.ones(len(reference)), cracks=list(cracks), reach=1,
             image_kinds=kinds, outline=None, in_layers=np.zeros(len(reference), dtype=bool), tells_broken_bonds=True,
-            broken_bonds=lambda: bonds, drawn={}, dimension=3,
+            broken_bonds=lambda: bonds, drawn={}, dimension=3, elements=None,
         )  # fmt: skip
 
     def surface(self, results, damage=None, last=9):
