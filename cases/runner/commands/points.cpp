@@ -66,8 +66,9 @@ void print_spacings(const Points& points) {
   fmt::print(
       "warning: the mesh is graded: this horizon is {:.3g} spacings where the mesh is coarsest and "
       "{:.3g} where it is finest. One horizon for all needs {:.4g} m, {} of the coarsest; "
-      "a horizon per point would follow the mesh\n",
-      horizon / coarsest, horizon / finest, usual_horizon_ratio * coarsest, usual_horizon_ratio);
+      "points.horizon = {{ ratio = {} }} gives each point a horizon of its own\n",
+      horizon / coarsest, horizon / finest, usual_horizon_ratio * coarsest, usual_horizon_ratio,
+      usual_horizon_ratio);
 }
 
 std::string text_of(const Points& points) {

@@ -381,6 +381,7 @@ Preflight::OfMesh mesh_facts(const Body& body) {
   const auto [finest, coarsest] = std::ranges::minmax(spacings);
   of.finest_spacing = finest;
   of.coarsest_spacing = coarsest;
+  of.has_horizons = !points.horizons.empty();
   of.remarks = points.mesh->remarks;
   of.cuts_bonds = points.interior != nullptr;
   of.leaving = std::ranges::count_if(body.cut_bonds, [&](const BondEnds& bond) {

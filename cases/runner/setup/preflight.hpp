@@ -67,6 +67,7 @@ struct Preflight {
   struct OfMesh {
     std::string elements;                                 ///< "120 triangles"
     double finest_spacing = 0.0, coarsest_spacing = 0.0;  ///< around a point [m]
+    bool has_horizons = false;                            ///< each point has its own
     bool cuts_bonds = false;
     std::int64_t leaving = 0;  ///< bonds that leave the body and are cut
     std::vector<std::string> remarks;

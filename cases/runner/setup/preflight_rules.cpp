@@ -59,11 +59,13 @@ void add_horizon(const Preflight& of, Warnings& warnings) {
 }
 
 void add_grading(const Preflight& of, Warnings& warnings) {
-  if (!of.mesh || of.mesh->coarsest_spacing <= graded_ratio * of.mesh->finest_spacing) return;
+  if (!of.mesh || of.mesh->has_horizons) return;
+  if (of.mesh->coarsest_spacing <= graded_ratio * of.mesh->finest_spacing) return;
   warnings.push_back(fmt::format(
       "the mesh is graded: around a point its spacing is {:.3g} to {:.3g} m, a ratio above {}, so "
       "that the horizon, {:g} m, is {:.3g} spacings where it is coarsest and {:.3g} where it is "
-      "finest; a horizon below 3 spacings resolves neither stiffness nor cracks",
+      "finest; a horizon below 3 spacings resolves neither stiffness nor cracks. "
+      "points.horizon = {{ ratio = 3.015 }} gives each point a horizon of its own",
       of.mesh->finest_spacing, of.mesh->coarsest_spacing, graded_ratio, of.horizon,
       of.horizon / of.mesh->coarsest_spacing, of.horizon / of.mesh->finest_spacing));
 }
