@@ -312,7 +312,7 @@ void print_points(const Body& body) {
       ", horizons {:g} to {:g} m ({:.4g} sizes of their points)\n"
       "horizons    constants below are those of the largest one: a horizon's micromodulus goes "
       "with "
-      "its power -{}, stretches by fracture_energy with its power -1/2\n",
+      "its power -{}, stretches by fracture_energy alone with its power -1/2\n",
       *std::ranges::min_element(points.horizons), body.setting.horizon, body.horizon_ratio(),
       points.dimension + 1);
 }
