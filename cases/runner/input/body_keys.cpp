@@ -202,8 +202,12 @@ Kind<PointHorizon> point_horizon() {
     return horizon.ratio > 0.0 ? "{ ratio = " + toml_number(horizon.ratio) + " }"
                                : length.text(horizon.length, from);
   };
-  return {read, text, either_schema({length.schema, point_horizon_keys().schema()}),
-          "positive, or `{ ratio = … }`", "m", ValueForm::number};
+  return {read,
+          text,
+          either_schema({length.schema, point_horizon_keys().schema()}),
+          "positive, or `{ ratio = … }`",
+          "m",
+          ValueForm::number};
 }
 
 }  // namespace
