@@ -6,33 +6,33 @@ import numpy as np
 
 from voronoi import Polygons
 
+TRIANGLE, QUADRILATERAL = 5, 9  # VTK's numbers
+
 
 class Elements(NamedTuple):
-    """Triangles and quadrilaterals, one per point."""
+    """Triangles and quadrilaterals, one per point, with corners of their own."""
 
-    nodes: np.ndarray  # count x 2 [m]
+    corners: np.ndarray  # count x 2, anticlockwise [m]
     offset: np.ndarray  # first corner of each element, and the end
-    corners: np.ndarray  # numbers of nodes, anticlockwise
 
 
 def are_sound(elements: Elements, count: int) -> bool:
     """Whether elements read from a file are cells of as many points."""
-    nodes, offset, corners = elements
+    corners, offset = elements
     return (
-        nodes.ndim == 2
-        and nodes.shape[1] == 2
-        and bool(np.isfinite(nodes).all())
+        corners.ndim == 2
+        and bool(np.isfinite(corners).all())
         and offset.shape == (count + 1,)
         and offset[0] == 0
         and offset[-1] == len(corners)
         and bool(np.isin(np.diff(offset), (3, 4)).all())
-        and bool(((corners >= 0) & (corners < len(nodes))).all())
     )
 
 
 def element_cells(elements: Elements) -> Polygons:
     """The elements, with the element beyond each side."""
-    nodes, offset, corners = elements
+    nodes, corners = np.unique(elements.corners, axis=0, return_inverse=True)
+    offset = elements.offset
     number = np.diff(offset)
     place = np.arange(number.max())
     is_corner = place < number[:, None]

@@ -15,7 +15,7 @@ import numpy as np
 
 from hdf5_reader import Damaged, Hdf5Reader, as_text, require_plain_file
 from images import BrokenBonds, ImageKinds, on_the_body
-from mesh_cells import Elements, are_sound
+from mesh_cells import QUADRILATERAL, TRIANGLE, Elements, are_sound
 from outline import Outline, read_outline
 
 MOST_TABLE = 1 << 30  # limit on the bytes of a CSV file
@@ -314,7 +314,7 @@ def read_results_folder(path: Path) -> ResultsFolder:
         angle = _finite(file.attribute("points", "angle"))
         step_numbers = _readable_steps(file, missing)
         image_kinds = _image_kinds(file, reference.shape[1], missing)
-        elements = _elements(file, reference, missing)
+        elements = None if "lattice" in case else _elements(file, reference, missing)
     title = title or as_text(case.get("title", "")) or path.resolve().name
     title = "".join(c if c.isprintable() else " " for c in title)[:LONGEST_TITLE]
     lattice = case.get("lattice", {})
@@ -365,11 +365,13 @@ def _image_kinds(file, dimension: int, missing) -> ImageKinds | None:
 
 def _elements(file, reference: np.ndarray, missing) -> Elements | None:
     """Elements of a plane mesh; None for other bodies, and for elements that are no cells of the points."""
-    if reference.shape[1] != 2 or "points/elements" not in file:
+    if reference.shape[1] != 2 or "points/cells" not in file:
         return None
     try:
-        integers = (file.numbers(f"points/elements/{name}", kind=np.int64) for name in ("offset", "corners"))
-        elements = Elements(file.numbers("points/elements/nodes"), *integers)
+        if not np.isin(file.numbers("points/cells/types"), (TRIANGLE, QUADRILATERAL)).all():
+            return None
+        offset = file.numbers("points/cells/offsets", kind=np.int64)
+        elements = Elements(file.numbers("points/cells/corners")[:, :2], offset)
         if are_sound(elements, len(reference)):
             return elements
         raise Damaged("they are no cells of the points")

@@ -92,28 +92,6 @@ void write_image_kinds(Hdf5File& file, const Points& points) {
              {"m", "of each kind of images: an image of X stands at mirror X + shift"});
 }
 
-/// Writes the elements of points at the centroids of a mesh's elements.
-void write_elements(Hdf5File& file, const Points& points) {
-  const MeshElements& elements = points.elements;
-  if (elements.empty()) return;
-  const auto dimension = std::uint64_t(points.dimension);
-  const auto integers = [](const auto& values) {
-    return std::vector<std::int32_t>(values.begin(), values.end());
-  };
-  std::vector<std::int32_t> kinds;
-  for (const MeshElements::Kind kind : elements.kind) kinds.push_back(std::int32_t(kind));
-  const std::string place = "/points/elements";
-  file.make_group(place);
-  file.write(place + "/nodes", elements.nodes, {elements.nodes.size() / dimension, dimension},
-             {"m", "positions of the mesh's nodes"});
-  file.write(place + "/kind", kinds, {kinds.size()},
-             {"1", "of each point's element: VTK's number of its type"});
-  file.write(place + "/offset", integers(elements.offset), {elements.offset.size()},
-             {"1", "first corner of each point's element, and the end"});
-  file.write(place + "/corners", integers(elements.corners), {elements.corners.size()},
-             {"1", "nodes at the corners of the elements, in VTK's order"});
-}
-
 }  // namespace
 
 std::string flags_of(const std::string& set) { return "/points/sets/" + name_of_flags(set); }
@@ -190,7 +168,6 @@ void write_points(Hdf5File& file, const Points& points, const std::vector<PointC
                {"1", "share of the volume of j that i counts, and of i that j counts"});
   }
   write_image_kinds(file, points);
-  write_elements(file, points);
 }
 
 void send_points(const Points& points, const std::vector<PointCounts>& counts,
@@ -205,11 +182,7 @@ std::uint64_t bytes_of(const Points& points, const std::vector<PointCounts>& cou
                                         (std::uint64_t(points.dimension) + 5) * sizeof(double) +
                                         sizeof(std::int32_t) + 2 * points.sets.size();
   const std::uint64_t bytes_per_pair = 2 * (sizeof(std::int32_t) + sizeof(double));
-  const std::uint64_t of_elements =
-      sizeof(double) * points.elements.nodes.size() +
-      sizeof(std::int32_t) * (points.elements.corners.size() + 2 * points.elements.kind.size());
-  return rows * bytes_per_point + of_elements + cells.bytes() +
-         points.neighbours.size() * bytes_per_pair +
+  return rows * bytes_per_point + cells.bytes() + points.neighbours.size() * bytes_per_pair +
          points.images.kinds.size() * 6 * sizeof(double);
 }
 
