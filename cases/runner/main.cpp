@@ -233,6 +233,8 @@ void add_points(CLI::App& command, CommandLine& line) {
       ->required();
   command.add_option("--dimension", asked.dimension, "2 or 3 (default: 3 if the mesh has solids)")
       ->check(CLI::Range(2, 3));
+  command.add_option("--length-unit", asked.length_unit,
+                     "unit of the coordinates in the file, such as mm (default: m)");
   command.add_option("--thickness", asked.thickness, "thickness in 2D [m] (default: 1)");
   command.add_option("--at", asked.at, "elements (default) or nodes")
       ->transform(names<PointsAt>({{"elements", PointsAt::elements}, {"nodes", PointsAt::nodes}}));

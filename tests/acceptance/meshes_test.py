@@ -141,6 +141,24 @@ class Meshes(Folder):
             self.assertIn(words, said)
         self.assertNotIn("warning", said)
 
+    def test_coordinates_in_millimetres(self):
+        nodes, elements, names = squares(12, 4)
+        self.mesh(nodes, elements, names)
+        said = self.points("plate.msh", "--length-unit", "mm").output
+        self.assertIn("horizon     0.003015 m is 3.015 mean", said)
+        for unit in ("kg", "furlong"):
+            self.assertIn("must be a unit of length", self.points("plate.msh", "--length-unit", unit, code=2).errors)
+        scaled = CASE.replace("horizon = 3.1", "horizon = 3.1e-3")
+        in_mm = self.fields(self.run_case(scaled, 'points.length_unit="1 mm"', name="mm"))
+        self.mesh([(x / 1000, y / 1000) for x, y in nodes], elements, names)
+        in_m = self.fields(self.run_case(scaled, name="m"))
+        for one, other in zip(in_mm, in_m):
+            self.assertEqual(one.tolist(), other.tolist())
+
+    def fields(self, out):
+        with h5py.File(out / "results.h5") as file:
+            return [file["points/reference"][:], file["points/volume"][:], file["steps/000001/displacement"][:]]
+
     def test_a_graded_mesh_is_warned(self):
         nodes, elements, names = squares(40, 8)
         nodes = [(1.08**i, j) for i, j in nodes]

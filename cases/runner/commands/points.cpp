@@ -5,12 +5,14 @@
 #include <cstdio>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "cases/runner/input/quantity.hpp"
 #include "cases/runner/process/output_file.hpp"
 #include "cases/runner/setup/read_mesh.hpp"
 #include "src/core/input_error.hpp"
@@ -22,7 +24,7 @@
 namespace peristat {
 namespace {
 
-constexpr const char* heading_of_points = "# points of a mesh, written by peristat points";
+constexpr const char* heading_of_points = "# points of a mesh in m, written by peristat points";
 constexpr double usual_horizon_ratio = 3.015;
 
 int dimension_of_mesh(const Mesh& mesh) {
@@ -104,6 +106,14 @@ void write_points_file(const Points& points, const PointsQuestion& question) {
   fmt::print("written     {}\n", question.output.string());
 }
 
+double length_of(const std::string& unit) {
+  std::string why_not;
+  const std::optional<Unit> found = parse_unit(unit, why_not);
+  if (!found || found->dimension != unit_of_key("m").dimension)
+    throw InputError("--length-unit", unit, "must be a unit of length, such as mm");
+  return found->size();
+}
+
 }  // namespace
 
 Exit print_points(const PointsQuestion& question) {
@@ -117,7 +127,7 @@ Exit print_points(const PointsQuestion& question) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(question.mesh, error))
     throw InputError("", question.mesh.string(), "no such file");
-  const Mesh mesh = read_mesh(question.mesh);
+  const Mesh mesh = read_mesh(question.mesh, length_of(question.length_unit));
   const int dimension = question.dimension == 0 ? dimension_of_mesh(mesh) : question.dimension;
   if (dimension == 3 && question.thickness != 1.0)
     throw InputError("--thickness", fmt::format("{}", question.thickness), "is for dimension 2");

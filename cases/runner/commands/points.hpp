@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/process/failure.hpp"
@@ -11,7 +12,8 @@ namespace peristat {
 struct PointsQuestion {
   std::filesystem::path mesh;
   int dimension = 0;  ///< 0: 3 if the mesh has solids, else 2
-  double thickness = 1.0;
+  std::string length_unit = "m";  ///< of the coordinates in the file
+  double thickness = 1.0;         ///< [m]
   PointsAt at = PointsAt::elements;
   std::filesystem::path output;  ///< empty: nothing is written
 };

@@ -115,17 +115,18 @@ Mesh mesh_of(AnswerReader answer) {
 
 }  // namespace
 
-Mesh read_mesh(const fs::path& file) {
+Mesh read_mesh(const fs::path& file, double length_unit) {
   const std::string answer = answer_of_script(file);
   const std::string mesh = "mesh\n", refused = "refused\n";
   if (answer.starts_with(refused)) refuse_mesh_file(file, answer.substr(refused.size()));
   if (!answer.starts_with(mesh)) refuse_mesh_file(file, "meshio has answered nothing");
-  return mesh_of(AnswerReader(answer, mesh.size(), file));
+  Mesh read = mesh_of(AnswerReader(answer, mesh.size(), file));
+  for (double& at : read.nodes) at = in_metres(at, length_unit);
+  return read;
 }
 
 Points read_mesh_points(const PointSource& source, int dimension) {
-  Mesh mesh = read_mesh(source.file);
-  for (double& at : mesh.nodes) at = in_metres(at, source.length_unit);
+  const Mesh mesh = read_mesh(source.file, source.length_unit);
   Points points = make_points(make_mesh_body(mesh, dimension, source.file.string()), source.at,
                               source.cross_section, source.file.string());
   if (source.cut_bonds) points.interior = std::make_shared<const MeshInterior>(points.mesh);
