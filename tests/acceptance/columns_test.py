@@ -264,7 +264,7 @@ steps = 10
         rows[5] = rows[5].replace(rows[5].split(", ")[0], "0.125", 1)  # of copy_of_x alone
         self.write("points.csv", "\n".join(rows))
         ended = self.resume("out", "dynamics.end_time=0.7", code=2)
-        self.assertIn("its points are not those that the case now makes", ended.errors)
+        self.assertIn("points.csv: has changed since the run began", ended.errors)
 
 
 class Tables(Folder):
@@ -371,7 +371,7 @@ class Tables(Folder):
         whole = self.run_case(text, "dynamics.end_time=2.0", name="whole")
         self.write("amplitude.csv", AMPLITUDE.replace("-4", "-5"))
         ended = self.resume("out", "dynamics.end_time=2.0", code=2)
-        self.assertIn("amplitude.csv of a table has changed since the run began", ended.errors)
+        self.assertIn("amplitude.csv: has changed since the run began", ended.errors)
         self.write("amplitude.csv", AMPLITUDE)
         self.resume("out", "dynamics.end_time=2.0")
         self.resume("out", "dynamics.end_time=2.0")  # at its end
