@@ -42,8 +42,8 @@ std::string why_no_column(const std::string& name) {
   }
   if (name.size() > longest) return "has more than " + std::to_string(longest) + " characters";
   static const std::vector<std::string> words{
-      "x",       "y",         "z",         "load",      "load2", "load3", "load4",   "t",
-      "spacing", "spacing_x", "spacing_y", "spacing_z", "pi",    "free",  table_name};
+      "x",       "y",         "z",         "load",      "load2",   "load3", "load4", "t",
+      "spacing", "spacing_x", "spacing_y", "spacing_z", "horizon", "pi",    "free",  table_name};
   const bool is_function = mu::Parser().GetFunDef().contains(name);
   if (is_function || std::ranges::count(words, name) > 0) {
     return "is taken: it means something else in expressions; choose another name";

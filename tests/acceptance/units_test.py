@@ -200,6 +200,11 @@ class Words(Folder):
             self.assertIn(f'support[1].displacement[1] = {value} does not depend on load', said)
             self.assertIn(f'write "{value}*load"', said)
 
+    def test_the_warning_on_a_soft_body_names_the_units(self):
+        said = self.assert_completed(self.command("check", rewritten(SI, IN_MM), "material.youngs_modulus=7e-4", "material.damage.law=none")).said
+        self.assertIn("youngs_modulus = 700 Pa is softer than any solid", said)
+        self.assertIn("in SI units, or in those of [units]", said)
+
     def test_symbols_lead_to_their_keys(self):
         for line, key in (("E = 70e9", "youngs_modulus"), ("nu = 0.3", "poisson_ratio"), ("rho = 2500", "density"),
                           ("alpha = 1e-5", "thermal_expansion"), ("G_c = 10", "material.damage.fracture_energy"),

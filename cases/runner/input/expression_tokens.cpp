@@ -34,16 +34,25 @@ std::size_t length_of_symbol(std::string_view text) {
   return digits > 0 ? symbol + 1 + sign + digits : symbol;
 }
 
-/// Length of a unit: symbols joined by * and / without blanks. What follows the first one belongs
-/// to the unit only if it is one, and no variable.
+/// True for a symbol of a unit that is neither a variable, "t^2", nor a function, "min(load, 1)".
+bool is_unit(std::string_view symbol, std::string_view behind) {
+  const std::string_view word = symbol.substr(0, symbol.find('^'));
+  const std::size_t blanks = count_in_front(behind, is_space);
+  std::string why_not;
+  return !is_length(word) && !is_time(word) && behind.substr(blanks, 1) != "(" &&
+         parse_unit(symbol, why_not).has_value();
+}
+
+/// Length of a unit: symbols joined by * and / without blanks, also behind "1/". What follows the
+/// first one belongs to the unit only if it is one, and no variable.
 std::size_t length_of_unit(std::string_view text) {
-  std::size_t length = length_of_symbol(text);
+  const std::size_t begin = text.starts_with("1/") ? 2 : 0;
+  const std::size_t first = length_of_symbol(text.substr(begin));
+  std::size_t length = first > 0 ? begin + first : 0;
   while (length > 0 && (text.substr(length, 1) == "/" || text.substr(length, 1) == "*")) {
     const std::string_view rest = text.substr(length + 1);
     const std::string_view symbol = rest.substr(0, length_of_symbol(rest));
-    std::string why_not;
-    if (symbol.empty() || is_length(symbol) || is_time(symbol) || !parse_unit(symbol, why_not))
-      break;
+    if (symbol.empty() || !is_unit(symbol, rest.substr(symbol.size()))) break;
     length += 1 + symbol.size();
   }
   return length;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cases/runner/input/case_keys.hpp"
+#include "cases/runner/input/expression_tokens.hpp"
 #include "cases/runner/input/si_expression.hpp"
 #include "solvers/observe/point_fields.hpp"
 #include "src/core/input_error.hpp"
@@ -84,22 +85,30 @@ class KeyConversion {
     const std::string_view text = trimmed(value.string);
     const std::size_t number = length_of_number(text);
     const std::string_view unit = trimmed(text.substr(number));
-    std::string why_not;
     const bool has_unit = number > 0 && !unit.empty() && !name_.empty();
     const bool is_number = form_ != ValueForm::expression;
-    if (has_unit && (is_number || parse_unit(unit, why_not))) {
-      set(value, path, in_unit(text.substr(0, number), unit_in(value, path, unit) / value_.si));
-      return;
-    }
     // Other strings are left to the reader, which refuses them if the key takes numbers alone.
-    if (is_number) return;
+    if (is_number && !has_unit) return;
     try {
+      if (is_number || (has_unit && is_quantity(text, unit))) {
+        set(value, path, in_unit(text.substr(0, number), unit_in(value, path, unit) / value_.si));
+        return;
+      }
       const std::string si = in_si(
           value.string, units_, name_.empty() ? std::nullopt : std::optional<UnitOfValue>(value_));
       if (si != value.string) typed_[path] = std::exchange(value.string, si);
     } catch (const InputError& error) {
       refuse(value, path, error.allowed());
     }
+  }
+
+  /// True for one number and its unit; false for "2 m/s*t", where t is the time and no tonne.
+  bool is_quantity(std::string_view text, std::string_view unit_text) const {
+    std::string why_not;
+    const std::optional<Unit> unit = parse_unit(unit_text, why_not);
+    if (!unit || unit->dimension == value_.si.dimension) return unit.has_value();
+    const bool is_signed = text.front() == '-' || text.front() == '+';
+    return tokens_of(text.substr(is_signed ? 1 : 0)).size() == 1;
   }
 
   Unit unit_in(const TomlValue& value, const std::string& path, std::string_view text) const {

@@ -114,7 +114,7 @@ void add_stiffnesses(const Preflight& of, Warnings& warnings) {
     if (modulus <= no_dimension || modulus >= softest_gel) continue;
     warnings.push_back(
         fmt::format("{} = {:g} Pa is softer than any solid; numbers without a unit are in SI "
-                    "units: {:g} GPa is {:g}e9, "
+                    "units, or in those of [units]: in Pa, {:g} GPa is {:g}e9, "
                     "{:g} MPa is {:g}e6",
                     key, modulus, modulus, modulus, modulus, modulus));
   }

@@ -228,8 +228,7 @@ TEST_F(Units, AreConvertedToTheLastBit) {
   EXPECT_EQ(resolved(expected), expected);
 }
 
-TEST_F(Units, HoldForMotionsAndForTimesInExpressions) {
-  const std::string motion = R"toml(dimension = 2
+const std::string motion = R"toml(dimension = 2
 [lattice]
 spacing = 0.001
 [[lattice.shape]]
@@ -255,6 +254,8 @@ mode = "dynamics"
 end_time = 2e-06
 time_step = 1e-08
 )toml";
+
+TEST_F(Units, HoldForMotionsAndForTimesInExpressions) {
   std::string in_ms =
       with(motion, "[lattice]", "[units]\nlength = \"mm\"\ntime = \"ms\"\n[lattice]");
   for (const auto& [si, ms] : std::vector<std::pair<std::string, std::string>>{
@@ -276,6 +277,26 @@ time_step = 1e-08
     expected = with(expected, si, ms);
   EXPECT_EQ(resolved(in_ms), expected);
   EXPECT_EQ(resolved(expected), expected);
+}
+
+TEST_F(Units, EndBeforeTheTimeAndBeforeFunctions) {
+  const auto given = [](const std::string& displacement) {
+    return with(motion, "1e-05*sin(2*pi*t/0.002)", displacement);
+  };
+  for (const auto& [typed, si] : std::vector<std::pair<std::string, std::string>>{
+           {"2 mm/s*t", "0.002*t"},
+           {"-2 mm/s * t", "-0.002 * t"},
+           {"5 m/s^2*t^2", "5*t^2"},
+           {"2 mm*min(t/(1 ms), 1)", "0.002*min(t/(0.001), 1)"},
+           {"2 mm*min (t/(1 ms), 1)", "0.002*min (t/(0.001), 1)"},
+           {"2 mm*sin(5 1/ms*t)", "0.002*sin(5000*t)"}})
+    EXPECT_NE(resolved(given(typed)).find("[\"" + si + "\", "), std::string::npos)
+        << typed << ": " << refusal(given(typed));
+  EXPECT_NE(resolved(with(motion, "50000*(x > 0.005)", "50 1/ms*(x > 5 mm)"))
+                .find("rate = \"50000*(x > 0.005)\""),
+            std::string::npos);
+  expect_refusal(given("2.5 MPa"), {"must be a length, e.g. 2.5 mm; MPa is the unit of a stress"});
+  expect_refusal(given("-2.5 MPa"), {"must be a length, e.g. 2.5 mm; MPa is the unit of a stress"});
 }
 
 TEST_F(Units, OfExpressionsThatAreNoProductsScaleTheWhole) {
