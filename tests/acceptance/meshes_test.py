@@ -1,5 +1,6 @@
 """Points of meshes: formats, groups, boundaries, loads on facets, and meshes that are broken."""
 
+import csv
 import itertools
 import json
 import subprocess
@@ -271,6 +272,26 @@ class Meshes(Folder):
         with_side = CASE.replace('set = "right"', 'side = "x+"')
         reaction = json.loads((self.run_case(with_side) / "summary.json").read_text())["reactions"]["left"]
         self.assertAlmostEqual(reaction[0], -1e6 * 6.0 * 0.5, delta=1e-3)
+
+    def test_histories_have_the_displacement_of_a_side(self):
+        """That of the points behind its facets: the mean over the elements, or nodes, at the right side."""
+        nodes, elements, names = squares(12, 4)
+        self.mesh(nodes, elements, names)
+        traction, pressure = 'traction = ["1e6*load", 0]', 'pressure = "-1e6*load"'
+        for at, load in itertools.product(("elements", "nodes"), (traction, pressure)):
+            text = CASE.replace('set = "right"', 'side = "x+"').replace(traction, load)
+            folder = self.run_case(text, f'points.at="{at}"')
+            with open(folder / "load_displacement.csv", newline="") as table:
+                last = list(csv.DictReader(table))[-1]
+            with h5py.File(folder / "results.h5") as file:
+                x = file["points/reference"][:, 0]
+                displacement = file["steps"][max(file["steps"])]["displacement"][:, 0]
+            expected = displacement[x > x.max() - 1e-6].mean()
+            self.assertGreater(expected, 0.0)
+            self.assertAlmostEqual(float(last["displacement_x:x+"]) / expected, 1.0, places=12)
+            self.assertEqual("force_x:x+" in last, load == traction)
+            if load == traction:
+                self.assertAlmostEqual(float(last["force_x:x+"]), 1e6 * 4 * 0.5, delta=1e-3)
 
     def test_a_pressure_acts_on_a_slanted_facet(self):
         """A side of length l with normal n takes -p l t n: here the right one, slanted by one unit."""

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "solvers/formulations/formulations.hpp"
+#include "src/conditions/loaded_facets.hpp"
 #include "src/conditions/traction.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/body_cells.hpp"
@@ -82,6 +83,14 @@ void add_load(DrivenList& list, const LoadSpecification& load, int dimension, bo
   }
 }
 
+/// Outermost points of the side of a load without a set; on a mesh those behind the facets that the
+/// load acts on.
+std::vector<Index> points_of_side(const Points& points, const LoadSpecification& load,
+                                  const Communicator& ranks) {
+  if (points.mesh) return facet_areas(points, load, "load").points;
+  return BodyCells(points, ranks).outermost(*load.side);
+}
+
 }  // namespace
 
 std::vector<Driven> driven_by(const Case& from) {
@@ -136,7 +145,7 @@ DrivenSets::DrivenSets(const Case& from, const Body& body)
       const std::span<const Index> members = recorded.members(measured.driven.set);
       measured.points.assign(members.begin(), members.end());
     } else if (load) {
-      measured.points = keep_recorded(BodyCells(body.points, ranks_).outermost(*load->side));
+      measured.points = keep_recorded(points_of_side(body.points, *load, ranks_));
     }
     measured.count = ranks_.sum(double(measured.points.size()));
     measured.loaded = measured.points;
