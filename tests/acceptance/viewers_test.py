@@ -333,6 +333,14 @@ class LoadDisplacement(Folder):
             self.assertAlmostEqual(curve["force_x:x+"][-1], 1e3, delta=1e-9)
             self.assertGreater(curve["displacement_x:x+"][-1], 0.0)
 
+        # Several loads in one place are one force, in any order.
+        pressure = '[[load]]\nside = "x+"\npressure = "1e6*load"\n'
+        for number, both in enumerate((traction.format("row") + traction.format("horizon"), traction.format("horizon") + traction.format("row"))):
+            for more in ("", pressure):
+                curve = self.curve(plain + more + both, name=f"both_{number}{len(more)}")
+                self.assertEqual(list(curve)[2:], ["displacement_x:x+", "force_x:x+"])
+                self.assertAlmostEqual(curve["force_x:x+"][-1], 2e3, delta=1e-9)
+
         pressed = self.curve(plain + '[[load]]\nside = "x+"\npressure = "1e8*load"\n', name="pressed")
         self.assertEqual(list(pressed)[2:], ["displacement_x:x+"])
         self.assertLess(pressed["displacement_x:x+"][-1], 0.0)

@@ -25,14 +25,18 @@ std::string name_of_column(const char* quantity, const Driven& driven) {
   return std::string(quantity) + "_" + "xyz"[driven.component] + ":" + driven.name;
 }
 
-/// What is driven, each name and component once.
+/// What is driven, each name and component once; several loads there are one, with all forces.
 class DrivenList {
  public:
   void add(Driven driven) {
-    const bool is_known = std::ranges::any_of(made_, [&](const Driven& other) {
+    const auto known = std::ranges::find_if(made_, [&](const Driven& other) {
       return other.name == driven.name && other.component == driven.component;
     });
-    if (!is_known) made_.push_back(std::move(driven));
+    if (known == made_.end()) {
+      made_.push_back(std::move(driven));
+    } else if (known->load) {
+      known->forces.insert(known->forces.end(), driven.forces.begin(), driven.forces.end());
+    }
   }
   [[nodiscard]] std::vector<Driven> release() { return std::move(made_); }
 
@@ -75,11 +79,9 @@ void add_load(DrivenList& list, const LoadSpecification& load, int dimension, bo
   if (is_followed && !load.side) return;  // it has no direction
   for (int c = 0; c < dimension; ++c) {
     if (is_followed ? load.side->axis != c : is_number_zero(load.value[std::size_t(c)])) continue;
-    list.add({.name = name_of,
-              .component = c,
-              .load = &load,
-              .set = load.set,
-              .has_force = !is_of_surface && !is_followed});
+    Driven driven{.name = name_of, .component = c, .load = &load, .set = load.set};
+    if (!is_of_surface && !is_followed) driven.forces = {&load};
+    list.add(std::move(driven));
   }
 }
 
@@ -124,7 +126,7 @@ std::vector<ProbeColumns> columns_of(const std::vector<Driven>& driven) {
   for (const Driven& one : driven) {
     columns.push_back({name_of_column("displacement", one), 1, "m",
                        "mean displacement of " + one.name + ", which the case drives"});
-    if (!one.load || !one.has_force) continue;
+    if (one.forces.empty()) continue;
     columns.push_back(
         {name_of_column("force", one), 1, "N", "sum of the loads on the points of " + one.name});
   }
@@ -148,14 +150,18 @@ DrivenSets::DrivenSets(const Case& from, const Body& body)
       measured.points = keep_recorded(points_of_side(body.points, *load, ranks_));
     }
     measured.count = ranks_.sum(double(measured.points.size()));
-    measured.loaded = measured.points;
-    if (load && load->kind == LoadSpecification::Kind::traction && measured.driven.has_force) {
-      measured.loaded = keep_recorded(
-          traction_areas(body.points, *load, body.setting.horizon, "load", ranks_).points);
-      std::ranges::sort(measured.loaded);  // columns of points below a face may meet
-      const auto [first, last] = std::ranges::unique(measured.loaded);
-      measured.loaded.erase(first, last);
+    for (const LoadSpecification* const force : measured.driven.forces) {
+      const std::vector<Index> points =
+          force->kind == LoadSpecification::Kind::traction
+              ? keep_recorded(
+                    traction_areas(body.points, *force, body.setting.horizon, "load", ranks_)
+                        .points)
+              : measured.points;
+      measured.loaded.insert(measured.loaded.end(), points.begin(), points.end());
     }
+    std::ranges::sort(measured.loaded);  // loads share points, and columns below a face may meet
+    const auto [first, last] = std::ranges::unique(measured.loaded);
+    measured.loaded.erase(first, last);
     measured_.push_back(std::move(measured));
   }
 }
@@ -179,7 +185,7 @@ void DrivenSets::add_values(std::span<const double> displacement,
       mean = sum(displacement, points, driven.component) / count;
     }
     values[name_of_column("displacement", driven)] = {mean};
-    if (!driven.load || !driven.has_force) continue;
+    if (driven.forces.empty()) continue;
     values[name_of_column("force", driven)] = {sum(external_force, loaded, driven.component)};
   }
 }

@@ -17,14 +17,14 @@ namespace peristat {
 struct Driven {
   std::string name;  ///< as in the columns of reactions; of a side "y+"
   int component = 0;
-  /// Load that acts; null: the displacement is prescribed, and its force is the reaction.
+  /// First load that acts; null: the displacement is prescribed, and its force is the reaction.
   const LoadSpecification* load = nullptr;
+  std::vector<const LoadSpecification*> forces{};  ///< all loads here that are forces on points
   std::string
       set{};  ///< whose mean displacement is recorded; empty: of the load's side, or `value`
-  std::string value{};    ///< expression of a displacement without a set [m]
-  double factor = 1.0;    ///< of `value`
-  Coordinates place{};    ///< at which `value` is evaluated [m]
-  bool has_force = true;  ///< false: the force is neither a reaction nor a load of points
+  std::string value{};  ///< expression of a displacement without a set [m]
+  double factor = 1.0;  ///< of `value`
+  Coordinates place{};  ///< at which `value` is evaluated [m]
 };
 
 /// Returns what a case drives, each name and component once: supports, rigid sets, rollers and
@@ -33,7 +33,7 @@ struct Driven {
 [[nodiscard]] std::vector<Driven> driven_by(const Case& from);
 
 /// Columns of the history for these: displacement_y:SET [m], the mean over the set, and for loads
-/// also force_y:SET [N], the sum of all loads of fixed direction at the points that it acts on.
+/// also force_y:SET [N], the sum of all loads of fixed direction at the points that they act on.
 [[nodiscard]] std::vector<ProbeColumns> columns_of(const std::vector<Driven>& driven);
 
 /// Values of these columns in accepted states.
@@ -53,7 +53,7 @@ class DrivenSets {
     Driven driven;
     std::vector<Index> points;  ///< recorded here, of which the mean is taken
     double count = 0.0;         ///< of them, on all ranks
-    std::vector<Index> loaded;  ///< points that the load acts on, of this rank
+    std::vector<Index> loaded;  ///< points that its forces act on, of this rank
   };
 
   const Points& points_;
