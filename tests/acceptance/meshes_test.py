@@ -90,8 +90,8 @@ class Meshes(Folder):
         for place, k in zip(places, row, strict=True):
             np.testing.assert_allclose(place, [(k - 8) % 12 + 0.5, (k - 8) // 12 + 0.5], atol=1e-14)
         np.testing.assert_allclose(of["volume"][...], 0.5, rtol=1e-14)
-        np.testing.assert_array_equal(of["elements/kind"][...], 9)  # VTK's quadrilaterals
-        corners = of["elements/nodes"][...][of["elements/corners"][...]].reshape(-1, 4, 2)
+        np.testing.assert_array_equal(of["cells/types"][...], 9)  # VTK's quadrilaterals
+        corners = of["cells/corners"][:, :2].reshape(-1, 4, 2)
         np.testing.assert_allclose(corners.mean(axis=1), places, atol=1e-14)
 
     def test_points_stand_at_nodes_with_their_share(self):

@@ -11,7 +11,7 @@ namespace peristat {
 /// What the command `points` asks for.
 struct PointsQuestion {
   std::filesystem::path mesh;
-  int dimension = 0;  ///< 0: 3 if the mesh has solids, else 2
+  int dimension = 0;              ///< 0: 3 if the mesh has solids, else 2
   std::string length_unit = "m";  ///< of the coordinates in the file
   double thickness = 1.0;         ///< [m]
   PointsAt at = PointsAt::elements;
