@@ -136,10 +136,20 @@ void add_calibration(CLI::App& command, CommandLine& line) {
   add("--c3", asked.c3, "[N/m14], three-neighbour constant, 3D");
 }
 
-/// Transformer from the names of an option's values to the values.
+/// Transformer from the names of an option's values to the values, as numbers.
 template <class Value>
-CLI::CheckedTransformer names(const std::vector<std::pair<std::string, Value>>& values) {
-  return CLI::CheckedTransformer(values);
+CLI::Validator names(const std::vector<std::pair<std::string, Value>>& values) {
+  std::string all;
+  for (const auto& [name, value] : values) all += (all.empty() ? "" : "|") + name;
+  const auto to_number = [values, all](std::string& text) -> std::string {
+    for (const auto& [name, value] : values) {
+      if (text != name) continue;
+      text = std::to_string(static_cast<int>(value));
+      return {};
+    }
+    return "must be " + all + ", not \"" + text + '"';
+  };
+  return CLI::Validator(to_number, all);
 }
 
 void add_bond_calibration(CLI::App& command, CommandLine& line) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "src/core/input_error.hpp"
+#include "src/core/linear_table.hpp"
 #include "src/core/number_text.hpp"
 
 namespace peristat {
@@ -47,17 +48,6 @@ void check(const TimeTable& table, double end, const std::string& key) {
                      "ends before the motion, which ends at " + number_text(end) +
                          " s; add a pair for the value from there on");
   }
-}
-
-double value_at(const TimeTable& table, double time) {
-  if (time <= table.front()[0]) return table.front()[1];
-  if (time >= table.back()[0]) return table.back()[1];
-  const auto after =
-      std::ranges::upper_bound(table, time, {}, [](const auto& pair) { return pair[0]; });
-  const auto [from, low] = *(after - 1);
-  const auto [to, high] = *after;
-  const double share = (time - from) / (to - from);
-  return (1.0 - share) * low + share * high;
 }
 
 }  // namespace
@@ -109,7 +99,7 @@ std::vector<std::string> LoadingProgramme::names() const {
 std::vector<double> LoadingProgramme::at(double stage) const {
   if (is_of_time()) {
     std::vector<double> values{stage};
-    for (const TimeTable& table : over_time_) values.push_back(value_at(table, stage));
+    for (const TimeTable& table : over_time_) values.push_back(interpolated(table, stage));
     return values;
   }
   const double entry = std::clamp(std::floor(stage), 0.0, end() - 1.0);

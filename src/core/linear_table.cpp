@@ -96,14 +96,13 @@ LinearTable::LinearTable(const std::filesystem::path& file, const std::string& c
   for_each_row(file, [&](std::size_t line, std::string_view text) {
     double at = 0.0, value = 0.0;
     if (!columns.read(line, text, at, value)) return;
-    if (!at_.empty() && !(at > at_.back())) {
+    if (!rows_.empty() && !(at > last())) {
       columns.refuse("the first column must ascend, but " + number_text(at) + " follows " +
-                     number_text(at_.back()));
+                     number_text(last()));
     }
-    at_.push_back(at);
-    value_.push_back(value);
+    rows_.push_back({at, value});
   });
-  if (at_.size() < 2) throw InputError("file", file.string(), "a table needs at least two rows");
+  if (rows_.size() < 2) throw InputError("file", file.string(), "a table needs at least two rows");
 }
 
 bool LinearTable::covers(double place) const {
@@ -112,13 +111,19 @@ bool LinearTable::covers(double place) const {
 }
 
 double LinearTable::operator()(double place) const {
-  if (std::isnan(place)) return place;
-  if (place <= first()) return value_.front();
-  if (place >= last()) return value_.back();
-  const auto after = std::size_t(std::ranges::upper_bound(at_, place) - at_.begin());
-  const double share = (place - at_[after - 1]) / (at_[after] - at_[after - 1]);
+  return std::isnan(place) ? place : interpolated(rows_, place);
+}
+
+double interpolated(std::span<const std::array<double, 2>> rows, double place) {
+  if (place <= rows.front()[0]) return rows.front()[1];
+  if (place >= rows.back()[0]) return rows.back()[1];
+  const auto after =
+      std::ranges::upper_bound(rows, place, {}, [](const auto& row) { return row[0]; });
+  const auto [from, low] = *(after - 1);
+  const auto [to, high] = *after;
+  const double share = (place - from) / (to - from);
   // Exact at the ends, and without an overflow of the difference.
-  return (1.0 - share) * value_[after - 1] + share * value_[after];
+  return (1.0 - share) * low + share * high;
 }
 
 }  // namespace peristat

@@ -1,10 +1,16 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace peristat {
+
+/// Value at a place of rows { place, value } with ascending places: linear between them, outside
+/// that of the nearer end.
+[[nodiscard]] double interpolated(std::span<const std::array<double, 2>> rows, double place);
 
 /// A function of one variable, linear between given places: two columns of a text file.
 ///
@@ -19,15 +25,15 @@ class LinearTable {
   ///         unknown column; with "file" for a file that can't be read or has fewer than two rows
   LinearTable(const std::filesystem::path& file, const std::string& column);
 
-  [[nodiscard]] double first() const { return at_.front(); }
-  [[nodiscard]] double last() const { return at_.back(); }
+  [[nodiscard]] double first() const { return rows_.front()[0]; }
+  [[nodiscard]] double last() const { return rows_.back()[0]; }
   /// True if a place is in the table, up to round-off of its range.
   [[nodiscard]] bool covers(double place) const;
   /// Value at a place; outside that of the nearer end, and not a number at one that is none.
   [[nodiscard]] double operator()(double place) const;
 
  private:
-  std::vector<double> at_, value_;
+  std::vector<std::array<double, 2>> rows_;
 };
 
 }  // namespace peristat
