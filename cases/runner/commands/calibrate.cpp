@@ -186,7 +186,7 @@ void check_place(const CalibrationQuestion& where, const BondCalibrationQuestion
 }
 
 /// Prints the calibration of the bonds of a case.
-Exit calibrate_bonds(const Case& from, bool with_strengths) {
+Exit calibrate_bonds(const Case& from, bool with_strengths, std::FILE* out) {
   const auto body = make_body(from, 1);
   located_errors(from, [&] {
     if (!body->points.horizons.empty())
@@ -196,11 +196,12 @@ Exit calibrate_bonds(const Case& from, bool with_strengths) {
     const PointMaterials materials(body->specification, body->points);
     const auto all = all_materials(body->specification, materials);
     for (std::size_t k = 0; k < all.size(); ++k) {
-      if (all.size() > 1) fmt::print("{}\"{}\":\n", k == 0 ? "{" : ", ", all[k].name);
-      fmt::print("{}", bond_calibration(*all[k].of, all[k].key, body->setting, body->points.spacing,
-                                        with_strengths));
+      if (all.size() > 1) fmt::print(out, "{}\"{}\":\n", k == 0 ? "{" : ", ", all[k].name);
+      fmt::print(out, "{}",
+                 bond_calibration(*all[k].of, all[k].key, body->setting, body->points.spacing,
+                                  with_strengths));
     }
-    if (all.size() > 1) fmt::print("}}\n");
+    if (all.size() > 1) fmt::print(out, "}}\n");
   });
   return Exit::done;
 }
@@ -215,7 +216,8 @@ InputError of_options(const InputError& error) {
 }
 
 /// @param damage JSON of the law of damage; empty: there is none
-void print_calibration(const CalibrationQuestion& question, const std::string& damage) {
+void print_calibration(std::FILE* out, const CalibrationQuestion& question,
+                       const std::string& damage) {
   const int dimension = question.dimension;
   const double horizon = question.horizon_ratio * question.spacing;
   Kernel kernel{dimension, horizon, question.thickness};
@@ -242,6 +244,7 @@ void print_calibration(const CalibrationQuestion& question, const std::string& d
                                                  : fmt::format("{:.6g}", of_lattice / of_continuum);
   };
   fmt::print(
+      out,
       "{{\n"
       "  \"dimension\": {}, \"spacing\": {:.12g}, \"horizon\": {:.12g}, \"thickness\": {:.12g},\n"
       "  \"neighbours\": {}, \"pairs\": {}, \"triplets\": {},\n"
@@ -313,12 +316,12 @@ Exit calibrate(const CalibrationQuestion& question, const DamageSpecification& d
   } catch (const InputError& error) {
     throw of_options(error);
   }
-  print_calibration(question, told);
+  print_calibration(stdout, question, told);
   return Exit::done;
 }
 
-Exit calibrate(const Case& from, bool with_strengths) {
-  if (takes(from, Option::micromodulus)) return calibrate_bonds(from, with_strengths);
+Exit calibrate(const Case& from, bool with_strengths, std::FILE* out) {
+  if (takes(from, Option::micromodulus)) return calibrate_bonds(from, with_strengths, out);
   if (!takes(from, Option::constants)) {
     throw InputError("material.model", name_of(from.material.model),
                      "uses E and nu as they are given; calibrate " + is_for(Option::calibration));
@@ -353,7 +356,7 @@ Exit calibrate(const Case& from, bool with_strengths) {
     question.c3.reset();
     if (material.c1 || from.dimension == 3) question.c2 = material.c2;
     if (material.c1) question.c3 = material.c3;
-    if (all.size() > 1) fmt::print("{}\"{}\":\n", k == 0 ? "{" : ", ", all[k].name);
+    if (all.size() > 1) fmt::print(out, "{}\"{}\":\n", k == 0 ? "{" : ", ", all[k].name);
     check(question);
     require_law(material.damage, with_strengths);
     const std::string damage = located_errors(from, [&] {
@@ -362,9 +365,9 @@ Exit calibrate(const Case& from, bool with_strengths) {
                  : damage_calibration(material, all[k].key, setting, points.spacing,
                                       with_strengths);
     });
-    print_calibration(question, damage);
+    print_calibration(out, question, damage);
   }
-  if (all.size() > 1) fmt::print("}}\n");
+  if (all.size() > 1) fmt::print(out, "}}\n");
   return Exit::done;
 }
 

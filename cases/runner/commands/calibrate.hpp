@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <optional>
 
 #include "cases/runner/commands/run.hpp"
@@ -41,6 +42,6 @@ struct BondCalibrationQuestion {
 [[nodiscard]] Exit calibrate(const CalibrationQuestion& where, BondCalibrationQuestion question);
 
 /// Prints the calibration for the lattice and materials of a case.
-[[nodiscard]] Exit calibrate(const Case& from, bool with_strengths);
+[[nodiscard]] Exit calibrate(const Case& from, bool with_strengths, std::FILE* out = stdout);
 
 }  // namespace peristat

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -103,13 +104,14 @@ std::string strength_text(const DamageSpecification& damage, const FractureScale
 }
 
 /// Prints stresses at which bonds begin to soften, and strengths under other stresses.
-void print_strengths(const DamageSpecification& damage, const std::string& name,
+void print_strengths(std::FILE* out, const DamageSpecification& damage, const std::string& name,
                      const FractureScale& scale, int dimension) {
   if (!scale.pull || dimension == 1) return;
   const AnyLaw law = law_of(damage);
   const auto onset = [&](Loading loading) { return scale.pull->onset(loading, law.onset()).mean; };
   if (onset(Loading::tension) == 0.0) return;
   fmt::print(
+      out,
       "{} bonds begin to soften at {:.4g} Pa of tension, {:.4g} Pa of compression; equal biaxial "
       "strength {:.4g} Pa, shear strength {:.4g} Pa\n",
       heading("strengths", name), onset(Loading::tension), onset(Loading::compression),
@@ -117,53 +119,55 @@ void print_strengths(const DamageSpecification& damage, const std::string& name,
 }
 
 /// Prints fracture energy and strength of a law of damage.
-void print_fracture(const Formulation& formulation, const PointMaterials::Material& of,
-                    const std::string& name, const BondSetting& setting, double spacing) {
+void print_fracture(std::FILE* out, const Formulation& formulation,
+                    const PointMaterials::Material& of, const std::string& name,
+                    const BondSetting& setting, double spacing) {
   const DamageSpecification& damage = of.of->damage;
   if (damage.law == DamageLaw::none || of.of->fibre) return;
   if (damage.law == DamageLaw::energy_density) {
-    fmt::print("{} points fail at an energy density of {:.6g} J/m3\n", heading("fracture", name),
-               bearable_energy_density(damage, setting.horizon));
+    fmt::print(out, "{} points fail at an energy density of {:.6g} J/m3\n",
+               heading("fracture", name), bearable_energy_density(damage, setting.horizon));
     return;
   }
   if (formulation.crack_energy_of_dilation) {
     const double energy = formulation.crack_energy_of_dilation(*of.of, of.key, setting, spacing);
-    fmt::print("{} critical stretch {:.6g}: fracture energy {:.6g} J/m2 under a uniform dilation\n",
-               heading("fracture", name), damage.critical,
-               energy * damage.critical * damage.critical);
+    fmt::print(
+        out, "{} critical stretch {:.6g}: fracture energy {:.6g} J/m2 under a uniform dilation\n",
+        heading("fracture", name), damage.critical, energy * damage.critical * damage.critical);
     return;
   }
   const FractureScale scale = fracture_scale_of(*of.of, of.key, setting, spacing);
   const std::string begin = damage.softens() ? fmt::format("onset {:.6g}, ", damage.onset) : "";
-  fmt::print("{} {}critical stretch {:.6g}{}{}\n", heading("fracture", name), begin,
+  fmt::print(out, "{} {}critical stretch {:.6g}{}{}\n", heading("fracture", name), begin,
              damage.critical, fracture_energy_text(damage, scale, setting),
              strength_text(damage, scale, setting.dimension));
-  print_strengths(damage, name, scale, setting.dimension);
+  print_strengths(out, damage, name, scale, setting.dimension);
 }
 
 /// Prints a toughness with the fracture energy that follows from it.
-void print_toughness(const MaterialSpecification& given, const std::string& key,
+void print_toughness(std::FILE* out, const MaterialSpecification& given, const std::string& key,
                      const std::string& name, const BondSetting& setting, double spacing) {
   if (!given.damage.fracture_toughness) return;
-  fmt::print("{} {:.6g} Pa sqrt(m): fracture energy {:.6g} J/m2 by a modulus of {:.6g} Pa\n",
+  fmt::print(out, "{} {:.6g} Pa sqrt(m): fracture energy {:.6g} J/m2 by a modulus of {:.6g} Pa\n",
              heading("toughness", name), *given.damage.fracture_toughness,
              *with_fracture_energy(given, key, setting, spacing).damage.fracture_energy,
              modulus_of_tip(given, key, setting, spacing));
 }
 
 /// Prints the error of the quadrature of bonds, whatever their constants.
-void print_quadrature(const Case& from, const Body& body, int threads) {
+void print_quadrature(std::FILE* out, const Case& from, const Body& body, int threads) {
   Bonds bonds = body.model.bonds();
   if (!from.is_uniform()) {  // the weights include the constants
     bonds = make_bonds(body.points, from.surface_correction, body.setting, threads);
     static_cast<void>(cut_bonds(bonds, body.points, body.specification.cracks));
   }
   fmt::print(
+      out,
       "quadrature  energy of a confined strain deviates from the classical one by at most {:.3g}\n",
       confined_energy_error(body.points, bonds, body.setting));
 }
 
-void print_constants(const Case& from, const Body& body, int threads) {
+void print_constants(std::FILE* out, const Case& from, const Body& body, int threads) {
   const BodySpecification& of = body.specification;  // its stretches are computed
   const PointMaterials materials(of, body.points);
   const auto all = all_materials(of, materials);
@@ -173,45 +177,45 @@ void print_constants(const Case& from, const Body& body, int threads) {
     const std::string name = from.regions.empty() ? "" : material.name;
     for (const auto& [topic, text] :
          formulation.describe(*material.of, material.key, body.setting, spacing)) {
-      fmt::print("{} {}\n", heading(topic, name), text);
+      fmt::print(out, "{} {}\n", heading(topic, name), text);
     }
   }
   // A convolved body stores short bonds only.
   if (formulation.has_quadrature_of_bonds && !of.is_convolved()) {
-    print_quadrature(from, body, threads);
+    print_quadrature(out, from, body, threads);
   }
-  for (const std::string& remark : body.remarks) fmt::print("{}\n", remark);
+  for (const std::string& remark : body.remarks) fmt::print(out, "{}\n", remark);
   const PointMaterials as_given(from, body.points);
   const auto given = all_materials(from, as_given);
   for (std::size_t k = 0; k < all.size(); ++k) {
     const std::string name = from.regions.empty() ? "" : all[k].name;
-    print_toughness(*given[k].of, all[k].key, name, body.setting, spacing);
-    print_fracture(formulation, all[k], name, body.setting, spacing);
+    print_toughness(out, *given[k].of, all[k].key, name, body.setting, spacing);
+    print_fracture(out, formulation, all[k], name, body.setting, spacing);
   }
   const BondFailure* const bonds = body.model.failing_bonds();
   const ToothedStrength teeth = bonds ? toothed_strength(bonds->potential()) : ToothedStrength();
-  if (teeth.teeth > 0) fmt::print("saw-tooth   {}\n", description(teeth));
+  if (teeth.teeth > 0) fmt::print(out, "saw-tooth   {}\n", description(teeth));
   const double size = body.setting.horizon / body.horizon_ratio();
   if (const auto trapping = crack_trapping(of, body.points.dimension, size)) {
-    fmt::print("crack       {}\n", description(*trapping));
+    fmt::print(out, "crack       {}\n", description(*trapping));
   }
 }
 
 /// Prints the number of points of each material.
-void print_regions(const Case& from, const Body& body) {
+void print_regions(std::FILE* out, const Case& from, const Body& body) {
   if (from.regions.empty()) return;
   const auto count = [&](std::int32_t region) {
     return std::count(body.region.begin(), body.region.end(), region);
   };
   for (std::size_t k = 0; k < from.regions.size(); ++k) {
-    fmt::print("region      {}: {} points\n", from.regions[k].set, count(std::int32_t(k)));
+    fmt::print(out, "region      {}: {} points\n", from.regions[k].set, count(std::int32_t(k)));
   }
-  if (count(-1) > 0) fmt::print("region      none, [material]: {} points\n", count(-1));
+  if (count(-1) > 0) fmt::print(out, "region      none, [material]: {} points\n", count(-1));
 }
 
 /// Prints the numbers of prescribed, dependent and free degrees of freedom: those of the body's own
 /// points, and the unknowns that constraints add.
-void print_supports(const Body& body) {
+void print_supports(std::FILE* out, const Body& body) {
   const std::vector<char>& prescribed = body.conditions->prescribed();
   const std::vector<char>& follows = body.conditions->constraints().dependent();
   const std::size_t own = std::size_t(body.points.own()) * std::size_t(body.points.dimension);
@@ -229,11 +233,11 @@ void print_supports(const Body& body) {
   text += fmt::format(" and {} free degrees of freedom", free);
   if (of_constraints > 0)
     text += fmt::format("; free ones added by constraints: {}", of_constraints);
-  fmt::print("supports    {}\n", text);
+  fmt::print(out, "supports    {}\n", text);
 }
 
 /// Prints the pressures, and the part of their stiffness that the symmetric tangent leaves out.
-void print_pressures(const Body& body) {
+void print_pressures(std::FILE* out, const Body& body) {
   for (const auto& term : body.model.terms()) {
     const auto* const pressures = dynamic_cast<const PressureTerm*>(term.get());
     if (!pressures) continue;
@@ -247,7 +251,7 @@ void print_pressures(const Body& body) {
         conditions.constraints(), conditions.prescribed());
     const bool is_symmetric = left_out <= 1e-12 * symmetric;
     fmt::print(
-        "pressure    {} faces, {:.6g} m2; {}\n", pressures->boundary().face.size(),
+        out, "pressure    {} faces, {:.6g} m2; {}\n", pressures->boundary().face.size(),
         pressures->area(),
         is_symmetric
             ? "closed or held: its stiffness is symmetric"
@@ -272,17 +276,17 @@ double seconds_of_forces(const Body& body) {
 }
 
 /// Prints the stable step of a motion in time, and the time that its steps take.
-void print_motion(const Case& from, const Body& body, const StudyOptions& options,
+void print_motion(std::FILE* out, const Case& from, const Body& body, const StudyOptions& options,
                   double seconds_of_solving) {
   const double stable = Study(body, options).find_initial_stiffness().stable_step();
   const DynamicsSpecification& dynamics = from.dynamics;
   const double step = dynamics.time_step > 0.0 ? dynamics.time_step : dynamics.step_share * stable;
   const double steps = std::ceil(dynamics.end_time / step * (1.0 - 1e-9));
-  fmt::print("motion      stable {}time step {:.6g} s; {:.0f} steps of {:.6g} s\n",
+  fmt::print(out, "motion      stable {}time step {:.6g} s; {:.0f} steps of {:.6g} s\n",
              from.dynamics.is_implicit() ? "explicit " : "", stable, steps, step);
   const double seconds_of_step =
       from.dynamics.is_implicit() ? seconds_of_solving : seconds_of_forces(body);
-  fmt::print("time        {}{}, without results\n", seconds_text(steps * seconds_of_step),
+  fmt::print(out, "time        {}{}, without results\n", seconds_text(steps * seconds_of_step),
              from.dynamics.is_implicit() ? "" : " on one thread");
 }
 
@@ -300,15 +304,17 @@ NeighbourCounts neighbours_of(const Body& body) {
           2.0 * double(count_of_bonds(body)) / double(of_point.size())};
 }
 
-void print_points(const Body& body) {
+void print_points(std::FILE* out, const Body& body) {
   const Points& points = body.points;
-  fmt::print("points      {} in {}D, spacing {}", points.own(), points.dimension,
+  fmt::print(out, "points      {} in {}D, spacing {}", points.own(), points.dimension,
              spacing_text(points));
   if (points.horizons.empty()) {
-    fmt::print(", horizon {:g} m ({:.4g} spacings)\n", body.setting.horizon, body.horizon_ratio());
+    fmt::print(out, ", horizon {:g} m ({:.4g} spacings)\n", body.setting.horizon,
+               body.horizon_ratio());
     return;
   }
   fmt::print(
+      out,
       ", horizons {:g} to {:g} m ({:.4g} sizes of their points)\n"
       "horizons    constants below are those of the largest one: a horizon's micromodulus goes "
       "with "
@@ -319,40 +325,40 @@ void print_points(const Body& body) {
 
 }  // namespace
 
-Exit check(const Case& from, int threads) {
+Exit check(const Case& from, int threads, std::FILE* out) {
   const std::unique_ptr<const Body> made = make_body(from, threads);
   const Body& body = *made;
   const Points& points = body.points;
   const NeighbourCounts neighbours = neighbours_of(body);
-  fmt::print("case        {}\n", from.title.empty() ? from.file : from.title);
-  print_points(body);
+  fmt::print(out, "case        {}\n", from.title.empty() ? from.file : from.title);
+  print_points(out, body);
   const Preflight preflight =
       located_errors(from, [&] { return preflight_of(from, body, SoleRank()); });
   for (const auto& [label, text] : preflight_lines(preflight)) {
-    fmt::print("{:<11} {}\n", label, text);
+    fmt::print(out, "{:<11} {}\n", label, text);
   }
-  fmt::print("bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
+  fmt::print(out, "bonds       {}; neighbours per point {} to {}, {:.1f} on average\n",
              count_of_bonds(body), neighbours.least, neighbours.most, neighbours.mean);
   for (const std::string& line : describe_interactions(body)) {
-    fmt::print("interaction {}\n", line);
+    fmt::print(out, "interaction {}\n", line);
   }
-  print_regions(from, body);
-  print_constants(from, body, threads);
+  print_regions(out, from, body);
+  print_constants(out, from, body, threads);
   for (const auto& [set, members] : points.sets) {
-    fmt::print("set         {}: {} points\n", set, members.size());
+    fmt::print(out, "set         {}: {} points\n", set, members.size());
   }
   if (!points.columns.empty()) {
     std::vector<std::string> names;
     for (const auto& [name, values] : points.columns) names.push_back(name);
-    fmt::print("columns     {}\n", fmt::join(names, ", "));
+    fmt::print(out, "columns     {}\n", fmt::join(names, ", "));
   }
-  print_supports(body);
+  print_supports(out, body);
   for (const std::string& line : describe_constraints(body)) {
-    fmt::print("constraint  {}\n", line);
+    fmt::print(out, "constraint  {}\n", line);
   }
-  print_pressures(body);
+  print_pressures(out, body);
   if (neighbours.isolated > 0) {
-    fmt::print("isolated    {} points have no neighbour\n", neighbours.isolated);
+    fmt::print(out, "isolated    {} points have no neighbour\n", neighbours.isolated);
   }
 
   const FreeDofs free(body.conditions->prescribed(), points.dimension);
@@ -368,19 +374,20 @@ Exit check(const Case& from, int threads) {
   const ChosenSolver& chosen = systems.chosen;
   require_memory(systems.bytes, fmt::format("the case with {} points", points.count()));
   if (chosen.solver->analyze(pattern, free) == LinearOutcome::solved) {
-    fmt::print("solver      {} ({})\n", chosen.solver->describe(),
+    fmt::print(out, "solver      {} ({})\n", chosen.solver->describe(),
                reason.empty() ? chosen.reason : reason);
   }
-  fmt::print("memory      about {} of {} available\n", bytes_text(systems.bytes),
+  fmt::print(out, "memory      about {} of {} available\n", bytes_text(systems.bytes),
              bytes_text(available_memory()));
   if (from.solver.mode == Mode::dynamics) {
-    located_errors(from, [&] { print_motion(from, body, options, chosen.seconds / threads); });
+    located_errors(from, [&] { print_motion(out, from, body, options, chosen.seconds / threads); });
   } else if (from.solver.mode == Mode::path) {
-    fmt::print("time        {} for an event; the number of events is not known before the run\n",
+    fmt::print(out,
+               "time        {} for an event; the number of events is not known before the run\n",
                seconds_text(chosen.seconds / threads));
   } else {
     const int steps = from.loading.steps_to_entry() * int(body.conditions->programme().end());
-    fmt::print("time        {} for {} load steps, if none has to be cut{}\n",
+    fmt::print(out, "time        {} for {} load steps, if none has to be cut{}\n",
                seconds_text(chosen.seconds * steps / threads), steps,
                preflight.may_fail ? "; steps in which damage grows take many times as long, and "
                                     "their number is not known before the run"
@@ -391,7 +398,8 @@ Exit check(const Case& from, int threads) {
     if (finds_loads(options, *body.conditions)) static_cast<void>(Study(body, options).analyze());
     static_cast<void>(make_crack_tips(body, from.crack_tips, options));
   });
-  for (const std::string& warning : warnings_of(preflight)) fmt::print("warning: {}\n", warning);
+  for (const std::string& warning : warnings_of(preflight))
+    fmt::print(out, "warning: {}\n", warning);
   return Exit::done;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdio>
+
 #include "cases/runner/commands/run.hpp"
 #include "cases/runner/input/case.hpp"
 
@@ -9,6 +11,6 @@ namespace peristat {
 /// neighbours, memory and time. Refuses what a run would refuse, such as parts that may move
 /// freely.
 /// @throws InputError, MemoryError as a run would
-[[nodiscard]] Exit check(const Case& from, int threads);
+[[nodiscard]] Exit check(const Case& from, int threads, std::FILE* out = stdout);
 
 }  // namespace peristat

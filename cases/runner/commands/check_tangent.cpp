@@ -400,7 +400,7 @@ SharedEnvironment environment_at_end(const Case& from, const Body& body,
 
 }  // namespace
 
-Exit check_tangent(const Case& from, const std::string& deformation, int threads) {
+Exit check_tangent(const Case& from, const std::string& deformation, int threads, std::FILE* out) {
   const std::unique_ptr<const Body> made = make_body(from, threads);
   const Body& body = *made;
   const Points& points = body.points;
@@ -499,24 +499,25 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   const std::string error_of_residual =
       has_potential ? fmt::format("{:.6g}", of_residual.error) : "null";
 
-  fmt::print(
-      "{{\n"
-      "  \"deformation\": \"{}\",\n"
-      "  \"energy\": {:.17g},\n"
-      "  \"residual_norm\": {:.17g},\n"
-      "  \"tangent_frobenius_norm\": {},\n"
-      "  \"asymmetry\": {:.6g},\n"
-      "  \"force_sum\": {:.6g},\n"
-      "  \"moment_sum\": {:.6g},\n"
-      "  \"residual_error\": {},\n"
-      "  \"tangent_error\": {:.6g},\n"
-      "  \"residual_order\": {},\n"
-      "  \"tangent_order\": {}\n"
-      "}}\n",
-      text, found.energy, norm(gradient), frobenius_norm(tangent), asymmetry,
-      relative_force_sum(points, internal_force),
-      relative_moment_sum(points, displacement, internal_force), error_of_residual,
-      of_tangent.error, has_potential ? of_residual.order_text() : "null", of_tangent.order_text());
+  fmt::print(out,
+             "{{\n"
+             "  \"deformation\": \"{}\",\n"
+             "  \"energy\": {:.17g},\n"
+             "  \"residual_norm\": {:.17g},\n"
+             "  \"tangent_frobenius_norm\": {},\n"
+             "  \"asymmetry\": {:.6g},\n"
+             "  \"force_sum\": {:.6g},\n"
+             "  \"moment_sum\": {:.6g},\n"
+             "  \"residual_error\": {},\n"
+             "  \"tangent_error\": {:.6g},\n"
+             "  \"residual_order\": {},\n"
+             "  \"tangent_order\": {}\n"
+             "}}\n",
+             text, found.energy, norm(gradient), frobenius_norm(tangent), asymmetry,
+             relative_force_sum(points, internal_force),
+             relative_moment_sum(points, displacement, internal_force), error_of_residual,
+             of_tangent.error, has_potential ? of_residual.order_text() : "null",
+             of_tangent.order_text());
   if (!has_potential) {
     fmt::print(stderr,
                "forces by collocation have no potential: the asymmetry is expected, and the energy "

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <string>
 
 #include "cases/runner/commands/run.hpp"
@@ -22,6 +23,7 @@ namespace peristat {
 /// @param deformation current coordinates as expressions of x, y, z, separated by ';'; empty for a
 ///        fixed asymmetric deformation
 /// @throws InputError for a bad expression, or a deformation that collapses a bond
-[[nodiscard]] Exit check_tangent(const Case& from, const std::string& deformation, int threads);
+[[nodiscard]] Exit check_tangent(const Case& from, const std::string& deformation, int threads,
+                                 std::FILE* out = stdout);
 
 }  // namespace peristat

@@ -91,6 +91,14 @@ std::unique_ptr<SolvedModel> solved_stand_in(const Case& from, const Study& stud
                                        *body.index_map);
 }
 
+/// Title and file of the case. A case of a program has no file, but a name in its place.
+std::string heading_of(const Case& from) {
+  std::error_code error;
+  if (from.title.empty()) return from.file;
+  if (!std::filesystem::exists(from.file, error)) return from.title;
+  return fmt::format("{} ({})", from.title, from.file);
+}
+
 LoadSteppingResult out_of_memory() {
   LoadSteppingResult result;
   result.outcome = Outcome::out_of_memory;
@@ -137,23 +145,27 @@ class CaseRun {
   }
 
   Exit run() {
-    progress_.say(from_.title.empty() ? from_.file
-                                      : fmt::format("{} ({})", from_.title, from_.file));
+    progress_.say(heading_of(from_));
     if (earlier_) summary_.costs = earlier_->checkpoint().costs;
     make();
-    heed_interruptions();
+    if (!options_.company) heed_interruptions();
     open_results();
-    const LoadSteppingResult result = follow();
+    LoadSteppingResult result = follow();
     conclude(result);
     results_->close(summary_);
-    return tell(result);
+    const Exit exit = tell(result);
+    if (options_.company && options_.company->ended) options_.company->ended(std::move(result));
+    return exit;
   }
 
  private:
   /// Makes body, equations and their solver; refuses cases that can't be run.
   void make() {
-    body_ = ranks_.count() > 1 ? make_part_body(from_, ranks_, options_.threads)
-                               : make_body(from_, options_.threads);
+    if (options_.company) body_ = options_.company->body;
+    if (!body_) {
+      body_ = ranks_.count() > 1 ? make_part_body(from_, ranks_, options_.threads)
+                                 : make_body(from_, options_.threads);
+    }
     gathering_.emplace(*body_->index_map);
     further_ = {from_.output.stress, lines_of(from_), !from_.controls.empty()};
     study_.emplace(*body_, study_options(from_, options_.threads),
@@ -285,6 +297,10 @@ class CaseRun {
       recorder_->accepted(record, state);
       summary_.max_displacement = largest_of_all(state.trial.displacement);
       if (record.step > 0) ++steps_here_;
+      if (options_.company && options_.company->accepted) {
+        options_.company->accepted({*recorder_->last(), state, *body_,
+                                    study_->equations().assembler(), from_.output.count_cracks});
+      }
     };
     told.reached = [this](const PathState& state) {
       const Stopwatch watch(seconds_of_checkpoints_);
@@ -296,11 +312,15 @@ class CaseRun {
       return std::string(located(from_, error).what());
     };
     told.interrupted = [this] {
-      const bool here =
-          interruption_requested() || (options_.steps > 0 && steps_here_ >= options_.steps);
+      const bool here = is_asked_to_stop() || (options_.steps > 0 && steps_here_ >= options_.steps);
       return ranks_.count() == 1 ? here : ranks_.max(double(here)) > 0.0;
     };
     return told;
+  }
+
+  [[nodiscard]] bool is_asked_to_stop() const {
+    if (!options_.company) return interruption_requested();
+    return options_.company->interrupted && options_.company->interrupted();
   }
 
   /// Null for a whole body.
@@ -389,7 +409,7 @@ class CaseRun {
   EarlierResults earlier_results_;  // until results_ takes them over
   double seconds_of_checkpoints_ = 0.0;
   int steps_here_ = 0;  // accepted in this session
-  std::unique_ptr<const Body> body_;
+  std::shared_ptr<const Body> body_;
   // With several ranks only.
   std::optional<RowGathering> gathering_;
   std::optional<RecordedPoints> recorded_;
@@ -405,10 +425,11 @@ class CaseRun {
 
 Exit run(const Case& from, const RunOptions& options, const Communicator& ranks,
          EarlierRun* earlier) {
-  make_write_faults_errors();
+  if (!options.company) make_write_faults_errors();
   keep_inputs_and_log_apart(from, options.log_file);
   const bool tells = ranks.rank() == 0;
-  Progress progress(options.quiet, options.log_file, tells);
+  Progress progress(options.quiet, options.log_file, tells,
+                    options.company ? options.company->line : Progress::Sink());
   Summary summary;
   std::optional<Results> results;
   try {
@@ -426,6 +447,10 @@ Exit run(const Case& from, const RunOptions& options, const Communicator& ranks,
     }
     progress.problem(failure.message);
     progress.problem(results->what_is_left());
+    if (options.company) {
+      if (failure.code == Exit::out_of_memory) results->abandon();
+      throw;
+    }
     if (failure.code == Exit::out_of_memory) {
       // After a failed allocation HDF5 can't close its objects: that would end in a segmentation
       // fault.

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 
+#include "cases/runner/commands/run_company.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/process/exit.hpp"
 #include "cases/runner/results/folder/earlier_run.hpp"
@@ -16,6 +17,7 @@ struct RunOptions {
   std::string log_file;
   bool overwrite = false;  ///< replaces an earlier run of another case in the folder, too
   int steps = 0;           ///< to accept before the run is interrupted; 0: all
+  const RunCompany* company = nullptr;  ///< null: this process does nothing else
 };
 
 /// Versions of the program and of its libraries, for the results file and the version command.
@@ -29,7 +31,8 @@ struct RunOptions {
 /// @param earlier run to resume: of the same case, or of one that this one extends
 /// @throws InputError, MemoryError before anything is written
 /// @throws MachineError if the machine fails, std::bad_alloc if the memory does: every accepted
-///         step is kept, and the summary says "failed" if it can be written. With several ranks
+///         step is kept, and the summary says "failed" if it can be written. In company also any
+///         other exception, of its callbacks, too. With several ranks
 ///         perhaps on one alone: the others must be ended then (Communicator::abort)
 [[nodiscard]] Exit run(const Case& from, const RunOptions& options, const Communicator& ranks,
                        EarlierRun* earlier = nullptr);

@@ -1,9 +1,6 @@
 #include "cases/runner/process/blas_memory.hpp"
 
 #include <algorithm>
-#include <cstdint>
-#include <cstdlib>
-#include <cstring>
 #include <new>
 #include <string>
 #include <system_error>
@@ -11,56 +8,14 @@
 #include <vector>
 
 #include <cblas.h>
-#include <sched.h>
-#include <unistd.h>
 
+#include "cases/runner/process/blas_buffers.hpp"
 #include "cases/runner/process/processors.hpp"
 #include "src/core/address_space.hpp"
 #include "src/core/machine_error.hpp"
 
 namespace peristat {
 namespace {
-
-// Buffer of OpenBLAS on x86-64: 32 MB << 2; measured as the growth of the address space per thread.
-constexpr std::size_t buffer_bytes = std::size_t(128) << 20;
-// Room for other allocations while libraries are loaded, and between the check of the room left and
-// the allocation of the buffer, which OpenBLAS retries for ever if it fails.
-constexpr std::size_t loading_bytes = std::size_t(16) << 20;
-constexpr int most_buffers = 128;  // OpenBLAS of Debian takes no more threads
-
-#if !defined(__SANITIZE_ADDRESS__)
-/// Value of a variable among "NAME=value", or 0.
-int positive_variable(char** environment, const char* name) {
-  const std::size_t length = std::strlen(name);
-  for (char** entry = environment; *entry; ++entry) {
-    if (std::strncmp(*entry, name, length) == 0 && (*entry)[length] == '=') {
-      return std::max(0, std::atoi(*entry + length + 1));
-    }
-  }
-  return 0;
-}
-
-/// Runs before the initialisers of all libraries, so it may use nothing that needs them.
-void require_room_to_load(int, char**, char** environment) {
-  int buffers = std::min(processors(), most_buffers);
-  for (const char* name : {"OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS"}) {
-    if (const int threads = positive_variable(environment, name)) {
-      buffers = std::min(buffers, threads);
-      break;
-    }
-  }
-  if (has_address_space(std::size_t(buffers) * buffer_bytes + loading_bytes)) return;
-  constexpr char message[] =
-      "peristat: too little address space to start: the shell allows less than the libraries need "
-      "with their 134 MB per thread. See \"ulimit -v\"; fewer threads (OMP_NUM_THREADS=1) need "
-      "less\n";
-  [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message, sizeof message - 1);
-  _exit(4);
-}
-
-[[gnu::section(".preinit_array"),
-  gnu::used]] void (*before_libraries)(int, char**, char**) = require_room_to_load;
-#endif
 
 /// Starts `count` threads at once, as OpenMP will, and ends them again.
 void try_threads(int count) {
@@ -75,9 +30,9 @@ void try_threads(int count) {
 }  // namespace
 
 void claim_blas_memory(int threads) {
-  const int buffers = std::min(threads, most_buffers) + 1;
-  const int taken = std::min({threads, processors(), most_buffers});
-  if (!has_address_space(std::size_t(buffers - taken) * buffer_bytes + loading_bytes)) {
+  const int buffers = std::min(threads, most_blas_buffers) + 1;
+  const int taken = std::min({threads, processors(), most_blas_buffers});
+  if (!has_address_space(std::size_t(buffers - taken) * blas_buffer_bytes + loading_bytes)) {
     throw std::bad_alloc();
   }
   openblas_set_num_threads(threads);

@@ -38,10 +38,11 @@ std::size_t columns(int descriptor) {
 
 }  // namespace
 
-Progress::Progress(bool quiet, const std::string& log_file, bool tells)
-    : tells_(tells),
+Progress::Progress(bool quiet, const std::string& log_file, bool tells, Sink sink)
+    : sink_(std::move(sink)),
+      tells_(tells),
       quiet_(quiet || !tells),
-      live_(!quiet_ && isatty(STDOUT_FILENO) == 1),
+      live_(!quiet_ && !sink_ && isatty(STDOUT_FILENO) == 1),
       start_(std::chrono::steady_clock::now()),
       last_said_(start_) {
   if (log_file.empty() || !tells) return;
@@ -91,14 +92,22 @@ void Progress::erase_live_line() {
 void Progress::say(const std::string& line) {
   last_said_ = std::chrono::steady_clock::now();
   erase_live_line();
-  write_to_person((live_ ? folded(line, columns(STDOUT_FILENO)) : line) + "\n");
+  if (sink_) {
+    if (!quiet_) sink_(line, false);
+  } else {
+    write_to_person((live_ ? folded(line, columns(STDOUT_FILENO)) : line) + "\n");
+  }
   write_to_log(line);
 }
 
 void Progress::problem(const std::string& line) {
   if (!tells_) return;
   erase_live_line();
-  write_to_standard_error(line);
+  if (sink_) {
+    sink_(line, true);
+  } else {
+    write_to_standard_error(line);
+  }
   write_to_log(line);
 }
 

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <functional>
 #include <string>
 
 #include "cases/runner/process/time_left.hpp"
@@ -17,13 +18,17 @@ class Progress {
  public:
   static constexpr const char* log_heading = "# log of peristat";
 
+  /// Takes a line in the place of the terminal, and whether it tells a problem.
+  using Sink = std::function<void(const std::string& line, bool is_problem)>;
+
   /// @param quiet prints nothing on the terminal, except in `problem`
   /// @param log_file empty for none; a new file, or an earlier log, which is replaced: it begins
   ///                 with the line `log_heading`
   /// @param tells    false: prints nothing at all, neither problems nor the log; true on one rank
   ///                 only
+  /// @param sink     takes the lines that a person would see; empty: the terminal does
   /// @throws InputError (key "--log") if the log file can't be written, or holds something else
-  Progress(bool quiet, const std::string& log_file, bool tells = true);
+  Progress(bool quiet, const std::string& log_file, bool tells = true, Sink sink = {});
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -49,6 +54,7 @@ class Progress {
   void show_life(const IterationRecord& record);
   [[nodiscard]] std::string time_left() const;
 
+  Sink sink_;
   bool tells_, quiet_, live_;
   bool live_line_shown_ = false;
   double load_factor_ = 0.0;  // accepted

@@ -566,7 +566,7 @@ Results::Results(EarlierRun& run, EarlierResults& earlier, const Points& points,
 }
 
 Results::~Results() {
-  if (sender_) return;
+  if (!files_) return;
   try {
     files_->closed = true;
     files_->publish_xdmf();
@@ -576,7 +576,7 @@ Results::~Results() {
 }
 
 void Results::add(const IterationRecord& record) {
-  if (sender_) return;
+  if (!files_) return;
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   Row row = make_row(record);
@@ -587,7 +587,7 @@ void Results::add(const IterationRecord& record) {
 }
 
 void Results::add(const DecisionRecord& record) {
-  if (sender_) return;
+  if (!files_) return;
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   Row row = make_row(record);
@@ -614,7 +614,7 @@ void Results::add(const std::vector<BrokenBondRecord>& records) {
 }
 
 void Results::add_line(const std::string& name, const std::vector<Row>& rows) {
-  if (sender_) return;
+  if (!files_) return;
   const Stopwatch stopwatch(files_->seconds);
   if (files_->closed) throw std::logic_error("results: closed");
   const auto line = std::ranges::find_if(
@@ -708,6 +708,11 @@ void Results::fail(Summary summary, const std::string& reason) noexcept {
   } catch (const std::exception&) {
     // The folder is gone or can't be written, which is what the reason says.
   }
+}
+
+void Results::abandon() noexcept {
+  static_cast<void>(files_.release());
+  static_cast<void>(sender_.release());
 }
 
 std::string Results::what_is_left() const {

@@ -117,6 +117,10 @@ class Results {
   /// reason, into room that was set aside at the start. Published files stay where they are.
   void fail(Summary summary, const std::string& reason) noexcept;
 
+  /// Leaves its files open until the process ends: after a failed allocation HDF5 can't close its
+  /// objects, and would end the process.
+  void abandon() noexcept;
+
   /// Sentence on what is left of the run.
   [[nodiscard]] std::string what_is_left() const;
 
