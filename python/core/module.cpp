@@ -1,0 +1,34 @@
+#include <malloc.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "cases/runner/commands/case_schema.hpp"
+#include "cases/runner/commands/run.hpp"
+#include "python/core/case_binding.hpp"
+#include "python/core/errors.hpp"
+#include "python/core/run_binding.hpp"
+#include "python/core/step.hpp"
+#include "solvers/observe/point_fields.hpp"
+
+namespace py = pybind11;
+
+PYBIND11_MODULE(_core, module) {
+  using namespace peristat;
+  module.doc() = "The compiled part of peristat; the package peristat is its interface.";
+  // Memory of large vectors goes back to the system when they are freed, as in the program.
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  python::translate_errors(module);
+  python::bind_case(module);
+  python::bind_body(module);
+  python::bind_step(module);
+  python::bind_runs(module);
+  module.def("versions", versions);
+  module.def("schema", case_schema);
+  module.def("fields", [] {
+    std::vector<std::tuple<std::string, std::string, std::string>> all;
+    for (const PointField& field : point_fields()) {
+      all.emplace_back(field.name, field.unit, field.meaning);
+    }
+    return all;
+  });
+}
