@@ -1,0 +1,55 @@
+"""Where the parts of the package are: in the sources, or installed."""
+
+import importlib.machinery
+import importlib.util
+import os
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+SOURCES = HERE.parents[1]
+IN_SOURCES = (SOURCES / "CMakeLists.txt").is_file()
+
+
+def load_core():
+    """Loads the compiled module `peristat._core`; once."""
+    name = "peristat._core"
+    if name in sys.modules:
+        return sys.modules[name]
+    file = _core_file()
+    # Read once, when the library of threads is loaded: threads that wait spin for microseconds.
+    spins = "OMP_WAIT_POLICY" not in os.environ and "GOMP_SPINCOUNT" not in os.environ
+    if spins:
+        os.environ["GOMP_SPINCOUNT"] = "1000"
+    try:
+        loader = importlib.machinery.ExtensionFileLoader(name, str(file))
+        spec = importlib.util.spec_from_file_location(name, file, loader=loader)
+        core = importlib.util.module_from_spec(spec)
+        loader.exec_module(core)
+    finally:
+        if spins:
+            del os.environ["GOMP_SPINCOUNT"]
+    sys.modules[name] = core
+    if IN_SOURCES:  # builds modules that are missing
+        os.environ.setdefault("PERISTAT_LAUNCHER", str(SOURCES / "peristat"))
+    return core
+
+
+def _core_file():
+    suffix = importlib.machinery.EXTENSION_SUFFIXES[0]
+    folders = [HERE]
+    if IN_SOURCES:
+        folders = [pathlib.Path(os.environ.get("PERISTAT_BUILD", SOURCES / "build/release"))]
+    for folder in folders:
+        file = folder / f"_core{suffix}"
+        if file.is_file():
+            return file
+    if IN_SOURCES:
+        raise ImportError(
+            f"the compiled part of peristat is missing in {folders[0]}: type ./peristat python, "
+            "which builds it. It is for Debian's /usr/bin/python3"
+        )
+    raise ImportError(
+        f"the compiled part of peristat is for another Python than {sys.executable} "
+        f"({sys.version.split()[0]}): there is no _core{suffix} in {HERE}"
+    )

@@ -1,0 +1,280 @@
+"""A case: what a case file says, as tables of Python."""
+
+import contextlib
+import copy
+import json
+import os
+import pathlib
+import re
+import sys
+import tomllib
+
+from . import _schema, tables, toml_text
+from ._package import load_core
+from .errors import InputError, input_error
+from .functions import GivenFunctions
+
+_PRIVATE = ("_file", "_name", "_text", "_unchanged", "_settings", "_functions", "_points")
+
+
+class Case(tables.Table):
+    """A body, its material, supports, loads and how they are solved; the keys are those of case files.
+
+        case = ps.Case("strip", dimension=2)
+        case.lattice.update(spacing="1 mm", thickness="1 mm")
+        case.lattice.add_shape(add="box", min=["0 mm", "0 mm"], max=["50 mm", "10 mm"])
+        case.material.youngs_modulus = "200 GPa"
+
+    Args:
+        name: stands for the case in messages and in the default results folder, results/NAME; the
+            default is the name of the script.
+        given_points: `Points` in the place of a lattice or a file.
+        **values: keys and tables of the case.
+
+    Files that the case names are searched from the working folder; of a loaded case from its folder.
+    """
+
+    def __init__(self, name=None, /, given_points=None, **values):
+        self._start(pathlib.Path.cwd() / f"{_checked_name(name)} (Python)", given_points)
+        super().__init__(_schema.document(), "", values)
+
+    def _start(self, file, points=None):
+        private = dict(_file=file, _text=None, _unchanged=None, _settings=[], _points=points)
+        for key, value in private.items():
+            object.__setattr__(self, key, value)
+        object.__setattr__(self, "_functions", GivenFunctions())
+
+    @property
+    def name(self):
+        """Name of the case in messages and in the default results folder."""
+        return self._file.stem if self._is_file() else self._file.name.removesuffix(" (Python)")
+
+    def set(self, key, value):
+        """Sets the value of a dotted key, as `--set` does: `case.set("loading.steps", 50)`.
+
+        Elements count from 0: "support[0].displacement[1]".
+
+        Raises:
+            InputError: there is no such key.
+        """
+        was_file = self._is_file()
+        head, _, number = key.rpartition("[") if key.endswith("]") else (key, "", "")
+        table, last = tables.find(self, head)
+        if number:
+            value_of_all = _with_element(table, last, number, key, value)
+            table[last] = value_of_all
+        else:
+            table[last] = value
+        if was_file:
+            self._settings.append((key, self._value_text(value, key)))
+            object.__setattr__(self, "_unchanged", copy.deepcopy(self.plain()))
+
+    def get(self, key, default=None):
+        """Value of a dotted key as it was given; `default` where it was not."""
+        table, last = tables.find(self, key)
+        return table._values.get(table._key(last)[0], default)
+
+    def copy(self):
+        """A case of its own with the same keys, functions and points."""
+        other = type(self).__new__(type(self))
+        other._start(self._file, self._points)
+        for key in ("_text", "_functions"):
+            object.__setattr__(other, key, getattr(self, key))
+        object.__setattr__(other, "_unchanged", copy.deepcopy(self._unchanged))
+        object.__setattr__(other, "_settings", list(self._settings))
+        tables.Table.__init__(other, self._schema, "", self.plain())
+        return other
+
+    def text(self):
+        """The case as the text of a case file. Functions are calls in it, `python_pull(load)`."""
+        if self._is_file():
+            return self._text
+        return toml_text.text_of(self._without_functions(self.plain(), ""))
+
+    def save(self, file):
+        """Writes a case file, which the command line runs; refuses to replace another file.
+
+        Raises:
+            InputError: the case has functions or points of Python, or the file exists.
+        """
+        text = self.text()
+        if self._points is not None or self._functions.used_in(text):
+            raise input_error("", "", "a case with functions or points of Python can't be saved")
+        if self._settings and self._is_file():
+            text = toml_text.text_of(self.plain())
+        try:
+            with open(file, "x", encoding="utf-8") as out:
+                out.write(text)
+        except FileExistsError:
+            raise input_error("file", os.fspath(file), "exists; choose another name") from None
+
+    def resolved(self):
+        """All keys and values in force, with defaults, as TOML in SI units.
+
+        Raises:
+            InputError: what is wrong with the case.
+        """
+        return self._read().resolved
+
+    def check(self, threads=0):
+        """Builds the body without solving: counts, supports, memory, time; and warnings.
+
+        Raises:
+            InputError: what a run would refuse.
+        """
+        with self._located_errors():
+            return Check(self._read().check(threads))
+
+    def check_tangent(self, deformation="", threads=0):
+        """Compares residual and tangent with finite differences, see `peristat check-tangent`.
+
+        Args:
+            deformation: current coordinates as expressions of x, y, z, separated by ";".
+        """
+        with self._located_errors():
+            return json.loads(self._read().check_tangent(deformation, threads))
+
+    def calibrate(self, strengths=False):
+        """Constants and moduli of the materials, fracture energies, and strengths on request."""
+        with self._located_errors():
+            return json.loads(self._read().calibrate(strengths))
+
+    def body(self, threads=0):
+        """The body: points, bonds, material, supports and loads.
+
+        Raises:
+            InputError: what is wrong with the case, or a body that its supports do not hold.
+            MemoryError: it would not fit.
+        """
+        from .body import Body
+
+        with self._located_errors():
+            read = self._read()
+            return Body(self.copy(), read, read.body(threads))
+
+    def solve(self, mode=None, **options):
+        """Makes the body and solves it; the options are those of `Body.solve`."""
+        from .run import run_case
+
+        return run_case(_with_mode(self, mode), None, **options)
+
+    def steps(self, mode=None, **options):
+        """Makes the body and solves it step by step; see `Body.steps`."""
+        from .steps import Steps
+
+        return Steps(lambda on_step: self.solve(mode, on_step=on_step, **options))
+
+    def _read(self):
+        """The case as C++ has read and checked it."""
+        text = self.text()
+        with self._located_errors():
+            return load_core().Case(str(self._file), text, self._settings if self._is_file() else [])
+
+    @contextlib.contextmanager
+    def _located_errors(self):
+        """Lines of a text that no person has written mean nothing: errors name the key alone."""
+        try:
+            yield
+        except InputError as error:
+            if self._is_file() or not error.place:
+                raise
+            raise input_error(error.key, error.value, error.allowed) from None
+
+    def _is_file(self):
+        """True if the case is still that of its file, with changes by `set`."""
+        return self._text is not None and self.plain() == self._unchanged
+
+    def _value_text(self, value, key):
+        return toml_text.value_text(self._without_functions(value, key), key)
+
+    def _without_functions(self, value, key):
+        if isinstance(value, dict):
+            return {
+                name: self._without_functions(item, f"{key}.{name}" if key else name)
+                for name, item in value.items()
+            }
+        if isinstance(value, (list, tuple)):
+            return [self._without_functions(item, f"{key}[{k}]") for k, item in enumerate(value)]
+        return self._functions.call_text(value, key) if callable(value) else value
+
+    def __setattr__(self, name, value):
+        if name in _PRIVATE:
+            object.__setattr__(self, name, value)
+        else:
+            super().__setattr__(name, value)
+
+    def __repr__(self):
+        return f"<Case {self.name}>"
+
+
+class Check(str):
+    """What `check` tells, as text, and its warnings."""
+
+    @property
+    def warnings(self):
+        mark = "warning: "
+        return [line.removeprefix(mark) for line in self.splitlines() if line.startswith(mark)]
+
+    def __repr__(self):
+        return str(self)
+
+
+def load_case(file):
+    """Reads a case file; `case.set` and the tables may change it afterwards.
+
+    Raises:
+        InputError: there is no such file, or it is no TOML.
+    """
+    file = pathlib.Path(file)
+    try:
+        text = file.read_text(encoding="utf-8")
+        values = tomllib.loads(text)
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise input_error("file", os.fspath(file), f"the case file can't be read: {reason}") from None
+    except tomllib.TOMLDecodeError:
+        load_core().Case(str(file), text, [])  # names line and column
+        raise
+    case = Case.__new__(Case)
+    case._start(file)
+    with _places_of(file, text):
+        tables.Table.__init__(case, _schema.document(), "", values)
+    object.__setattr__(case, "_text", text)
+    object.__setattr__(case, "_unchanged", copy.deepcopy(case.plain()))
+    return case
+
+
+@contextlib.contextmanager
+def _places_of(file, text):
+    """Lets the program tell what is wrong with a file: it knows line and column."""
+    try:
+        yield
+    except InputError:
+        load_core().Case(str(file), text, [])
+        raise
+
+
+def _checked_name(name):
+    if name is None:
+        script = getattr(sys.modules.get("__main__"), "__file__", None)
+        name = pathlib.Path(script).stem if script else "python"
+    if not isinstance(name, str) or not re.fullmatch(r"[^/\x00-\x1f]{1,100}", name) or name[0] == ".":
+        raise input_error("name", repr(name)[:80], "must be a name without / that begins with no dot")
+    return name
+
+
+def _with_mode(case, mode):
+    if mode is None:
+        return case
+    changed = case.copy()
+    changed.set("solver.mode", mode)
+    return changed
+
+
+def _with_element(table, name, number, key, value):
+    values = table._values.get(name)
+    if not isinstance(values, (list, tuple)) or not number[:-1].isdigit() or int(number[:-1]) >= len(values):
+        raise input_error(key, "", "there is no such element")
+    changed = list(values)
+    changed[int(number[:-1])] = value
+    return changed

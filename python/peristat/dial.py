@@ -1,0 +1,53 @@
+"""A load that a program turns while a run goes on."""
+
+import bisect
+
+from .errors import input_error
+
+
+class Dial:
+    """A value as a function of the load that grows piece by piece, to control a run step by step.
+
+    A dial stands where an expression may stand: `displacement=[opening, None]`. Between two settings
+    it is linear in the load factor, before the first and after the last it keeps their values, so
+    that a step that is cut finds the values between.
+
+        opening = ps.Dial(0.0)
+        for step in body.steps():
+            opening.turn_to(next_value, step, within=0.02)
+    """
+
+    def __init__(self, value=0.0):
+        self._loads, self._values = [0.0], [float(value)]
+
+    @property
+    def value(self):
+        """The last setting."""
+        return self._values[-1]
+
+    def turn_to(self, value, step, within):
+        """Goes to a value while the load factor grows by `within` from that of the step.
+
+        Settings beyond the load factor of the step are dropped; what the run has used stays.
+
+        Raises:
+            InputError: `within` is not positive.
+        """
+        if not within > 0.0:
+            raise input_error("within", repr(within), "must be a positive part of the load factor")
+        now = float(step.load)
+        here = self(now)
+        keep = bisect.bisect_left(self._loads, now)
+        self._loads[keep:] = [now, now + float(within)]
+        self._values[keep:] = [here, float(value)]
+
+    def __call__(self, load):
+        load = float(load)
+        k = bisect.bisect_right(self._loads, load)
+        if k == 0:
+            return self._values[0]
+        if k == len(self._loads):
+            return self._values[-1]
+        before, after = self._loads[k - 1], self._loads[k]
+        share = (load - before) / (after - before)
+        return self._values[k - 1] + share * (self._values[k] - self._values[k - 1])

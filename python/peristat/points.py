@@ -1,0 +1,70 @@
+"""Points of a body from arrays."""
+
+import numpy
+
+from .errors import input_error
+
+
+class Points:
+    """Points in memory, in the place of a lattice or a file of points.
+
+    Args:
+        positions: points x dimension, in the case's unit of length (default: m).
+        volumes: one per point, or one for all; in 2D with the thickness (unit of length cubed).
+        sets: names of points: numbers from 0, or a truth value per point.
+        columns: further numbers of each point by name, which expressions of the case may use.
+
+    The arrays are copied. The keys of `[points]`, horizon and thickness first of all, are given
+    beside: `ps.Case(dimension=2, points={"horizon": "3 mm"}, given_points=ps.Points(...))`.
+    """
+
+    def __init__(self, positions, volumes, sets=None, columns=None):
+        self.positions = _numbers("positions", positions)
+        if self.positions.ndim != 2 or self.positions.shape[1] not in (1, 2, 3):
+            raise input_error(
+                "positions", str(self.positions.shape), "must have the shape points x dimension"
+            )
+        self.volumes = self._of_points("volumes", volumes)
+        self.sets = {name: self._members(name, members) for name, members in (sets or {}).items()}
+        self.columns = {
+            name: self._of_points(f"columns[{name!r}]", values)
+            for name, values in (columns or {}).items()
+        }
+
+    def __len__(self):
+        return len(self.positions)
+
+    def _of_points(self, key, values):
+        values = _numbers(key, values)
+        if values.shape not in {(), (len(self),)}:
+            raise input_error(
+                key, str(values.shape), f"must have a number for each of the {len(self)} points"
+            )
+        return numpy.array(numpy.broadcast_to(values, (len(self),)))
+
+    def _members(self, name, members):
+        members = numpy.asarray(members)
+        key = f"sets[{name!r}]"
+        if members.dtype == bool:
+            if members.shape != (len(self),):
+                raise input_error(key, str(members.shape), f"must have {len(self)} truth values")
+            members = numpy.flatnonzero(members)
+        if members.ndim != 1 or members.dtype.kind not in "iu" or not members.size:
+            raise input_error(key, "", "must have point numbers from 0, or a truth value per point")
+        members = numpy.unique(members)
+        if members[0] < 0 or members[-1] >= len(self):
+            raise input_error(
+                key, str(members[0] if members[0] < 0 else members[-1]),
+                f"is none of the points 0 to {len(self) - 1}",
+            )
+        return members.astype(numpy.int32)
+
+
+def _numbers(key, values):
+    try:
+        array = numpy.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise input_error(key, repr(values)[:60], "must be numbers") from None
+    if not numpy.isfinite(array).all():
+        raise input_error(key, "", "has values that are not finite")
+    return array

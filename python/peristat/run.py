@@ -1,0 +1,119 @@
+"""Runs, and their results."""
+
+import os
+import pathlib
+import sys
+import weakref
+
+from . import toml_text
+from ._package import load_core
+from .errors import InputError, input_error
+from .results import Results
+
+_runs = weakref.WeakValueDictionary()  # by the folder that a run of this process has written last
+
+
+class Run(Results):
+    """The results of a run of this process.
+
+    The last state is in memory; anything else is read from the results folder when it is asked for.
+    """
+
+    def __init__(self, folder, end):
+        super().__init__(folder)
+        self._end = end
+
+    @property
+    def converged(self):
+        """True if the run reached the end of its load."""
+        return self.status == "completed"
+
+    def displacement(self, step=-1):
+        """Displacement of the points at a step [m], points x dimension.
+
+        The last one is a view of the run's memory, without a copy, which can't be written.
+        """
+        if step == -1 and self._end.displacement is not None:
+            return self._end.displacement
+        return super().displacement(step)
+
+    def resume(self, settings=None, **options):
+        """Goes on from the last accepted step, see `peristat.resume`."""
+        return resume(self.path, settings, **options)
+
+
+def run_case(case, body, *, output=None, on_step=None, threads=0, quiet=False, log="", overwrite=False):
+    """Runs a case; its body may have been made before. See `Body.solve`."""
+    if on_step is not None and not callable(on_step):
+        raise input_error("on_step", repr(on_step)[:80], "must be a function of a step")
+    core = load_core()
+    placed = _with_output(case, output)
+    read = placed._read()
+    folder = pathlib.Path(read.directory)
+    with placed._located_errors():
+        end = core.run(
+            read,
+            body._core if body is not None else None,
+            on_step,
+            _no_line if quiet else _print_line,
+            threads,
+            os.fspath(log),
+            overwrite,
+        )
+    return _registered(Run(folder, end))
+
+
+def resume(folder, settings=None, *, on_step=None, threads=0, quiet=False, log=""):
+    """Goes on with an interrupted or failed run from its last accepted step.
+
+    Args:
+        folder: results folder of the run.
+        settings: keys that extend the run: {"loading.largest_step": 0.01}.
+
+    Returns:
+        Run: the results, with those of before.
+
+    Raises:
+        InputError: there is nothing to resume, or a setting would make it another case.
+    """
+    texts = [(key, toml_text.value_text(value, key)) for key, value in (settings or {}).items()]
+    end = load_core().resume(
+        os.fspath(folder), texts, on_step, _no_line if quiet else _print_line, threads, os.fspath(log)
+    )
+    return _registered(Run(folder, end))
+
+
+def _with_output(case, output):
+    """The case with its results folder: no run replaces another one's of this process unasked."""
+    placed = case.copy()
+    if output is not None:
+        placed.set("output.directory", os.fspath(output))
+        return placed
+    if case.get("output.directory") is None and not case._is_file():
+        placed.set("output.directory", f"results/{case.name}")
+    folder = pathlib.Path(placed._read().directory)
+    taken, count = folder.resolve(), 1
+    while taken in _runs:
+        count += 1
+        taken = folder.with_name(f"{folder.name}-{count}").resolve()
+    if count > 1:
+        placed.set("output.directory", str(taken))
+    return placed
+
+
+def _registered(run):
+    folder = run.path.resolve()
+    earlier = _runs.get(folder)
+    if earlier is not None:
+        earlier._replaced = True
+    _runs[folder] = run
+    return run
+
+
+def _print_line(line, is_problem):
+    print(f"peristat: {line}" if is_problem else line, file=sys.stderr if is_problem else sys.stdout)
+
+
+def _no_line(line, is_problem):
+    if is_problem:
+        print(f"peristat: {line}", file=sys.stderr)

@@ -1,0 +1,122 @@
+"""A run as a sequence of steps."""
+
+import queue
+import threading
+import weakref
+
+
+class Steps:
+    """The accepted steps of a run, one by one: the run waits while the loop's body works.
+
+    Leaving the loop, `close`, or the end of a `with` block ends the run after the present step; the
+    results are then closed, and `run` has them. What the run raises is raised in the loop.
+    """
+
+    def __init__(self, start):
+        self._told = queue.SimpleQueue()  # steps, at last the end
+        self._exchange = _Exchange(self._told)
+        self._run, self._step = None, None
+        self._thread = threading.Thread(
+            target=_work, args=(start, self._exchange), name="peristat", daemon=True
+        )
+        self._is_started = False
+        # The thread must have ended before Python does.
+        self._close = weakref.finalize(self, _end, self._exchange, self._thread)
+
+    @property
+    def run(self):
+        """The `Run`, whose results are closed first if it is still going on."""
+        self.close()
+        return self._run
+
+    def __iter__(self):
+        return self
+
+    def __next__(self):
+        if not self._is_started:
+            self._is_started = True
+            self._thread.start()
+        elif self._step is None:
+            raise StopIteration
+        else:
+            self._exchange.go_on()
+        return self._next_told()
+
+    def close(self):
+        """Ends the run after the present step."""
+        if self._is_started and self._step is not None:
+            self._exchange.stop()
+            while True:  # a step may have been on its way
+                try:
+                    self._next_told()
+                except StopIteration:
+                    return
+        self._is_started = True
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def _next_told(self):
+        self._step = None
+        try:
+            told = self._told.get()
+        except BaseException:  # an interrupt from the keyboard, while the run searches
+            self._exchange.stop()
+            self._thread.join()
+            raise
+        if isinstance(told, _End):
+            self._thread.join()
+            self._run = told.run
+            if told.error is not None:
+                raise told.error
+            raise StopIteration
+        self._step = told
+        return told
+
+
+class _End:
+    def __init__(self, run=None, error=None):
+        self.run, self.error = run, error
+
+
+class _Exchange:
+    """What the thread of the run and that of the loop say to each other."""
+
+    def __init__(self, told):
+        self._told, self._may_go, self._stops = told, threading.Semaphore(0), False
+
+    def tell(self, step):
+        """Called by the run: waits until the loop asks for the next step."""
+        if not self._stops:
+            self._told.put(step)
+            self._may_go.acquire()
+        if self._stops:
+            step.stop("the loop over its steps was left")
+
+    def go_on(self):
+        self._may_go.release()
+
+    def stop(self):
+        self._stops = True
+        self._may_go.release()
+
+    def end(self, end):
+        self._told.put(end)
+
+
+def _work(start, exchange):
+    try:
+        exchange.end(_End(run=start(exchange.tell)))
+    except BaseException as error:
+        exchange.end(_End(error=error))
+
+
+def _end(exchange, thread):
+    exchange.stop()
+    if thread.is_alive() and thread is not threading.current_thread():
+        thread.join()
+
+
