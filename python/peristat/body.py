@@ -61,6 +61,11 @@ class Body:
         """Further numbers of each point by name."""
         return self._core.columns
 
+    @property
+    def given_numbers(self):
+        """Number of each point in the given arrays, or its row in a file of points; or None."""
+        return self._core.given_numbers
+
     def check(self, threads=0):
         """Counts, supports, memory and time, and warnings; see `Case.check`."""
         with self._case._located_errors():

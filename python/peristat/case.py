@@ -167,8 +167,10 @@ class Case(tables.Table):
     def _read(self):
         """The case as C++ has read and checked it."""
         text = self.text()
+        settings = self._settings if self._is_file() else []
+        functions = self._functions.used_in(text + " ".join(value for _, value in settings))
         with self._located_errors():
-            return load_core().Case(str(self._file), text, self._settings if self._is_file() else [])
+            return load_core().Case(str(self._file), text, settings, functions, self._points)
 
     @contextlib.contextmanager
     def _located_errors(self):
@@ -233,7 +235,7 @@ def load_case(file):
         reason = getattr(error, "strerror", None) or str(error)
         raise input_error("file", os.fspath(file), f"the case file can't be read: {reason}") from None
     except tomllib.TOMLDecodeError:
-        load_core().Case(str(file), text, [])  # names line and column
+        load_core().Case(str(file), text, [], {}, None)  # names line and column
         raise
     case = Case.__new__(Case)
     case._start(file)
@@ -250,7 +252,7 @@ def _places_of(file, text):
     try:
         yield
     except InputError:
-        load_core().Case(str(file), text, [])
+        load_core().Case(str(file), text, [], {}, None)
         raise
 
 
