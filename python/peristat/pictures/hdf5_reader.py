@@ -76,6 +76,21 @@ class Hdf5Reader(contextlib.AbstractContextManager):
         except (KeyError, OSError, TypeError, ValueError):
             return default
 
+    def shape(self, path: str) -> tuple[int, ...]:
+        """Shape of an array. Raises like `numbers`."""
+        return self._dataset(path).shape
+
+    def is_array(self, path: str) -> bool:
+        """Whether there is an array of this name, rather than a group."""
+        return path in self and isinstance(self._object(path), h5py.Dataset)
+
+    def column(self, path: str) -> np.ndarray:
+        """An array as it is stored, of numbers or of texts. Raises like `numbers`."""
+        dataset = self._dataset(path)
+        if h5py.check_string_dtype(dataset.dtype) is None:
+            return self.numbers(path, kind=None)
+        return np.array([as_text(entry) for entry in dataset[...].ravel().tolist()], dtype=str)
+
     def text(self, path: str) -> str:
         value = self._dataset(path)[()]
         value = np.asarray(value).reshape(-1)[:1].tolist()

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import InputError
 from .hdf5_reader import Damaged, Hdf5Reader, as_text, require_plain_file
 from .images import BrokenBonds, ImageKinds, on_the_body
 from .mesh_cells import QUADRILATERAL, TRIANGLE, Elements, are_sound
@@ -25,7 +26,7 @@ MOST_SPACINGS = 1e7  # largest size of a body
 MOST_IMAGE_KINDS = 1_000_000
 
 
-class NotAResultsFolder(Exception):
+class NotAResultsFolder(InputError):
     """The folder does not exist, or holds no readable results."""
 
 
@@ -146,7 +147,7 @@ class ResultsFolder:
 
     def step(self, number: int) -> Step:
         """Fields of a step; values that are not finite are replaced by zero and reported."""
-        with _reading(self.path) as file:
+        with ResultsFile(self.path) as file:
             group = f"steps/{number:06d}"
             count = len(self.volume)
 
@@ -174,7 +175,7 @@ class ResultsFolder:
 
     def field(self, number: int, name: str, *width: int) -> np.ndarray | None:
         """An optional field of a step, count x width; None if it is missing or not finite."""
-        with _reading(self.path) as file:
+        with ResultsFile(self.path) as file:
             path = f"steps/{number:06d}/{name}"
             if path not in file:
                 return None
@@ -193,14 +194,14 @@ class ResultsFolder:
         """Displacement of a step alone, count x dimension [m]."""
         if number in self.resting_steps:
             return np.zeros_like(self.reference)
-        with _reading(self.path) as file:
+        with ResultsFile(self.path) as file:
             array = file.numbers(f"steps/{number:06d}/displacement", self.reference.shape)
         return np.nan_to_num(array, posinf=0.0, neginf=0.0)
 
     def has_damage(self, number: int) -> bool:
         if (self.in_history(number, "max_damage") or 0.0) > 0.0:
             return True
-        with _reading(self.path) as file:
+        with ResultsFile(self.path) as file:
             name = f"steps/{number:06d}/damage"
             return name in file and bool(np.nanmax(file.numbers(name), initial=0.0) > 0.0)
 
@@ -238,13 +239,13 @@ class ResultsFolder:
         """Whether the folder has a list of broken bonds, even an empty one; older folders have none."""
         if (self.path / "broken_bonds.csv").is_file():
             return True
-        with _reading(self.path) as file:
+        with ResultsFile(self.path) as file:
             return "broken_bonds/first_point" in file
 
     def _read_broken_bonds(self) -> BrokenBonds:
         names = ("step", "first_point", "second_point", "second_image")
         table = {}
-        with _reading(self.path) as file:
+        with ResultsFile(self.path) as file:
             if all(f"broken_bonds/{name}" in file for name in names[:3]):
                 there = [name for name in names if f"broken_bonds/{name}" in file]
                 table = {name: file.numbers(f"broken_bonds/{name}", kind=np.int64) for name in there}
@@ -270,7 +271,7 @@ class ResultsFolder:
             self.missing.append(sentence)
 
 
-class _reading(Hdf5Reader):
+class ResultsFile(Hdf5Reader):
     """An open results file whose damage is reported as damage of the folder."""
 
     def __init__(self, path: Path):
@@ -297,7 +298,7 @@ def read_results_folder(path: Path) -> ResultsFolder:
     if not (path / "results.h5").exists():
         raise NotAResultsFolder(f"{path}: no results folder (it has no results.h5)")
     missing: list[str] = []
-    with _reading(path) as file:
+    with ResultsFile(path) as file:
         volume = file.numbers("points/volume")
         reference = file.numbers("points/reference")
         if not (volume.ndim == 1 and reference.ndim == 2 and len(volume) == len(reference) > 0
@@ -399,17 +400,21 @@ def _summary(path: Path, missing) -> dict:
         return {}
 
 
-def _sets(file, count: int, missing) -> dict[str, np.ndarray]:
+def point_sets(file, count: int) -> dict[str, np.ndarray]:
     """Point numbers by set name, from the membership matrix (count x sets)."""
     names = [as_text(name) for name in np.atleast_1d(file.attribute("points/set_ids", "sets", []))]
     if not names:
         return {}
+    matrix = file.numbers("points/set_ids", (count, len(names)), kind=np.uint8)
+    return {name: np.flatnonzero(matrix[:, column]) for column, name in enumerate(names)}
+
+
+def _sets(file, count: int, missing) -> dict[str, np.ndarray]:
     try:
-        matrix = file.numbers("points/set_ids", (count, len(names)), kind=np.uint8)
+        return point_sets(file, count)
     except (Damaged, KeyError) as error:
         missing.append(f"the sets can't be read ({error})")
         return {}
-    return {name: np.flatnonzero(matrix[:, column]) for column, name in enumerate(names)}
 
 
 def _case(file, missing) -> dict:

@@ -54,6 +54,12 @@ def scaled(unit: str):
 
 LENGTHS = (("km", 1e3), *scaled("m")[4:])
 FORCES, ENERGIES, ENERGY_DENSITIES, STRESSES = scaled("N"), scaled("J"), scaled("J/m³"), scaled("Pa")
+UNITS = {"m": LENGTHS, "N": FORCES, "J": ENERGIES, "J/m3": ENERGY_DENSITIES, "Pa": STRESSES}  # as results.h5 spells them
+
+
+def units_of(unit: str):
+    """The units for values that a results folder has in `unit`; a dimensionless number has none."""
+    return UNITS.get(unit, (("" if unit == "1" else unit, 1.0),))
 
 
 def unit_for(largest: float, units, least: float = 0.3) -> tuple[str, float]:
@@ -103,6 +109,10 @@ class Picture(Figure):
     def draw(self, renderer):
         with own_settings():
             super().draw(renderer)
+
+    def savefig(self, *words, **options):
+        with own_settings():
+            super().savefig(*words, **options)
 
     def _repr_png_(self) -> bytes:
         """Notebooks show the picture, also those that have not loaded pyplot."""

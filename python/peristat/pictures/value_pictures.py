@@ -30,7 +30,7 @@ def draw_values(results, step, values, meaning, units, colours=None):
         begin = 0.0
     if end <= begin:
         end = begin + size
-    value_range, label = (begin / size, end / size), f"{meaning} [{unit}]"
+    value_range, label = (begin / size, end / size), f"{meaning} [{unit}]" if unit else meaning
     if results.dimension == 3:
         from .solid_pictures import draw_solid
 
