@@ -1,24 +1,48 @@
-"""peristat: quasi-static peridynamics, solved implicitly, through fracture (docs/python.md)."""
+"""peristat: implicit quasi-static peridynamics.
+
+    import peristat as ps
+
+    run = ps.load_case("cases/plate_with_hole/elastic.toml").solve()
+    run.plot("damage")
+
+docs/python.md is the guide. Numbers are in SI units unless a text has its unit.
+"""
 
 import importlib
 
-# Public names and the modules that define them, each loaded at its first use.
+# Public names and their modules, which are loaded when they are first used.
 NAMES = {
-    "open_results": "results",
-    "Results": "results",
-    "Table": "results",
+    "Body": "body",
+    "Case": "case",
+    "Check": "case",
+    "Dial": "dial",
     "InputError": "errors",
     "MachineError": "errors",
     "MemoryError": "errors",
+    "Points": "points",
+    "Results": "results",
+    "Run": "run",
+    "Steps": "steps",
+    "load_case": "case",
+    "open_results": "results",
+    "resume": "run",
 }
-__all__ = list(NAMES)
+
+__all__ = [*NAMES, "versions"]
 
 
-def __getattr__(name: str):
+def versions():
+    """Versions of peristat, its libraries and its compiler, by name."""
+    from ._package import load_core
+
+    return load_core().versions()
+
+
+def __getattr__(name):
     if name not in NAMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        raise AttributeError(f"module peristat has no {name!r}; it has {', '.join(sorted(__all__))}")
     return getattr(importlib.import_module(f".{NAMES[name]}", __name__), name)
 
 
-def __dir__() -> list[str]:
-    return sorted([*globals(), *NAMES])
+def __dir__():
+    return sorted([*globals(), *__all__])

@@ -15,7 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .errors import InputError, unknown
+from ._names import unknown
+from .errors import InputError
 from .pictures.hdf5_reader import as_text
 from .pictures.results_folder import ResultsFile, ResultsFolder, point_sets, read_results_folder
 
@@ -31,7 +32,7 @@ def open_results(folder: str | os.PathLike) -> "Results":
     return Results(folder)
 
 
-class Table(Mapping):
+class Columns(Mapping):
     """Columns of numbers or texts by name, each read when it is asked for: `table["step"]`, an array of rows.
 
     A "/" in the name of a set or a probe is a "|" in that of its column; both are understood.
@@ -74,7 +75,7 @@ class Table(Mapping):
 
     def _stored(self, name: str) -> str:
         if name not in self:
-            raise unknown(self._kind, name, self.units, str(self._results.path))
+            raise unknown(self._kind, name, self.units, self._results.path)
         return name.replace("/", "|")
 
 
@@ -160,9 +161,9 @@ class Results:
         return self.positions.shape[1]
 
     @cached_property
-    def points(self) -> Table:
+    def points(self) -> Columns:
         """Values of the points by name: "volume" [m3], "neighbours", "region" and so on, each of count rows."""
-        return Table(self, "points", "value of points")
+        return Columns(self, "points", "value of points")
 
     @cached_property
     def point_sets(self) -> dict[str, np.ndarray]:
@@ -204,24 +205,24 @@ class Results:
     # ---- tables ----
 
     @cached_property
-    def history(self) -> Table:
+    def history(self) -> Columns:
         """One row per accepted step: energies [J], reactions [N], probes and more (docs/results.md, history.csv)."""
-        return Table(self, "history", "column of the history")
+        return Columns(self, "history", "column of the history")
 
     @cached_property
-    def iterations(self) -> Table:
+    def iterations(self) -> Columns:
         """One row per iteration of the searches for equilibrium (docs/results.md, iterations.csv)."""
-        return Table(self, "iterations", "column of the iterations")
+        return Columns(self, "iterations", "column of the iterations")
 
     @cached_property
-    def decisions(self) -> Table:
+    def decisions(self) -> Columns:
         """One row per decision of the load stepping (docs/results.md, decisions.csv)."""
-        return Table(self, "decisions", "column of the decisions")
+        return Columns(self, "decisions", "column of the decisions")
 
     @cached_property
-    def broken_bonds(self) -> Table:
+    def broken_bonds(self) -> Columns:
         """One row per broken bond, in the order of breaking (docs/results.md, broken_bonds.csv)."""
-        return Table(self, "broken_bonds", "column of the broken bonds")
+        return Columns(self, "broken_bonds", "column of the broken bonds")
 
     @cached_property
     def probes(self) -> dict[str, np.ndarray]:
@@ -236,11 +237,11 @@ class Results:
         return found
 
     @cached_property
-    def lines(self) -> dict[str, Table]:
+    def lines(self) -> dict[str, Columns]:
         """Values along lines, by the name of the probe: one row per point and step (docs/results.md, line_NAME.csv)."""
         with self._file() as file:
             names = file.names("lines")
-        return {name: Table(self, f"lines/{name}", "column of the line") for name in names}
+        return {name: Columns(self, f"lines/{name}", "column of the line") for name in names}
 
     def reload(self) -> "Results":
         """Forgets what has been read, so that a run that is going, or has gone on, shows its present state."""
@@ -293,7 +294,7 @@ class Results:
     def _field_picture(self, name: str | None, step: int, known: list[str]):
         fields = self.fields(step) if self.steps and self.dimension > 1 else []
         if name is None or name not in fields:
-            raise unknown("picture", name, dict.fromkeys([*known, *fields]), str(self.path))
+            raise unknown("picture", name, dict.fromkeys([*known, *fields]), self.path)
         from .pictures.drawing import Drawing
         from .pictures.style import units_of
         from .pictures.value_pictures import draw_values
