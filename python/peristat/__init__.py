@@ -25,7 +25,9 @@ NAMES = {
     "Steps": "steps",
     "load_case": "case",
     "open_results": "results",
+    "Sweep": "sweep",
     "resume": "run",
+    "sweep": "sweep",
 }
 
 __all__ = [*NAMES, "versions"]

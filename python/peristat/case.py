@@ -168,9 +168,13 @@ class Case(tables.Table):
         """The case as C++ has read and checked it."""
         text = self.text()
         settings = self._settings if self._is_file() else []
-        functions = self._functions.used_in(text + " ".join(value for _, value in settings))
         with self._located_errors():
-            return load_core().Case(str(self._file), text, settings, functions, self._points)
+            return load_core().Case(str(self._file), text, settings, *self._givens())
+
+    def _givens(self):
+        """Functions that the case uses, and its points."""
+        texts = [self.text(), *(value for _, value in self._settings)]
+        return self._functions.used_in(" ".join(texts)), self._points
 
     @contextlib.contextmanager
     def _located_errors(self):
