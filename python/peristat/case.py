@@ -1,7 +1,6 @@
 """A case: what a case file says, as tables of Python."""
 
 import contextlib
-import copy
 import json
 import os
 import pathlib
@@ -67,7 +66,7 @@ class Case(tables.Table):
             table[last] = value
         if was_file:
             self._settings.append((key, self._value_text(value, key)))
-            object.__setattr__(self, "_unchanged", copy.deepcopy(self.plain()))
+            object.__setattr__(self, "_unchanged", self.plain())
 
     def get(self, key, default=None):
         """Value of a dotted key as it was given; `default` where it was not."""
@@ -80,7 +79,7 @@ class Case(tables.Table):
         other._start(self._file, self._points)
         for key in ("_text", "_functions"):
             object.__setattr__(other, key, getattr(self, key))
-        object.__setattr__(other, "_unchanged", copy.deepcopy(self._unchanged))
+        object.__setattr__(other, "_unchanged", self._unchanged)
         object.__setattr__(other, "_settings", list(self._settings))
         tables.Table.__init__(other, self._schema, "", self.plain())
         return other
@@ -246,7 +245,7 @@ def load_case(file):
     with _places_of(file, text):
         tables.Table.__init__(case, _schema.document(), "", values)
     object.__setattr__(case, "_text", text)
-    object.__setattr__(case, "_unchanged", copy.deepcopy(case.plain()))
+    object.__setattr__(case, "_unchanged", case.plain())
     return case
 
 
