@@ -19,11 +19,11 @@ width, thickness, radius = 50e-3, 1e-3, 5e-3  # m
 # %% [markdown]
 # ## The body
 #
-# A `Case` has the tables and keys of a [case file](../case-file.md). Lengths may have their unit; plain numbers are in
-# SI units. Shapes are added and subtracted.
+# A `Case` has the tables and keys of a [case file](../case-file.md). Lengths may have their unit; plain numbers are
+# in SI units. Shapes are added and subtracted.
 #
-# - A *layer* is rows of points outside of the body. Supports act on volumes of points and not on lines of nodes, since
-#   bonds are as long as the horizon.
+# - A *layer* is rows of points outside of the body. Supports act on volumes of points and not on lines of nodes,
+#   since bonds are as long as the horizon.
 # - `volumes = "fractional"` cuts the cells at the edge of the hole, so that it is round.
 # - The two corrections of `quadrature` restore the stiffness of points that lack neighbours, near edges and the hole.
 
@@ -40,9 +40,9 @@ case.material = {"model": "bond", "plane": "stress", "youngs_modulus": "192 GPa"
 # %% [markdown]
 # ## Supports, load, and what to record
 #
-# The ends move apart and may contract. Points on the middle line at the right end keep the plate from floating along y.
-# `load` grows from 0 to 1. A *probe* with `from` and `to` records a field at the points along a line, here the stress
-# above the hole. (`from` is Python's own word, hence `from_`.)
+# The ends move apart and may contract. Points on the middle line at the right end keep the plate from floating along
+# y. `load` grows from 0 to 1. A *probe* with `from` and `to` records a field at the points along a line, here the
+# stress above the hole. (`from` is Python's own word, hence `from_`.)
 
 # %%
 case.add_set(name="middle", where="abs(y) < 0.51*spacing && x > 45 mm")
@@ -75,14 +75,14 @@ run.plot("von_mises")
 # %% [markdown]
 # ## Stress above the hole
 #
-# The reaction over the cross section is the nominal stress σ. For an infinite plate Kirsch has, at the distance y above
-# the middle of the hole of radius a,
+# The reaction over the cross section is the nominal stress σ. For an infinite plate Kirsch has, at the distance y
+# above the middle of the hole of radius a,
 #
 # $$\sigma_{xx} = \frac{\sigma}{2}\left(2 + \frac{a^2}{y^2} + 3\frac{a^4}{y^4}\right),$$
 #
-# 3 σ at the rim. In a plate of finite width the stress at the rim is larger by a factor that follows from the diameter
-# over the width, 1.047 here [Tan 1988], so 3.14 σ. The factor holds for the rim; we use it for the whole line, and expect
-# some per cent less than that towards the edge of the plate.
+# 3 σ at the rim. In a plate of finite width the stress at the rim is larger by a factor that follows from the
+# diameter over the width, 1.047 here [Tan 1988], so 3.14 σ. The factor holds for the rim; we use it for the whole
+# line, and expect some per cent less than that towards the edge of the plate.
 
 
 # %%
@@ -143,15 +143,16 @@ print(f"observed order {order:.2f}, limit {limit:.2f}; Kirsch {kirsch(radius):.2
 figure, axes = plt.subplots(figsize=(7, 4))
 h = np.linspace(0, 2e-3, 100)
 axes.plot(1e3 * np.array(spacings), rim, "o", label="peristat")
-axes.plot(1e3 * h, limit + (rim[3] - limit) * (h / spacings[3]) ** order, linewidth=0.8, label="trend of the three finest")
+trend = limit + (rim[3] - limit) * (h / spacings[3]) ** order
+axes.plot(1e3 * h, trend, linewidth=0.8, label="trend of the three finest")
 axes.plot(0, kirsch(radius), "ks", label="Kirsch, finite width")
 axes.set(xlabel="spacing [mm]", ylabel="stress at the rim / nominal stress", title="Stress concentration")
 axes.legend()
 plt.show()
 
 # %% [markdown]
-# The order is a little below one: the error falls with the horizon, over which this stress is a mean. So a stress *at* a
-# surface needs a trend, as here. The finest lattice alone is still 8 % below the limit.
+# The order is a little below one: the error falls with the horizon, over which this stress is a mean. So a stress
+# *at* a surface needs a trend, as here. The finest lattice alone is still 8 % below the limit.
 #
 # Equilibrium is a check that needs no closed form: the stress above the hole carries the whole reaction, so its mean
 # over the ligament is W / (W − 2a) = 1.25 of the nominal one.

@@ -1,10 +1,10 @@
 # %% [markdown]
 # # Poisson's ratio by CPD
 #
-# Bonds alone have one constant, and with it a fixed Poisson's ratio: 1/3 in the plane, 1/4 in 3D. Continuum-kinematics-
-# inspired peridynamics (CPD) adds interactions of triangles: a point and two of its neighbours resist changes of the
-# area between them, with a constant C₂ beside C₁ of the bonds [CPD]. This tutorial pulls a strip for several C₂, measures ν
-# from displacements, and compares it with what the lattice must have.
+# Bonds alone have one constant, and with it a fixed Poisson's ratio: 1/3 in the plane, 1/4 in 3D.
+# Continuum-kinematics- inspired peridynamics (CPD) adds interactions of triangles: a point and two of its neighbours
+# resist changes of the area between them, with a constant C₂ beside C₁ of the bonds [CPD]. This tutorial pulls a
+# strip for several C₂, measures ν from displacements, and compares it with what the lattice must have.
 
 # %%
 import matplotlib.pyplot as plt
@@ -15,9 +15,9 @@ import peristat as ps
 # %% [markdown]
 # ## The strip
 #
-# The ends are pulled apart in x and may contract in y: clamped ends would change the ratio. By symmetry u_y = 0 on the
-# axis, which keeps the strip in place. `origin = "nodes"` puts points on the axis. Constants are those of [CPD], so that
-# stresses mean nothing here; ratios do.
+# The ends are pulled apart in x and may contract in y: clamped ends would change the ratio. By symmetry u_y = 0 on
+# the axis, which keeps the strip in place. `origin = "nodes"` puts points on the axis. Constants are those of [CPD],
+# so that stresses mean nothing here; ratios do.
 
 # %%
 case = ps.Case("strip", dimension=2, title="Strip under tension")
@@ -28,15 +28,15 @@ case.lattice.add_layer(name="right", side="x+")
 case.add_set(name="axis", where="abs(y) < 0.1*spacing")
 case.add_set(name="middle", where="abs(x) < 0.25 && abs(y) < 0.15")
 case.material = {"model": "cpd", "c1": 1.0, "c2": 0.0}  # N/m6, N/m10
+case.add_support(set="axis", displacement=["free", "0"])
 for end in ("left", "right"):
     case.add_support(set=end, displacement=["1e-3*load*x", "free"])  # a strain of 0.1 %
-case.add_support(set="axis", displacement=["free", "0"])
 
 # %% [markdown]
 # ## Measure
 #
-# Away from the ends the strain is nearly homogeneous. Straight lines through the displacements of the middle, u_x over x
-# and u_y over y, have it as slopes. (A probe with `field = "poisson_ratio"` does about the same.)
+# Away from the ends the strain is nearly homogeneous. Straight lines through the displacements of the middle, u_x
+# over x and u_y over y, have it as slopes. (A probe with `field = "poisson_ratio"` does about the same.)
 
 
 # %%
@@ -60,7 +60,8 @@ sweep[4].plot("deformed")
 # anisotropic: `axis_poisson_ratio` is that of a pull along its rows, as here; `poisson_ratio` is the mean over all
 # directions. `continuum` has integrals instead of sums. There, with horizon δ and thickness h,
 #
-# $$\mu = \frac{\pi \delta^3 h}{24} C_1, \qquad \lambda = \mu + \frac{5 \pi^2 \delta^6 h^2}{9 (4\pi - 3\sqrt 3)} C_2, \qquad
+# $$\mu = \frac{\pi \delta^3 h}{24} C_1, \qquad
+# \lambda = \mu + \frac{5 \pi^2 \delta^6 h^2}{9 (4\pi - 3\sqrt 3)} C_2, \qquad
 # \nu = \frac{\lambda}{\lambda + 2\mu},$$
 #
 # since the model is purely two-dimensional, neither plane stress nor plane strain.
@@ -89,13 +90,13 @@ axes.legend(loc="lower right")
 plt.show()
 
 # %% [markdown]
-# What is measured is that of the lattice within 0.001, the effect of edges and ends. The ratio begins at 1/3 and tends to 1,
-# where the area can't change any more. A negative C₂ lowers it; far below zero the body becomes unstable, and peristat
-# refuses it. The continuum's curve lies lower for large C₂: at a horizon of three spacings the sum over triangles is 1.36
-# times their integral.
+# What is measured is that of the lattice within 0.001, the effect of edges and ends. The ratio begins at 1/3 and
+# tends to 1, where the area can't change any more. A negative C₂ lowers it; far below zero the body becomes unstable,
+# and peristat refuses it. The continuum's curve lies lower for large C₂: at a horizon of three spacings the sum over
+# triangles is 1.36 times their integral.
 #
-# **For a material of your own** don't give constants but what you know: `youngs_modulus` and `poisson_ratio`. C₁ and C₂ then
-# follow on the lattice, so that the mean ratio is exact. The strip confirms it for ν = 0.4:
+# **For a material of your own** don't give constants but what you know: `youngs_modulus` and `poisson_ratio`. C₁ and
+# C₂ then follow on the lattice, so that the mean ratio is exact. The strip confirms it for ν = 0.4:
 
 # %%
 known = case.copy()
