@@ -67,7 +67,8 @@ class PythonCompany {
   }
 
   void tell(const std::string& line, bool is_problem) {
-    call([&] { on_line_(line, is_problem); });
+    // That a callback has ended the run is what it wanted, and no problem.
+    call([&] { on_line_(line, is_problem && !stops_); });
   }
 
   void tell(const AcceptedStep& told) {

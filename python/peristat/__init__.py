@@ -25,9 +25,9 @@ NAMES = {
     "Steps": "steps",
     "load_case": "case",
     "open_results": "results",
-    "Sweep": "sweep",
+    "Sweep": "sweeping",
     "resume": "run",
-    "sweep": "sweep",
+    "sweep": "sweeping",
 }
 
 __all__ = [*NAMES, "versions"]

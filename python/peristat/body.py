@@ -1,5 +1,6 @@
 """A body that was made of a case."""
 
+from ._package import thread_count
 from .case import Check, _with_mode
 
 
@@ -69,7 +70,7 @@ class Body:
     def check(self, threads=0):
         """Counts, supports, memory and time, and warnings; see `Case.check`."""
         with self._case._located_errors():
-            return Check(self._read.check(threads))
+            return Check(self._read.check(thread_count(threads)))
 
     def solve(self, mode=None, **options):
         """Solves the body along its loading programme.

@@ -9,7 +9,7 @@ import sys
 import tomllib
 
 from . import _schema, tables, toml_text
-from ._package import load_core
+from ._package import load_core, thread_count
 from .errors import InputError, input_error
 from .functions import GivenFunctions
 
@@ -122,7 +122,7 @@ class Case(tables.Table):
             InputError: what a run would refuse.
         """
         with self._located_errors():
-            return Check(self._read().check(threads))
+            return Check(self._read().check(thread_count(threads)))
 
     def check_tangent(self, deformation="", threads=0):
         """Compares residual and tangent with finite differences, see `peristat check-tangent`.
@@ -131,7 +131,7 @@ class Case(tables.Table):
             deformation: current coordinates as expressions of x, y, z, separated by ";".
         """
         with self._located_errors():
-            return json.loads(self._read().check_tangent(deformation, threads))
+            return json.loads(self._read().check_tangent(deformation, thread_count(threads)))
 
     def calibrate(self, strengths=False):
         """Constants and moduli of the materials, fracture energies, and strengths on request."""
@@ -149,7 +149,7 @@ class Case(tables.Table):
 
         with self._located_errors():
             read = self._read()
-            return Body(self.copy(), read, read.body(threads))
+            return Body(self.copy(), read, read.body(thread_count(threads)))
 
     def solve(self, mode=None, **options):
         """Makes the body and solves it; the options are those of `Body.solve`."""

@@ -5,7 +5,7 @@ import pathlib
 import sys
 
 from . import toml_text
-from ._package import load_core
+from ._package import load_core, thread_count
 from .errors import input_error
 from .results import Results
 
@@ -28,6 +28,11 @@ class Run(Results):
         """True if the run reached the end of its load."""
         return self.status == "completed"
 
+    @property
+    def reason(self):
+        """Why the run ended before its load did, a sentence; empty if it did not."""
+        return ": ".join(part for part in (super().reason, self._end.reason) if part)
+
     def displacement(self, step=-1):
         """Displacement of the points at a step [m], points x dimension.
 
@@ -46,6 +51,7 @@ def run_case(case, body, *, output=None, on_step=None, threads=0, quiet=False, l
     """Runs a case; its body may have been made before. See `Body.solve`."""
     if on_step is not None and not callable(on_step):
         raise input_error("on_step", repr(on_step)[:80], "must be a function of a step")
+    threads = thread_count(threads)
     core = load_core()
     placed = _with_output(case, output)
     read = placed._read()
@@ -77,6 +83,7 @@ def resume(folder, settings=None, *, case=None, on_step=None, threads=0, quiet=F
     Raises:
         InputError: there is nothing to resume, or a setting would make it another case.
     """
+    threads = thread_count(threads)
     texts = [(key, toml_text.value_text(value, key)) for key, value in (settings or {}).items()]
     functions, points = ({}, None) if case is None else case._givens()
     end = load_core().resume(
