@@ -154,7 +154,9 @@ class CaseRun {
     conclude(result);
     results_->close(summary_);
     const Exit exit = tell(result);
-    if (options_.company && options_.company->ended) options_.company->ended(std::move(result));
+    if (options_.company && options_.company->ended) {
+      options_.company->ended(body_, std::move(result));
+    }
     return exit;
   }
 
@@ -445,7 +447,7 @@ Exit run(const Case& from, const RunOptions& options, const Communicator& ranks,
       say_last_words(fmt::format("peristat: {}\n{}\n", failure.message, results->what_is_left()));
       ranks.abort(static_cast<int>(failure.code));
     }
-    progress.problem(failure.message);
+    if (!options.company) progress.problem(failure.message);  // else the exception tells it
     progress.problem(results->what_is_left());
     if (options.company) {
       if (failure.code == Exit::out_of_memory) results->abandon();
