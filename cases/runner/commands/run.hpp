@@ -28,6 +28,7 @@ struct RunOptions {
 ///                code is the same on all
 /// @param earlier run to resume: of the same case, or of one that this one extends
 /// @throws InputError, MemoryError before anything is written
+/// @throws what a given function throws, after the results are closed as failed
 /// @throws MachineError if the machine fails, std::bad_alloc if the memory does: every accepted
 ///         step is kept, and the summary says "failed" if it can be written. With several ranks
 ///         perhaps on one alone: the others must be ended then (Communicator::abort)
