@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string text = R"(dimension = 2
+const std::string text = R"case(dimension = 2
 [points]
 horizon = 3.015e-3
 thickness = 1e-3
@@ -35,7 +35,7 @@ set = "right"
 displacement = ["pulled(y, load)", 0]
 [loading]
 steps = 4
-)";
+)case";
 
 class GivenRun : public testing::Test {
  protected:
