@@ -356,11 +356,11 @@ class Meshes(Folder):
         out = self.run_case(CASE)
         code = (
             "import sys; sys.path.insert(0, sys.argv[1])\n"
-            "from results_folder import read_results_folder\nfrom mesh_cells import element_cells\nfrom pathlib import Path\n"
+            "from peristat.pictures.results_folder import read_results_folder\nfrom peristat.pictures.mesh_cells import element_cells\nfrom pathlib import Path\n"
             "of = read_results_folder(Path(sys.argv[2])); cells = element_cells(of.elements)\n"
             "inner = (cells.beyond >= 0) & cells.is_side\nprint(len(of.volume), inner.sum(), (cells.beyond < 0).sum(), of.missing)\n"
         )
-        told = subprocess.run(["/usr/bin/python3", "-BEs", "-c", code, ROOT / "cases/runner/plots", out],
+        told = subprocess.run(["/usr/bin/python3", "-BEs", "-c", code, ROOT / "python", out],
                               check=True, capture_output=True, text=True).stdout  # fmt: skip
         # 48 triangles: 144 sides, 20 of them at the rim.
         self.assertEqual(told.split(), ["48", "124", "20", "[]"])

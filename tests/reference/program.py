@@ -10,7 +10,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.path.abspath(os.environ.get("PERISTAT_PROGRAM", ROOT / "build/release/peristat"))
-PLOT = ["/usr/bin/python3", "-BEs", str(ROOT / "cases/runner/plots/plot.py")]
+PLOT = ["/usr/bin/python3", "-BEs", str(ROOT / "python/peristat/pictures/__main__.py")]
 ADDRESS_SPACE = 6 << 30  # byte; OpenBLAS and Trilinos reserve far more than they use
 
 

@@ -55,11 +55,11 @@ class Launcher(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name).resolve()
         root = self.folder / "house"
-        for part in ["src", "assembly", "solvers", "cases/runner/plots", "cases/runner/sweep", "cases/runner/trust", "cmake", "build/release"]:
+        for part in ["src", "assembly", "solvers", "python/peristat/pictures", "cases/runner/sweep", "cases/runner/trust", "cmake", "build/release"]:
             (root / part).mkdir(parents=True)
         for name in ["peristat", "CMakeLists.txt", "CMakePresets.json"]:
             shutil.copy(ROOT / name, root)
-        (root / "cases/runner/plots/plot.py").write_text(PLOT)
+        (root / "python/peristat/pictures/__main__.py").write_text(PLOT)
         (root / "cases/runner/sweep/sweep.py").write_text(SWEEP)
         (root / "cases/runner/trust/trust.py").write_text(SWEEP.replace('"sweep"', '"trust"'))
         (root / "build/release/peristat").write_text(PROGRAM)
@@ -100,7 +100,7 @@ class Launcher(unittest.TestCase):
     def test_pictures_are_drawn_on_the_way(self):
         drawn = self.folder / "drawn"
         counting = f"open({str(drawn)!r}, 'a').write('drawn ')\n"
-        (self.root / "cases/runner/plots/plot.py").write_text(counting + PLOT)
+        (self.root / "python/peristat/pictures/__main__.py").write_text(counting + PLOT)
         result = self.launch("run", "write", "--plots-every", "2", "--threads", "1")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertIn("[run][write][--threads][1]", result.stdout)
@@ -144,7 +144,7 @@ class Launcher(unittest.TestCase):
 
     def test_who_stops_reading_stops_neither_the_run_nor_its_pictures(self):
         script = f"'{self.launcher}' run talk | head -1; exit \"${{PIPESTATUS[0]}}\""
-        (self.root / "cases/runner/plots/plot.py").write_text(PLOT.replace("sys.exit", 'open("drawn", "w"); sys.exit'))
+        (self.root / "python/peristat/pictures/__main__.py").write_text(PLOT.replace("sys.exit", 'open("drawn", "w"); sys.exit'))
         result = subprocess.run(["bash", "-c", script], cwd=self.folder, capture_output=True, text=True, timeout=60)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertTrue((self.folder / "talked").exists())
@@ -160,7 +160,7 @@ class Launcher(unittest.TestCase):
         self.assertEqual(subprocess.run(limited, cwd=self.folder, capture_output=True).returncode, 4)
 
     def test_a_failing_plot_changes_no_exit_code(self):
-        (self.root / "cases/runner/plots/plot.py").write_text("raise SystemExit(1)")
+        (self.root / "python/peristat/pictures/__main__.py").write_text("raise SystemExit(1)")
         result = self.launch("run", "case.toml")
         self.assertEqual(result.returncode, 0)
         self.assertIn("could not be drawn", result.stderr)

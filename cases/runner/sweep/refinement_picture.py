@@ -5,8 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from peristat.pictures.style import (
+    ENERGIES, FORCES, GHOST, LENGTHS, LINES, STRESSES, WARNING,
+    heading, new_figure, number, own_settings, unit_for,
+)  # fmt: skip
 from refinement import Refinement
-from style import ENERGIES, FORCES, GHOST, LENGTHS, LINES, STRESSES, WARNING, heading, new_figure, number, unit_for
 from table import FIELD_UNITS
 
 MOST_PANELS = 6
@@ -14,6 +17,7 @@ COLUMNS = 3
 UNITS = {"m": LENGTHS, "N": FORCES, "J": ENERGIES, "Pa": STRESSES}  # units with prefixes
 
 
+@own_settings()
 def draw_refinements(case: Path, rows: list[tuple[tuple[str, ...], Refinement]]):
     """One panel per quantity, with a line for each combination of the other keys; probes come first."""
     text = tomllib.loads(case.read_text("utf-8"))

@@ -15,7 +15,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "plots"))
+# The package peristat: python/ is higher up in the sources than in an installation.
+sys.path[1:1] = [str(folder / "python") for folder in Path(__file__).resolve().parents if (folder / "python/peristat").is_dir()]
 
 from computed import Keys, compute, split_computed
 from jobs import FolderLock, Jobs, bounded, estimated_memory

@@ -12,17 +12,17 @@ from unittest import mock
 
 import numpy as np
 
-PLOTS = Path(__file__).resolve().parents[3] / "cases" / "runner" / "plots"
-sys.path.insert(0, str(PLOTS))
+PYTHON = Path(__file__).resolve().parents[3] / "python"
+sys.path.insert(0, str(PYTHON))
 
-from cells import Cells, corner_signs  # noqa: E402
-from cloud_cells import CloudCells  # noqa: E402
-from crack_surface import crack_surface  # noqa: E402
-from crossings import inside_polygon  # noqa: E402
-from images import BrokenBonds, ImageKinds  # noqa: E402
-from outline import read_outline  # noqa: E402
-from rim import fitted, rim_offsets  # noqa: E402
-from voronoi import voronoi_cells  # noqa: E402
+from peristat.pictures.cells import Cells, corner_signs  # noqa: E402
+from peristat.pictures.cloud_cells import CloudCells  # noqa: E402
+from peristat.pictures.crack_surface import crack_surface  # noqa: E402
+from peristat.pictures.crossings import inside_polygon  # noqa: E402
+from peristat.pictures.images import BrokenBonds, ImageKinds  # noqa: E402
+from peristat.pictures.outline import read_outline  # noqa: E402
+from peristat.pictures.rim import fitted, rim_offsets  # noqa: E402
+from peristat.pictures.voronoi import voronoi_cells  # noqa: E402
 
 ROUND_OFF = 1e-12  # of lengths of some units
 
@@ -353,7 +353,7 @@ class CrackSurfaces(unittest.TestCase):
 
     def test_bonds_of_points_are_none_of_cells_that_stand_for_several(self):
         damage = np.where(lattice(*self.COUNTS)[:, 0] < 2.0, 0.5, 0.0)
-        with mock.patch("crack_surface.MOST_CELLS", 20):
+        with mock.patch("peristat.pictures.crack_surface.MOST_CELLS", 20):
             surface = self.surface(self.results(self.torn()), damage)
         self.assertEqual(set(surface.steps), {-1})
         self.assertGreater(len(surface.faces), 0)

@@ -22,27 +22,28 @@ import matplotlib.image
 import numpy as np
 from PIL import Image
 
-PLOTS = Path(__file__).resolve().parents[3] / "cases" / "runner" / "plots"
-sys.path.insert(0, str(PLOTS))
+PYTHON = Path(__file__).resolve().parents[3] / "python"
+sys.path.insert(0, str(PYTHON))
 
-import plot  # noqa: E402
-from cells import Cells, merged  # noqa: E402
-from convergence_picture import order_words  # noqa: E402
-from curve_pictures import draw_load_displacement, find_abscissa, hand_overs, on_the_way, reactions  # noqa: E402
-from event_path_picture import draw_events  # noqa: E402
-from camera import Camera  # noqa: E402
-from crack_surface import crack_surface  # noqa: E402
-from crack_surface_pictures import draw_crack_surface, draw_crack_surface_sequence  # noqa: E402
-from field_pictures import beyond, deformed_plate, displacement_magnitude  # noqa: E402
-from separations import crosses, separate  # noqa: E402
-from resistance_picture import draw_resistances, resistances  # noqa: E402
-from results_folder import read_results_folder  # noqa: E402
-from panels import number_of_columns  # noqa: E402
-from path_picture import draw_path  # noqa: E402
-from solid_pictures import draw_cut_solid  # noqa: E402
-from style import load_axis, round_factor  # noqa: E402
-from tip_picture import tip_speeds  # noqa: E402
-from voronoi import voronoi_cells  # noqa: E402
+from peristat.pictures import command  # noqa: E402
+from peristat.pictures.cells import Cells, merged  # noqa: E402
+from peristat.pictures.convergence_picture import order_words  # noqa: E402
+from peristat.pictures.curve_pictures import draw_load_displacement, find_abscissa, hand_overs, on_the_way, reactions  # noqa: E402
+from peristat.pictures.event_path_picture import draw_events  # noqa: E402
+from peristat.pictures.camera import Camera  # noqa: E402
+from peristat.pictures.crack_surface import crack_surface  # noqa: E402
+from peristat.pictures.crack_surface_pictures import draw_crack_surface, draw_crack_surface_sequence  # noqa: E402
+from peristat.pictures.figures import chosen_frames  # noqa: E402
+from peristat.pictures.field_pictures import beyond, deformed_plate, displacement_magnitude  # noqa: E402
+from peristat.pictures.separations import crosses, separate  # noqa: E402
+from peristat.pictures.resistance_picture import draw_resistances, resistances  # noqa: E402
+from peristat.pictures.results_folder import read_results_folder  # noqa: E402
+from peristat.pictures.panels import number_of_columns  # noqa: E402
+from peristat.pictures.path_picture import draw_path  # noqa: E402
+from peristat.pictures.solid_pictures import draw_cut_solid  # noqa: E402
+from peristat.pictures.style import load_axis, round_factor  # noqa: E402
+from peristat.pictures.tip_picture import tip_speeds  # noqa: E402
+from peristat.pictures.voronoi import voronoi_cells  # noqa: E402
 
 SPACING = 1e-3
 HISTORY = (
@@ -195,7 +196,7 @@ class Pictures(unittest.TestCase):
         said = io.StringIO()
         with warnings.catch_warnings(), redirect_stdout(said), redirect_stderr(said):
             warnings.simplefilter("error")
-            code = plot.main([str(self.folder), *options])
+            code = command.main([str(self.folder), *options])
         self.assertEqual(code, expected_code, said.getvalue())
         return said.getvalue()
 
@@ -214,7 +215,7 @@ class Pictures(unittest.TestCase):
             self.assertGreater(len(colours), 30, name)
 
     def test_program_ends_with_the_code(self):
-        program = [sys.executable, str(PLOTS / "plot.py")]
+        program = [sys.executable, str(PYTHON / "peristat/pictures/__main__.py")]
         write_folder(self.folder, lattice(6))
         for arguments, code in (([str(self.folder)], 0), ([str(self.folder / "none")], 2), ([], 2)):
             done = subprocess.run(program + arguments, capture_output=True, text=True)
@@ -264,7 +265,7 @@ class Pictures(unittest.TestCase):
             with Image.open(self.folder / "plots" / f"{name}.png") as picture:
                 self.assertGreater(len(set(picture.convert("RGB").getdata())), 100, name)
         write_folder(self.folder.with_name("still"), lattice(30, 10))
-        plot.draw(self.folder.with_name("still"), "png")
+        command.draw(self.folder.with_name("still"), "png")
         self.assertFalse((self.folder.with_name("still") / "plots" / "speed.png").exists())
 
     def test_animation_of_many_points_and_steps_is_small(self):
@@ -277,7 +278,7 @@ class Pictures(unittest.TestCase):
 
     def test_animation_that_would_be_too_large_loses_frames(self):
         write_cracked_folder(self.folder, (40, 30))
-        with mock.patch("crack_animation.MOST_BYTES", 60_000):
+        with mock.patch("peristat.pictures.crack_animation.MOST_BYTES", 60_000):
             self.plot()
         animation = self.folder / "plots" / "crack.gif"
         with Image.open(animation) as image:
@@ -286,7 +287,7 @@ class Pictures(unittest.TestCase):
     def test_animation_without_its_library_is_named(self):
         write_cracked_folder(self.folder, (20, 20), steps=6)
         with mock.patch.dict(sys.modules, {"PIL": None}):
-            sys.modules.pop("crack_animation", None)
+            sys.modules.pop("peristat.pictures.crack_animation", None)
             self.assertIn("python3-pil", self.plot())
         self.assert_pictures(*CRACKED)
         self.assertFalse((self.folder / "plots" / "crack.gif").exists())
@@ -637,9 +638,9 @@ class Pictures(unittest.TestCase):
 
     def test_a_fault_of_the_program_is_not_told_as_a_damaged_folder(self):
         write_folder(self.folder, lattice(10, 10))
-        with mock.patch("plot.draw_all", side_effect=NameError("name '_cut' is not defined")):
+        with mock.patch("peristat.pictures.command.drawings", side_effect=NameError("name '_cut' is not defined")):
             with redirect_stderr(io.StringIO()):
-                self.assertEqual(plot.main([str(self.folder)]), 1)
+                self.assertEqual(command.main([str(self.folder)]), 1)
 
     def test_a_picture_replaces_a_link_and_not_what_it_leads_to(self):
         write_folder(self.folder, lattice(10, 10))
@@ -745,7 +746,7 @@ class Pictures(unittest.TestCase):
     def test_frames_are_spent_on_damage(self):
         write_cracked_folder(self.folder, (30, 20), steps=40)
         results = read_results_folder(self.folder)
-        frames = plot.chosen_frames(results)
+        frames = chosen_frames(results)
         self.assertTrue(3 <= len(frames) <= 6)
         self.assertEqual(frames[-1], 40)
         for frame in frames:
@@ -1051,7 +1052,7 @@ class Pictures(unittest.TestCase):
             file["steps/000001/fragment"] = np.where(points[:, 0] > 8.0, 1, 0)
         results = read_results_folder(self.folder)
         for size in (1.0, SPACING):
-            with mock.patch("separations.voronoi_cells", wraps=voronoi_cells) as found:
+            with mock.patch("peristat.pictures.separations.voronoi_cells", wraps=voronoi_cells) as found:
                 plates = [deformed_plate(*self.last(results), 0.0, np.zeros(61), size) for _ in range(2)]
             self.assertEqual(found.call_count, 1 if size == 1.0 else 0)  # once for all pictures
             part = sum(points[:, 0] > place for place in (2.0, 5.0, 8.0))  # between the cuts
@@ -1255,7 +1256,7 @@ def drawn(folder: Path, told: int) -> None:
     """The command, with a different import of matplotlib."""
     os.dup2(told, 1)
     os.dup2(told, 2)
-    os._exit(plot.guarded([str(folder)]))
+    os._exit(command.guarded([str(folder)]))
 
 
 class DamagedFolders(unittest.TestCase):
@@ -1278,7 +1279,7 @@ class DamagedFolders(unittest.TestCase):
             return self.judged(process.exitcode, told.read(), expected_code)
 
     def plot_by_command(self) -> str:
-        command = [sys.executable, "-BEs", str(PLOTS / "plot.py"), str(self.folder)]
+        command = [sys.executable, "-BEs", str(PYTHON / "peristat/pictures/__main__.py"), str(self.folder)]
         done = subprocess.run(command, capture_output=True, text=True, timeout=300)
         return self.judged(done.returncode, done.stdout + done.stderr, 2)
 

@@ -12,15 +12,15 @@ from pathlib import Path
 import numpy as np
 
 RUNNER = Path(__file__).resolve().parents[3] / "cases" / "runner"
-sys.path[:0] = [str(RUNNER / "sweep"), str(RUNNER / "plots"), str(Path(__file__).parent)]
+sys.path[:0] = [str(RUNNER / "sweep"), str(RUNNER.parents[1] / "python"), str(Path(__file__).parent)]
 
 import plot_test  # noqa: E402
-import style  # noqa: E402
+from peristat.pictures import style  # noqa: E402
 from computed import Keys, compute, split_computed  # noqa: E402
 from jobs import FolderLock, Jobs, bounded, estimated_memory  # noqa: E402
 from own_files import HEAD, PICTURE, ForeignFile, picture, remove_own, write_own  # noqa: E402
 from refinement import observed_order, refine  # noqa: E402
-from results_folder import ResultsFolder  # noqa: E402
+from peristat.pictures.results_folder import ResultsFolder  # noqa: E402
 from sweep_picture import DASHES, draw_sweep, labels, line_looks, midline  # noqa: E402
 from variations import Axis, WrongInput, combinations, folder_name, split_values  # noqa: E402
 

@@ -1,0 +1,1 @@
+"""The pictures of the program: figures made from a results folder, and the command that saves them."""

@@ -1,0 +1,417 @@
+"""Results of a run, read from its results folder (docs/results.md): `open_results("results/plate")`.
+
+All numbers are in SI units. Nothing is read before it is asked for.
+"""
+
+import fcntl
+import html
+import json
+import operator
+import os
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from ._names import unknown
+from .errors import InputError
+from .pictures.hdf5_reader import as_text
+from .pictures.results_folder import ResultsFile, ResultsFolder, point_sets, read_results_folder
+
+MARKER = "peristat.json"  # locked by the run that writes the folder
+VECTORS = ("displacement", "force", "velocity")  # fields that are drawn by their magnitude
+
+
+def open_results(folder: str | os.PathLike) -> "Results":
+    """The results in a folder, of any run: finished, going, killed, of any mode and dimension.
+
+    Raises InputError if there is no such folder, or if it holds no results or damaged ones.
+    """
+    return Results(folder)
+
+
+class Columns(Mapping):
+    """Columns of numbers or texts by name, each read when it is asked for: `table["step"]`, an array of rows.
+
+    A "/" in the name of a set or a probe is a "|" in that of its column; both are understood.
+    """
+
+    def __init__(self, results: "Results", group: str, kind: str):
+        self._results, self._group, self._kind = results, group, kind
+        with results._file() as file:
+            names = [name for name in file.names(group) if file.is_array(f"{group}/{name}")]
+            self.units: dict[str, str] = {
+                name: as_text(file.attribute(f"{group}/{name}", "unit", "")) for name in names
+            }  # unit of each column: "m", "N", ...; "1" for a dimensionless number, "none" for text
+        self._columns: dict[str, np.ndarray] = {}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        name = self._stored(name)
+        if name not in self._columns:
+            with self._results._file() as file:
+                self._columns[name] = _constant(file.column(f"{self._group}/{name}"))
+        return self._columns[name]
+
+    def unit(self, name: str) -> str:
+        """Unit of a column."""
+        return self.units[self._stored(name)]
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str) and name.replace("/", "|") in self.units
+
+    def get(self, name: str, default=None):
+        return self[name] if name in self else default
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.units)
+
+    def __len__(self) -> int:
+        return len(self.units)
+
+    def __repr__(self) -> str:
+        return f"<{self._group}: {', '.join(self.units) or 'nothing yet'}>"
+
+    def _stored(self, name: str) -> str:
+        if name not in self:
+            raise unknown(self._kind, name, self.units, self._results.path)
+        return name.replace("/", "|")
+
+
+class Results:
+    """A results folder. What has been read stays as it was then, until `reload()`.
+
+    Steps are named by their numbers, which need not be consecutive (`output.every`); a negative number counts from
+    the end of `steps`, as in a list. Points are numbered from 0, as rows of `positions`.
+    Everything raises InputError for a name or step that is not there, or if the folder is damaged.
+    """
+
+    def __init__(self, folder: str | os.PathLike):
+        self.path = Path(folder)
+        _require_results(self.path)
+        self._session = _session(self.path)
+        with self._file() as file:
+            shape = file.shape("points/reference")
+        if len(shape) != 2 or not shape[0] or shape[1] not in (1, 2, 3):
+            raise InputError(f"{self.path}: the points have the shape {shape}")
+
+    # ---- the run ----
+
+    @cached_property
+    def summary(self) -> dict:
+        """How the run ended (docs/results.md, summary.json); empty before it has."""
+        path = self.path / "summary.json"
+        try:
+            return json.loads(path.read_text("utf-8"))
+        except FileNotFoundError:
+            return {}
+        except (OSError, ValueError) as error:
+            raise InputError(f"{path}: can't be read ({error})") from error
+
+    @property
+    def status(self) -> str:
+        """`completed`, `not_converged`, `inconsistent`, `interrupted` or `failed`; `running` while a program writes."""
+        return self.summary.get("status") or ("running" if _is_locked(self.path / MARKER) else "interrupted")
+
+    @property
+    def reason(self) -> str:
+        """Why the run ended, a sentence; empty if its load has reached its end, or if it has not ended."""
+        return self.summary.get("reason", "")
+
+    @cached_property
+    def title(self) -> str:
+        with self._file() as file:
+            return as_text(file.attribute("", "title", ""))
+
+    @cached_property
+    def case_text(self) -> str:
+        """The case file as it was read."""
+        with self._file() as file:
+            return file.text("case/as_read")
+
+    @cached_property
+    def case(self) -> dict:
+        """The case with every default and setting in place, as nested tables."""
+        with self._file() as file:
+            text = file.text("case/as_resolved")
+        try:
+            return tomllib.loads(text)
+        except ValueError as error:
+            raise InputError(f"{self.path}: the resolved case can't be read ({error})") from error
+
+    @cached_property
+    def settings(self) -> dict[str, str]:
+        """What `--set` gave, by key, in all sessions of the run."""
+        with self._file() as file:
+            if "case/settings/key" not in file:
+                return {}
+            return dict(zip(*(file.column(f"case/settings/{name}").tolist() for name in ("key", "value"))))
+
+    # ---- the body ----
+
+    @cached_property
+    def positions(self) -> np.ndarray:
+        """Reference positions, count x dimension [m]."""
+        with self._file() as file:
+            return _constant(file.numbers("points/reference"))
+
+    @property
+    def dimension(self) -> int:
+        return self.positions.shape[1]
+
+    @cached_property
+    def points(self) -> Columns:
+        """Values of the points by name: "volume" [m3], "neighbours", "region" and so on, each of count rows."""
+        return Columns(self, "points", "value of points")
+
+    @cached_property
+    def point_sets(self) -> dict[str, np.ndarray]:
+        """Numbers of the points of each set, ascending."""
+        with self._file() as file:
+            return {name: _constant(numbers) for name, numbers in point_sets(file, len(self.positions)).items()}
+
+    # ---- fields ----
+
+    @cached_property
+    def steps(self) -> list[int]:
+        """Numbers of the steps with fields, ascending."""
+        with self._file() as file:
+            return sorted(int(name) for name in file.names("steps"))
+
+    def fields(self, step: int = -1) -> list[str]:
+        """Names of the fields of a step."""
+        group = self._group(step)
+        with self._file() as file:
+            return [name for name in file.names(group) if file.is_array(f"{group}/{name}")]
+
+    def field(self, name: str, step: int = -1) -> np.ndarray:
+        """A field of a step, count or count x components [its unit: docs/results.md, results.h5]."""
+        names = self.fields(step)
+        if name not in names:
+            raise unknown("field", name, names, f"{self.path}, step {self._number(step)}")
+        with self._file() as file:
+            return file.numbers(f"{self._group(step)}/{name}")
+
+    def displacement(self, step: int = -1) -> np.ndarray:
+        """Displacements of a step, count x dimension [m]."""
+        return self.field("displacement", step)
+
+    def load_factor(self, step: int = -1) -> float:
+        """Load factor of a step with fields; the time [s] in mode `dynamics`."""
+        with self._file() as file:
+            return float(file.attribute(self._group(step), "load_factor"))
+
+    # ---- tables ----
+
+    @cached_property
+    def history(self) -> Columns:
+        """One row per accepted step: energies [J], reactions [N], probes and more (docs/results.md, history.csv)."""
+        return Columns(self, "history", "column of the history")
+
+    @cached_property
+    def iterations(self) -> Columns:
+        """One row per iteration of the searches for equilibrium (docs/results.md, iterations.csv)."""
+        return Columns(self, "iterations", "column of the iterations")
+
+    @cached_property
+    def decisions(self) -> Columns:
+        """One row per decision of the load stepping (docs/results.md, decisions.csv)."""
+        return Columns(self, "decisions", "column of the decisions")
+
+    @cached_property
+    def broken_bonds(self) -> Columns:
+        """One row per broken bond, in the order of breaking (docs/results.md, broken_bonds.csv)."""
+        return Columns(self, "broken_bonds", "column of the broken bonds")
+
+    @cached_property
+    def probes(self) -> dict[str, np.ndarray]:
+        """Values of the probes of a set or a point, by name: steps, or steps x components [the field's unit]."""
+        found = {}
+        for name in (probe["name"] for probe in self.case.get("probe", [])):
+            columns = [f"{name}_{axis}" for axis in "xyz" if f"{name}_{axis}" in self.history]
+            if name in self.history:
+                found[name] = self.history[name]
+            elif columns:
+                found[name] = _constant(np.stack([self.history[column] for column in columns], axis=1))
+        return found
+
+    @cached_property
+    def lines(self) -> dict[str, Columns]:
+        """Values along lines, by the name of the probe: one row per point and step (docs/results.md, line_NAME.csv)."""
+        with self._file() as file:
+            names = file.names("lines")
+        return {name: Columns(self, f"lines/{name}", "column of the line") for name in names}
+
+    def reload(self) -> "Results":
+        """Forgets what has been read, so that a run that is going, or has gone on, shows its present state."""
+        for name in [name for kind in type(self).__mro__ for name, member in vars(kind).items()
+                     if isinstance(member, cached_property)]:  # fmt: skip
+            self.__dict__.pop(name, None)
+        self._session = _session(self.path)
+        return self
+
+    # ---- pictures ----
+
+    def plot(self, name: str | None = None, step: int = -1):
+        """A picture as the program draws it (docs/results.md, Pictures), as a matplotlib figure.
+
+        name  of a picture ("deformed", "energies"), or of a field, which colours the deformed body: "stretch". Without a
+              name the first picture that the program draws.
+        step  shown by pictures of one step; other pictures show the whole run and take no step
+        """
+        from .pictures.figures import drawings
+
+        known = []
+        for drawing in drawings(self._folder, self._number(step) if self.steps else None):
+            if name not in (None, drawing.name):
+                known.append(drawing.name)
+                continue
+            if step != -1 and not drawing.of_step:
+                raise InputError(f"the picture {drawing.name!r} shows the whole run: leave out step")
+            return drawing.figure()
+        return self._field_picture(name, step, known)
+
+    def curve(self, x: str | None = None, y: str | Sequence[str] | None = None):
+        """The load-displacement picture of the run, or columns y of the history over its column x, as a figure.
+
+        x  column; without it the load factor
+        y  one column, or several of the same unit
+        """
+        if y is None:
+            if x is not None:
+                raise InputError(f"curve: which column is to be drawn over {x!r}? Give y")
+            return self.plot("load_displacement")
+        from .pictures.column_picture import Column, draw_columns
+
+        names = [y] if isinstance(y, str) else list(y)
+        abscissa, *columns = (Column(name, self._numbers(name), self.history.unit(name)) for name in [x or "load_factor", *names])
+        if len({column.unit for column in columns}) != 1:
+            told = ", ".join(f"{column.name} [{column.unit}]" for column in columns)
+            raise InputError(f"curve: y needs columns of one unit, not {told or 'none'}")
+        return draw_columns(self._folder, abscissa, columns)
+
+    def _field_picture(self, name: str | None, step: int, known: list[str]):
+        fields = self.fields(step) if self.steps and self.dimension > 1 else []
+        if name is None or name not in fields:
+            raise unknown("picture", name, dict.fromkeys([*known, *fields]), self.path)
+        from .pictures.drawing import Drawing
+        from .pictures.style import units_of
+        from .pictures.value_pictures import draw_values
+
+        values, meaning = self.field(name, step), name
+        if name in VECTORS:
+            values, meaning = np.linalg.norm(values, axis=1), f"magnitude of {name}"
+        if values.ndim != 1:
+            raise InputError(f"the field {name!r} has the shape {values.shape}: only numbers and vectors are drawn")
+        if not np.isfinite(values).all():
+            raise InputError(f"the field {name!r} of step {self._number(step)} has values that are not finite")
+        with self._file() as file:
+            unit = as_text(file.attribute(f"{self._group(step)}/{name}", "unit", ""))
+        drawn = self._folder.step(self._number(step))
+        return Drawing(name, lambda: draw_values(self._folder, drawn, values, meaning, units_of(unit))).figure()
+
+    @cached_property
+    def _folder(self) -> ResultsFolder:
+        self._file().__exit__(None, None, None)  # refuses a folder that another run has replaced
+        return read_results_folder(self.path)
+
+    # ---- how it is shown ----
+
+    def __repr__(self) -> str:
+        return f"<results {str(self.path)!r}: {self.status}, {len(self.steps)} steps with fields, {len(self.positions)} points>"
+
+    def _repr_html_(self) -> str:
+        rows = {"status": self.status, "reason": self.reason, "points": f"{len(self.positions)} in {self.dimension}D"}
+        steps = self.history.get("step", [])
+        if len(steps):
+            rows |= {"accepted steps": f"{sum(steps > 0)}, with fields {len(self.steps)}",
+                     "load factor": f"{self.history['load_factor'][-1]:.6g}"}  # fmt: skip
+            peaks = {name: np.abs(self.history[name]).max() for name in self.history if name.startswith("reaction_")}
+            if peaks:
+                name = max(peaks, key=peaks.get)
+                rows["peak"] = f"{peaks[name]:.6g} N ({name})"
+            if self.history.get("broken_bonds", steps)[-1]:
+                rows["broken bonds"] = f"{self.history['broken_bonds'][-1]:.0f}"
+        cells = "".join(f"<tr><th style='text-align:left'>{name}</th><td style='text-align:left'>{html.escape(str(text))}</td></tr>"
+                        for name, text in rows.items() if text)  # fmt: skip
+        return f"<table><caption>{html.escape(self.title or str(self.path))}</caption>{cells}</table>"
+
+    # ---- reading ----
+
+    def _file(self) -> ResultsFile:
+        if _session(self.path) != self._session:
+            raise InputError(f"{self.path}: another run, or a continuation, has written here since these results were opened; "
+                             "call reload()")  # fmt: skip
+        return ResultsFile(self.path)
+
+    def _number(self, step: int) -> int:
+        try:
+            step = operator.index(step)
+        except TypeError:
+            raise InputError(f"a step is a whole number, not {step!r}") from None
+        if not self.steps:
+            raise InputError(f"{self.path}: no step has fields")
+        if step in self.steps:
+            return step
+        if -len(self.steps) <= step < 0:
+            return self.steps[step]
+        raise InputError(f"{self.path}: step {step} has no fields. There are {_ranges(self.steps)}.")
+
+    def _group(self, step: int) -> str:
+        return f"steps/{self._number(step):06d}"
+
+    def _numbers(self, name: str) -> np.ndarray:
+        values = self.history[name]
+        if values.dtype.kind not in "fiu":
+            raise InputError(f"the column {name!r} of the history holds text")
+        return values
+
+
+def _constant(array: np.ndarray) -> np.ndarray:
+    """An array that is kept, and therefore must not be changed."""
+    array.flags.writeable = False
+    return array
+
+
+def _ranges(numbers: list[int]) -> str:
+    """1 to 4, 6, 8: whole numbers, ascending, in short."""
+    parts: list[list[int]] = []
+    for number in numbers:
+        if parts and number == parts[-1][-1] + 1:
+            parts[-1].append(number)
+        else:
+            parts.append([number])
+    words = [str(part[0]) if len(part) == 1 else f"{part[0]} to {part[-1]}" for part in parts]
+    return ", ".join(words if len(words) <= 20 else [*words[:10], "…", *words[-9:]])
+
+
+def _require_results(path: Path) -> None:
+    """Refuses a path that is no results folder, and names those that are near."""
+    if (path / "results.h5").exists():
+        return
+    what = "no results folder (it has no results.h5)" if path.is_dir() else "no such folder"
+    place = path if path.is_dir() else path.parent
+    near = sorted(file.parent.name for file in place.glob("*/results.h5")) if place.is_dir() else []
+    there = f"; the results in {place} are {', '.join(near[:20])}{', …' * (len(near) > 20)}" if near else ""
+    raise InputError(f"{path}: {what}{there}")
+
+
+def _session(path: Path) -> int | None:
+    """When the present session of the run began to write the folder; None in folders of older versions."""
+    try:
+        return os.stat(path / MARKER).st_mtime_ns
+    except OSError:
+        return None
+
+
+def _is_locked(path: Path) -> bool:
+    """Whether a run holds the marker locked."""
+    try:
+        with open(path, "rb") as marker:
+            fcntl.flock(marker, fcntl.LOCK_SH | fcntl.LOCK_NB)  # released when the file is closed
+    except BlockingIOError:
+        return True
+    except OSError:
+        return False
+    return False
