@@ -50,7 +50,17 @@ set(tools_folder share/peristat)
 foreach(tool IN ITEMS sweep trust meshes)
   install(DIRECTORY cases/runner/${tool} DESTINATION ${tools_folder} FILES_MATCHING PATTERN *.py)
 endforeach()
-install(DIRECTORY python/peristat DESTINATION ${tools_folder}/python FILES_MATCHING PATTERN *.py)
+# Debian's python3 finds it below the prefix /usr; with another prefix, the launcher sets PYTHONPATH.
+set(python_folder lib/python3/dist-packages/peristat)
+install(DIRECTORY python/peristat/ DESTINATION ${python_folder}
+        FILES_MATCHING PATTERN *.py PATTERN *.pyi PATTERN py.typed PATTERN __pycache__ EXCLUDE)
+if(TARGET peristat_python)
+  file(RELATIVE_PATH libraries_from_python /${python_folder} /${CMAKE_INSTALL_LIBDIR})
+  set_target_properties(peristat_python PROPERTIES
+    INSTALL_RPATH "$ORIGIN/${libraries_from_python};$ORIGIN/${libraries_from_python}/peristat"
+    INSTALL_RPATH_USE_LINK_PATH ON)
+  install(TARGETS peristat_python LIBRARY DESTINATION ${python_folder})
+endif()
 install(DIRECTORY cases DESTINATION ${tools_folder} PATTERN runner EXCLUDE)
 install(FILES docs/case.schema.json DESTINATION ${tools_folder}/docs)  # where the cases look for it
 install(DIRECTORY docs TYPE DOC)
