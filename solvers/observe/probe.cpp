@@ -123,16 +123,21 @@ std::vector<double> opening_of(const ProbeSpecification& probe, const RecordedPo
 /// Root mean square, or the largest, of the lengths of a set's differences from expected values.
 double error_over_set(const ProbeSpecification& probe, const RecordedPoints& points,
                       const PointValues& fields, const LoadValues& loads) {
-  std::vector<Expression> expected;
+  const std::span<const Index> members = points.members(probe.set);
+  std::vector<std::vector<double>> expected;  // per component and point
   for (const std::string& text : probe.expected) {
-    expected.push_back(expression_of(text, points.points(), loads.names));
+    const std::vector<double> found = values_at(expression_of(text, points.points(), loads.names),
+                                                points.points(), members, loads.values);
+    expected.emplace_back(std::size_t(points.points().count()));
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      expected.back()[std::size_t(members[k])] = found[k];
+    }
   }
   const auto squared = [&](Index point) {
     const std::vector<double> values = values_at(probe, points.dimension(), fields, point);
     double sum = 0.0;
     for (std::size_t c = 0; c < values.size(); ++c) {
-      const double difference =
-          values[c] - value_at(expected[c], points.points(), point, loads.values);
+      const double difference = values[c] - expected[c][std::size_t(point)];
       sum += difference * difference;
     }
     return std::vector<double>{sum};

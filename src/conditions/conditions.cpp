@@ -104,9 +104,10 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
     for (int c = 0; c < points.dimension; ++c) {
       const std::string key = indexed(table + ".value", std::size_t(c));
       loads_.push_back({key, on, c, with_key(key, [&] {
-                          return total ? Expression(loads[k].value[c], 0, points.spacing,
-                                                    parameters, points.columns)
-                                       : expression_of(loads[k].value[c], points, parameters);
+                          return total
+                                     ? Expression(loads[k].value[c], 0, points.spacing, parameters,
+                                                  points.columns, functions_of(points.functions))
+                                     : expression_of(loads[k].value[c], points, parameters);
                         })});
     }
   }
@@ -305,16 +306,18 @@ SharedEnvironment Conditions::environment(const LoadPoint& at) const {
   }
   for (const auto& [key, first, last, value] : pressures_) {
     with_key(key, [&] {
-      for (std::size_t face = first; face < last; ++face) {
-        made->pressure.push_back(at.preload * value(pressed_.centre[face], loads));
+      const std::span<const Coordinates> centres = pressed_.centre;
+      for (const double pressure : value.at(centres.subspan(first, last - first), loads)) {
+        made->pressure.push_back(at.preload * pressure);
       }
     });
   }
   if (!eigenstretches_.empty()) made->eigenstretch.assign(std::size_t(points_.count()), 0.0);
   for (const auto& [key, points, factor, value] : eigenstretches_) {
     with_key(key, [&] {
+      const std::vector<double> values = values_at(value, points_, points, loads);
       for (std::size_t k = 0; k < points.size(); ++k) {
-        const double stretch = at.preload * factor[k] * value_at(value, points_, points[k], loads);
+        const double stretch = at.preload * factor[k] * values[k];
         double& sum = made->eigenstretch[std::size_t(points[k])];
         sum += stretch;
         if (!(sum > -1.0)) {
@@ -359,11 +362,8 @@ void Conditions::try_stages() {
     const std::vector<double> loads = parameters(at);
     for (const Load& load : loads_) {
       if (table_calls(load.value.text()).empty()) continue;
-      with_key(load.key, [&] {
-        for (const Index point : load.on->points) {
-          static_cast<void>(value_at(load.value, points_, point, loads));
-        }
-      });
+      with_key(load.key,
+               [&] { static_cast<void>(values_at(load.value, points_, load.on->points, loads)); });
     }
   };
   const auto try_at = [&](const LoadPoint& at) {
@@ -408,9 +408,12 @@ void Conditions::prescribe(const LoadPoint& at, std::span<double> displacement) 
   const std::vector<double> loads = parameters(at);
   for (const Prescription& prescription : prescriptions_) {
     with_key(prescription.key, [&] {
-      for (Index point : *prescription.points) {
-        const double value =
-            at.preload * value_at(prescription.displacement, points_, point, loads);
+      const std::vector<Index>& points = *prescription.points;
+      const std::vector<double> values =
+          values_at(prescription.displacement, points_, points, loads);
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        const Index point = points[k];
+        const double value = at.preload * values[k];
         double& first = displacement[dof_of(prescription, point)];
         if (first_.empty() || first_[dof_of(prescription, point)] == &prescription) {
           first = value;
@@ -440,10 +443,10 @@ void Conditions::external_force(const LoadPoint& at, std::span<double> force) co
     for (const Load& load : loads_) {
       with_key(load.key, [&] {
         const auto& [points, amount, spread_over] = *load.on;
+        const std::vector<double> values = values_at(load.value, points_, points, loads);
         for (std::size_t k = 0; k < points.size(); ++k) {
           force[std::size_t(points[k]) * points_.dimension + load.component] +=
-              at.preload * value_at(load.value, points_, points[k], loads) * amount[k] /
-              spread_over;
+              at.preload * values[k] * amount[k] / spread_over;
         }
       });
     }

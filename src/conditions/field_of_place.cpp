@@ -26,8 +26,9 @@ void add_field_of_place(const Points& points, const std::string& set, const std:
   const std::vector<Index> members = members_of(points, set, key + ".set");
   with_key(key + '.' + member, [&] {
     const Expression value = expression_of(text, points);
-    for (const Index point : members) {
-      values[std::size_t(point) * stride + offset] += value_at(value, points, point);
+    const std::vector<double> found = values_at(value, points, members);
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      values[std::size_t(members[k]) * stride + offset] += found[k];
     }
   });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "src/conditions/points_of_set.hpp"
 #include "src/conditions/traction.hpp"
@@ -112,14 +113,18 @@ bool Foundations::ground_moves() const {
 }
 
 std::vector<double> Foundations::ground(std::span<const double> loads) const {
-  std::vector<double> ground;
-  for (const Foundation& foundation : foundations_) {
-    for (std::size_t k = foundation.first; k < foundation.last; ++k) {
-      for (std::size_t c = 0; c < foundation.ground.size(); ++c) {
-        with_key(indexed(foundation.table + ".displacement", c), [&] {
-          ground.push_back(foundation.ground[c](place_[k], loads, springs_[k].point));
-        });
-      }
+  const auto d = std::size_t(dimension_);
+  std::vector<double> ground(springs_.size() * d);
+  std::vector<Index> points;
+  for (const Spring& spring : springs_) points.push_back(spring.point);
+  for (const auto& [name, table, first, last, displacement] : foundations_) {
+    const auto places = std::span(place_).subspan(first, last - first);
+    const auto members = std::span(std::as_const(points)).subspan(first, last - first);
+    for (std::size_t c = 0; c < d; ++c) {
+      const std::vector<double> values = with_key(indexed(table + ".displacement", c), [&] {
+        return displacement[c].at(places, loads, members);
+      });
+      for (std::size_t k = 0; k < values.size(); ++k) ground[(first + k) * d + c] = values[k];
     }
   }
   return ground;

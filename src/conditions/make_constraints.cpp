@@ -12,6 +12,7 @@
 #include "src/core/coordinates.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/expression_at_points.hpp"
 #include "src/measures/small_algebra.hpp"
 #include "src/parallel/collectives.hpp"
 #include "src/parallel/index_map.hpp"
@@ -87,8 +88,8 @@ class Maker {
   void prescribe(const std::string& key, const std::string& text, std::size_t of_dof,
                  double factor = 1.0, const Coordinates* place = nullptr) {
     try {
-      Expression value(text, place ? dimension() : 0, points_.spacing, parameters_,
-                       points_.columns);
+      Expression value(text, place ? dimension() : 0, points_.spacing, parameters_, points_.columns,
+                       functions_of(points_.functions));
       made_.prescriptions.push_back(
           {key, of_dof, place ? *place : Coordinates{}, factor, std::move(value)});
     } catch (const InputError& error) {

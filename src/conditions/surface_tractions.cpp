@@ -122,28 +122,26 @@ bool SurfaceTractions::changes_with_parameters() const {
 }
 
 Coordinates SurfaceTractions::traction(const Load& load, const SurfaceSite& site, int dimension,
-                                       std::span<const double> loads) const {
+                                       std::span<const double> values) const {
   Coordinates result{};
   switch (load.kind) {
     case LoadSpecification::Kind::pressure: {
-      const double pressure = load.value[0](site.place, loads);
-      for (int c = 0; c < dimension; ++c) result[c] = -site.share * pressure * site.normal[c];
+      for (int c = 0; c < dimension; ++c) result[c] = -site.share * values[0] * site.normal[c];
       break;
     }
     case LoadSpecification::Kind::stress: {
       const Coordinates& normal = site.part_of_normal;
       const auto entries = stress_entries(dimension);
       for (std::size_t k = 0; k < entries.size(); ++k) {
-        const double stress = load.value[k](site.place, loads);
         const auto [r, c] = entries[k];
-        result[r] += stress * normal[c];
-        if (r != c) result[c] += stress * normal[r];
+        result[r] += values[k] * normal[c];
+        if (r != c) result[c] += values[k] * normal[r];
       }
       break;
     }
     default:
       for (int c = 0; c < dimension; ++c) {
-        result[c] = site.share * load.value[c](site.place, loads);
+        result[c] = site.share * values[std::size_t(c)];
       }
   }
   return result;
@@ -154,10 +152,17 @@ std::vector<double> SurfaceTractions::at(const Points& points,
   const auto d = std::size_t(points.dimension);
   std::vector<double> tractions(points.reference.size(), 0.0);
   for (const Load& load : loads_) {
-    for (const std::size_t k : load.sites) {
-      const SurfaceSite& site = sites_[k];
-      const Coordinates of_load =
-          with_key(load.key, [&] { return traction(load, site, points.dimension, loads); });
+    std::vector<Coordinates> places;
+    for (const std::size_t k : load.sites) places.push_back(sites_[k].place);
+    std::vector<std::vector<double>> values;
+    for (const Expression& value : load.value) {
+      values.push_back(with_key(load.key, [&] { return value.at(places, loads); }));
+    }
+    std::vector<double> here(values.size());
+    for (std::size_t number = 0; number < load.sites.size(); ++number) {
+      const SurfaceSite& site = sites_[load.sites[number]];
+      for (std::size_t k = 0; k < here.size(); ++k) here[k] = values[k][number];
+      const Coordinates of_load = traction(load, site, points.dimension, here);
       for (std::size_t c = 0; c < d; ++c) {
         tractions[std::size_t(site.point) * d + c] += of_load[c];
       }

@@ -63,8 +63,9 @@ class SurfaceTractions {
   };
   void refuse_one_sided(const Points& points, const Load& load,
                         const std::vector<char>& prescribed) const;
+  /// @param values of the load's expressions at the site
   [[nodiscard]] Coordinates traction(const Load& load, const SurfaceSite& site, int dimension,
-                                     std::span<const double> loads) const;
+                                     std::span<const double> values) const;
 
   std::vector<SurfaceSite> sites_;
   std::vector<Load> loads_;

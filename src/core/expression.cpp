@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -22,17 +23,34 @@ constexpr std::size_t longest_text = 19'999;
 
 constexpr const char* table_name = "table";
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// True for a letter, a digit and _.
+bool is_word(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || is_digit(c);
+}
+
 bool is_identifier(const std::string& name) {
-  const auto is_letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-  };
-  const auto may_follow = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); };
-  return !name.empty() && is_letter(name.front()) && std::ranges::all_of(name, may_follow);
+  return !name.empty() && !is_digit(name.front()) && std::ranges::all_of(name, is_word);
+}
+
+/// Places of the commas between the arguments of a call and of its last parenthesis; without the
+/// latter it is not closed.
+std::vector<std::size_t> ends_of_arguments(const std::string& text, std::size_t open) {
+  std::vector<std::size_t> ends;
+  int depth = 0;
+  for (std::size_t at = open; at < text.size(); ++at) {
+    depth += text[at] == '(' ? 1 : text[at] == ')' ? -1 : 0;
+    if (depth == 0 || (depth == 1 && text[at] == ',')) ends.push_back(at);
+    if (depth == 0) return ends;
+  }
+  return {};
 }
 
 }  // namespace
 
 const Columns Expression::none;
+const GivenFunctions Expression::no_functions;
 
 std::string why_no_column(const std::string& name) {
   constexpr std::size_t longest = 100;
@@ -54,6 +72,7 @@ std::string why_no_column(const std::string& name) {
 struct Expression::Parser {
   std::string text;
   int dimension = 3;
+  Spacing spacing = 0.0;
   std::vector<std::string> constants;
   std::vector<std::string> parameters;
   std::optional<double> constant;
@@ -69,6 +88,16 @@ struct Expression::Parser {
   };
   std::vector<UsedColumn> used;
   const Columns* columns = nullptr;
+  const GivenFunctions* functions = nullptr;
+  /// A call of a given function, whose value is a variable of the parser.
+  struct GivenCall {
+    const GivenFunction* function;
+    std::vector<Expression> arguments;
+    double value = 0.0;
+  };
+  std::deque<GivenCall> calls;  // never moves, either
+  bool has_parameters = false;  // it depends on parameters
+  bool is_local = false;        // it depends on the place or on columns
   std::vector<LinearTable> tables;
   std::vector<std::string> files;  // of the tables
   bool is_trial = false;           // the value does not count: tables may be left
@@ -95,7 +124,7 @@ struct Expression::Parser {
     constants.push_back(name);
   }
 
-  void define(const Spacing& spacing) {
+  void define_all() {
     parser.ClearConst();  // _pi and _e
     define("pi", std::numbers::pi);
     if (spacing > 0.0) {
@@ -148,13 +177,113 @@ struct Expression::Parser {
     return plain;
   }
 
-  void find_used_columns() {
+  void find_used_variables() {
     const mu::varmap_type& variables = parser.GetUsedVar();
+    const auto is_used = [&](const std::string& name) { return variables.contains(name); };
+    has_parameters = std::ranges::any_of(parameters, is_used);
+    for (int c = 0; c < dimension; ++c) is_local |= is_used(std::string(1, "xyz"[c]));
+    for (const GivenCall& call : calls) {
+      for (const Expression& argument : call.arguments) {
+        has_parameters |= argument.has_parameters();
+        is_local |= argument.parser_->is_local;
+      }
+    }
     double* value = values_of_columns.data();
     for (const auto& [name, of_points] : *columns) {
       if (variables.contains(name)) used.push_back({&name, &of_points, value});
       ++value;
     }
+    is_local |= !used.empty();
+  }
+
+  /// Puts variables in place of calls of given functions. The text stays as long as it is, so that
+  /// errors have their places.
+  std::string take_calls(std::string plain) {
+    int number = 0;
+    for (std::size_t end = 0; end < plain.size();) {
+      const std::size_t begin = end;
+      while (end < plain.size() && is_word(plain[end])) ++end;
+      if (end == begin) ++end;
+      const auto known = functions->find(plain.substr(begin, end - begin));
+      if (known == functions->end()) continue;
+      const std::size_t open = plain.find_first_not_of(' ', end);
+      end = take_call(plain, known->first, known->second, open);
+      std::string name;
+      do name = "_" + std::to_string(number++);
+      while (parser.GetVar().contains(name) || functions->contains(name));
+      if (name.size() > end - begin) refuse("has too many calls of given functions");
+      parser.DefineVar(name, &calls.back().value);
+      plain.replace(begin, end - begin, name + std::string(end - begin - name.size(), ' '));
+    }
+    return plain;
+  }
+
+  /// Reads a call with its parenthesis. Returns the place behind it.
+  std::size_t take_call(const std::string& plain, const std::string& name,
+                        const GivenFunction& function, std::size_t open) {
+    const std::vector<std::size_t> ends = ends_of_arguments(plain, open);
+    if (ends.empty()) {
+      refuse("not a valid expression: the parenthesis at character " + std::to_string(open + 1) +
+             " is not closed");
+    }
+    const bool has_none = ends.size() == 1 && plain.find_first_not_of(' ', open + 1) == ends[0];
+    if (has_none || ends.size() != std::size_t(function.arguments)) {
+      refuse("the function " + name + " takes " + std::to_string(function.arguments) +
+             (function.arguments == 1 ? " argument, not " : " arguments, not ") +
+             std::to_string(has_none ? 0 : ends.size()));
+    }
+    GivenCall call{&function, {}};
+    std::size_t begin = open + 1;
+    for (const std::size_t end : ends) {
+      call.arguments.push_back(argument(begin, end));
+      begin = end + 1;
+    }
+    calls.push_back(std::move(call));
+    return begin;
+  }
+
+  [[nodiscard]] Expression argument(std::size_t begin, std::size_t end) const {
+    try {  // the blanks keep the places of errors
+      return {std::string(begin, ' ') + text.substr(begin, end - begin),
+              dimension,
+              spacing,
+              parameters,
+              *columns,
+              *functions};
+    } catch (const InputError& error) {
+      refuse(error.allowed());
+    }
+  }
+
+  /// Calls a given function: a value for each place, or one if it is the same for all.
+  [[nodiscard]] std::vector<double> values_of(const GivenCall& call,
+                                              std::span<const Coordinates> places,
+                                              std::span<const double> of_parameters,
+                                              std::span<const Index> points) const {
+    std::vector<std::vector<double>> arguments;
+    std::size_t count = 1;
+    for (const Expression& argument : call.arguments) {
+      const std::size_t needed = argument.parser_->is_local ? places.size() : 1;
+      try {
+        arguments.push_back(argument.at(places.first(needed), of_parameters,
+                                        points.first(std::min(needed, points.size()))));
+      } catch (const InputError& error) {
+        refuse(error.allowed());
+      }
+      count = std::max(count, needed);
+    }
+    std::vector<double> found(count);
+    const std::vector<std::span<const double>> spans(arguments.begin(), arguments.end());
+    call.function->fill(spans, found);
+    return found;
+  }
+
+  /// Takes the place and the parameters of an evaluation.
+  void take(const Coordinates& at, std::span<const double> of_parameters, Index point) {
+    place = at;
+    std::copy_n(of_parameters.begin(), std::min(of_parameters.size(), values.size()),
+                values.begin());
+    take_columns(point);
   }
 
   /// Takes the values of a point.
@@ -181,7 +310,10 @@ struct Expression::Parser {
   }
 
   [[noreturn]] void refuse_word(const std::string& word, bool is_called) const {
-    std::vector<std::string> variables{"x", "y", "z"}, functions;
+    if (functions->contains(word)) {
+      refuse("the function " + word + " needs its arguments in parentheses, as in " + word + "(x)");
+    }
+    std::vector<std::string> variables{"x", "y", "z"}, callable;
     variables.resize(dimension);
     variables.insert(variables.end(), parameters.begin(), parameters.end());
     variables.insert(variables.end(), constants.begin(), constants.end());
@@ -190,9 +322,10 @@ struct Expression::Parser {
     } else if (columns->contains(word)) {
       refuse("column " + word + " has a value at each point, but this one number is for none");
     }
-    for (const auto& [name, callback] : parser.GetFunDef()) functions.push_back(name);
+    for (const auto& [name, callback] : parser.GetFunDef()) callable.push_back(name);
+    for (const auto& [name, function] : *functions) callable.push_back(name);
 
-    std::vector<std::string> allowed = is_called ? functions : variables;
+    std::vector<std::string> allowed = is_called ? callable : variables;
     std::string what = (is_called ? "unknown function " : "unknown variable ") + word + "; allowed";
     for (const std::string& name : allowed) what += (name == allowed[0] ? " are " : ", ") + name;
     // Correctly spelt, but not defined in this dimension or for this key.
@@ -200,7 +333,7 @@ struct Expression::Parser {
       if (word == known) refuse(what);
     }
     // The parentheses of a function may have been forgotten.
-    if (!is_called) allowed.insert(allowed.end(), functions.begin(), functions.end());
+    if (!is_called) allowed.insert(allowed.end(), callable.begin(), callable.end());
     const std::string nearest = nearest_name(word, allowed);
     refuse(what + (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
   }
@@ -209,10 +342,6 @@ struct Expression::Parser {
   /// one, which muParser does not report or silently accepts.
   /// @return whether a variable occurs
   bool scan(const std::string& plain) const {
-    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-    const auto is_word = [&](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || is_digit(c);
-    };
     const auto at = [&](std::size_t i) { return i < plain.size() ? plain[i] : '\0'; };
     bool varies = false;
     std::vector<bool> compared{false};  // per open parenthesis: a comparison stands to the left
@@ -230,10 +359,13 @@ struct Expression::Parser {
         for (next = end; at(next) == ' ';) ++next;
         const std::string word = plain.substr(i, end - i);
         const bool is_variable = parser.GetVar().count(word) > 0;
-        if (!is_variable && !parser.GetConst().count(word) && !parser.GetFunDef().count(word)) {
+        const bool is_given = at(next) == '(' && functions->contains(word);
+        if (!is_variable && !is_given && !parser.GetConst().count(word) &&
+            !parser.GetFunDef().count(word)) {
           refuse_word(word, at(next) == '(');
         }
-        varies = varies || is_variable;
+        // A given function is not called before it is needed.
+        varies = varies || is_variable || is_given;
         i = end;
       } else if (c == '<' || c == '>' || c == '=' || (c == '!' && at(i + 1) == '=')) {
         const bool two_characters = at(i + 1) == '=';
@@ -276,8 +408,9 @@ struct Expression::Parser {
     // muParser stops silently at a zero character.
     if (text.find('\0') != std::string::npos)
       refuse("an expression must not hold a zero character");
-    const std::string plain = read_tables();
+    std::string plain = read_tables();
     const bool varies = scan(plain);
+    plain = take_calls(std::move(plain));
     try {
       parser.SetExpr(plain);
       int count = 0;
@@ -286,7 +419,7 @@ struct Expression::Parser {
       is_trial = false;
       if (count != 1) refuse("an expression has one value; a decimal point is '.', not ','");
       if (!varies) constant = first;
-      find_used_columns();
+      find_used_variables();
     } catch (const mu::ParserError& error) {
       refuse_parse(error);
     }
@@ -310,13 +443,16 @@ struct Expression::Parser {
 };
 
 Expression::Expression(const std::string& text, int dimension, const Spacing& spacing,
-                       std::vector<std::string> parameters, const Columns& columns)
+                       std::vector<std::string> parameters, const Columns& columns,
+                       const GivenFunctions& functions)
     : parser_(std::make_unique<Parser>()) {
   parser_->text = text;
   parser_->dimension = dimension;
+  parser_->spacing = spacing;
   parser_->parameters = std::move(parameters);
   parser_->columns = &columns;
-  parser_->define(spacing);
+  parser_->functions = &functions;
+  parser_->define_all();
   parser_->compile();
 }
 
@@ -333,21 +469,39 @@ Expression::~Expression() = default;
 double Expression::operator()(const Coordinates& place, std::span<const double> parameters,
                               Index point) const {
   if (parser_->constant) return *parser_->constant;
-  parser_->place = place;
-  std::copy_n(parameters.begin(), std::min(parameters.size(), parser_->values.size()),
-              parser_->values.begin());
-  parser_->take_columns(point);
+  if (!parser_->calls.empty()) return at({&place, 1}, parameters, {&point, 1}).front();
+  parser_->take(place, parameters, point);
   return parser_->value();
+}
+
+std::vector<double> Expression::at(std::span<const Coordinates> places,
+                                   std::span<const double> parameters,
+                                   std::span<const Index> points) const {
+  if (parser_->constant) return std::vector<double>(places.size(), *parser_->constant);
+  if (places.size() > 1 && !parser_->is_local) {
+    const auto first = at(places.first(1), parameters, points.first(std::min(points.size(), 1ul)));
+    return std::vector<double>(places.size(), first.front());
+  }
+  std::vector<std::vector<double>> of_calls;
+  for (const Parser::GivenCall& call : parser_->calls) {
+    if (!places.empty()) of_calls.push_back(parser_->values_of(call, places, parameters, points));
+  }
+  std::vector<double> values;
+  values.reserve(places.size());
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    parser_->take(places[k], parameters, points.empty() ? no_point : points[k]);
+    for (std::size_t call = 0; call < of_calls.size(); ++call) {
+      const std::vector<double>& of_call = of_calls[call];
+      parser_->calls[call].value = of_call[of_call.size() == 1 ? 0 : k];
+    }
+    values.push_back(parser_->value());
+  }
+  return values;
 }
 
 bool Expression::is_constant() const { return parser_->constant.has_value(); }
 
-bool Expression::has_parameters() const {
-  if (parser_->constant) return false;
-  const mu::varmap_type& used = parser_->parser.GetUsedVar();
-  return std::ranges::any_of(parser_->parameters,
-                             [&](const std::string& name) { return used.contains(name); });
-}
+bool Expression::has_parameters() const { return parser_->has_parameters; }
 
 const std::string& Expression::text() const { return parser_->text; }
 

@@ -7,6 +7,7 @@
 
 #include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
+#include "src/geometry/expression_at_points.hpp"
 #include "src/geometry/outermost_face.hpp"
 #include "src/parallel/communicator.hpp"
 
@@ -27,8 +28,7 @@ std::function<bool(const Coordinates&)> where_of(const Lattice& lattice, std::si
   const std::string& text = lattice.layers[number].where;
   if (text.empty()) return {};
   try {
-    auto locked =
-        std::make_shared<LockedExpression>(Expression(text, lattice.dimension, lattice.spacing));
+    auto locked = std::make_shared<LockedExpression>(expression_of(text, lattice));
     return [locked](const Coordinates& place) {
       const std::lock_guard<std::mutex> lock(locked->mutex);
       return locked->expression(place) != 0.0;

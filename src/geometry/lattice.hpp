@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "src/core/given_function.hpp"
 #include "src/core/spacing.hpp"
 #include "src/geometry/layer.hpp"
 #include "src/geometry/points.hpp"
@@ -39,6 +41,8 @@ struct Lattice {
   double cell_perturbation = 0.0;
   int lloyd_steps = 5;  ///< blue noise: how often points move to the centroids of their cells
   std::uint64_t seed = 1;
+  /// Functions that expressions of layers may call; null: none.
+  std::shared_ptr<const GivenFunctions> functions{};
 };
 
 /// Refuses shapes, layers and values that can't be used, whatever the number of points is.

@@ -8,11 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "src/core/expression.hpp"
 #include "src/core/infinity.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/cell_piece.hpp"
+#include "src/geometry/expression_at_points.hpp"
 #include "src/geometry/outermost_face.hpp"
 #include "src/parallel/communicator.hpp"
 
@@ -232,8 +232,12 @@ void keep_where(const Lattice& lattice, std::size_t number, std::vector<Site>& s
   if (layer.where.empty()) return;
   const std::string key = key_of(number, "where");
   try {
-    const Expression where(layer.where, lattice.dimension, lattice.spacing);
-    std::erase_if(sites, [&](const Site& site) { return where(site.place) == 0.0; });
+    const Expression where = expression_of(layer.where, lattice);
+    std::vector<Coordinates> places;
+    for (const Site& site : sites) places.push_back(site.place);
+    const std::vector<double> values = where.at(places);
+    std::size_t site_number = 0;
+    std::erase_if(sites, [&](const Site&) { return values[site_number++] == 0.0; });
   } catch (const InputError& error) {
     throw InputError(key, error.value(), error.allowed());
   }

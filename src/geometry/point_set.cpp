@@ -15,9 +15,14 @@ std::vector<Index> select(const Points& points, const SetRule& rule) {
   try {
     const Expression where =
         rule.where.empty() ? Expression(1.0) : expression_of(rule.where, points);
+    std::vector<Index> candidates;
     for (Index point = 0; point < points.count(); ++point) {
       if (rule.shape && !contains(*rule.shape, points.position(point))) continue;
-      if (value_at(where, points, point) != 0.0) members.push_back(point);
+      candidates.push_back(point);
+    }
+    const std::vector<double> values = values_at(where, points, candidates);
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+      if (values[k] != 0.0) members.push_back(candidates[k]);
     }
   } catch (const InputError& error) {
     throw InputError("where", error.value(), error.allowed());

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "src/core/given_function.hpp"
 #include "src/core/spacing.hpp"
 #include "src/core/types.hpp"
 #include "src/geometry/cell_polygons.hpp"
@@ -52,11 +53,14 @@ struct Points {
   std::shared_ptr<const MeshBody> mesh{};
   /// Inside of the mesh, which bonds must not leave; null: they may cross anything.
   std::shared_ptr<const MeshInterior> interior{};
-  /// Number of each point's element or node in the mesh's file, from 0; empty without a mesh.
+  /// Number of each point's element or node in the mesh's file, or of the point among those that a
+  /// program gives, from 0; empty if they come from elsewhere.
   std::vector<std::int32_t> source_row{};
 
   /// Further columns of the points' file by name: a value per point, in SI units.
   std::map<std::string, std::vector<double>> columns{};
+  /// Functions that expressions at the points may call; null: none.
+  std::shared_ptr<const GivenFunctions> functions{};
   /// Horizon of each point [m], see points.horizon of case files; images have that of their
   /// sources. Empty: one horizon for all.
   std::vector<double> horizons{};

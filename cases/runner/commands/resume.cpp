@@ -12,6 +12,7 @@
 #include "cases/runner/commands/run_facts.hpp"
 #include "cases/runner/input/case.hpp"
 #include "cases/runner/input/case_difference.hpp"
+#include "cases/runner/input/case_file.hpp"
 #include "cases/runner/input/case_inputs.hpp"
 #include "cases/runner/input/case_keys.hpp"
 #include "cases/runner/input/toml_text.hpp"
@@ -46,10 +47,12 @@ Settings settings_in(const EarlierRun& earlier) {
 
 /// Text of the case: from its file, or from the run if the file is gone.
 /// @throws InputError if the file has changed
-std::string case_text(const EarlierRun& earlier, const Settings& settings) {
+std::string case_text(const EarlierRun& earlier, const Settings& settings,
+                      const std::shared_ptr<const Givens>& givens) {
   if (!std::filesystem::exists(earlier.case_file())) return earlier.case_text();
-  const Case then = read_case(earlier.case_file(), earlier.case_text(), settings);
-  const Case now = read_case(earlier.case_file(), settings);
+  const Case then = read_case(earlier.case_file(), earlier.case_text(), settings, givens);
+  const Case now =
+      read_case(earlier.case_file(), read_case_text(earlier.case_file()), settings, givens);
   const std::vector<std::string> changes = case_differences(then.as_resolved, now.as_resolved);
   if (changes.empty()) return now.as_read;
   throw InputError(
@@ -65,6 +68,7 @@ void require_same_files(const EarlierRun& earlier, const Case& from) {
   if (earlier.files().empty()) return;
   std::istringstream lines(checksums_of_files(from));
   for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with(mark_of_given)) continue;  // require_givens has seen to these
     if (("\n" + earlier.files()).find("\n" + line + "\n") != std::string::npos) continue;
     throw InputError("", "",
                      "has changed since the run began, which reads it. Restore it to resume, or "
@@ -140,14 +144,20 @@ bool is_finished(const EarlierRun& earlier, const LoadingProgramme& way) {
 }  // namespace
 
 Exit resume(const std::filesystem::path& directory, const Settings& settings,
-            const RunOptions& options, const Communicator& ranks) {
+            const RunOptions& options, const Communicator& ranks,
+            const std::shared_ptr<const Givens>& givens) {
   require_extending(settings);
   EarlierRun earlier(directory, PERISTAT_VERSION, ranks);
+  try {
+    require_givens(earlier.files(), *givens);
+  } catch (const InputError& error) {
+    throw InputError("", "", error.allowed(), directory.string());
+  }
   Settings all = settings_in(earlier);
-  const std::string text = case_text(earlier, all);
-  const Case then = read_case(earlier.case_file(), text, all);
+  const std::string text = case_text(earlier, all, givens);
+  const Case then = read_case(earlier.case_file(), text, all, givens);
   all.insert(all.end(), settings.begin(), settings.end());
-  const Case from = read_case(earlier.case_file(), text, all);
+  const Case from = read_case(earlier.case_file(), text, all, givens);
   if (ranks.count() > 1) refuse_keys_without_ranks(from);
   require_same_files(earlier, then);
   require_same_beginning(programme_of(then), programme_of(from), earlier.checkpoint().path);

@@ -103,11 +103,13 @@ std::vector<PointCounts> constant_fields_of(const Case& from, const Body& body) 
   std::vector<PointCounts> counts;
   if (const auto* const source = std::get_if<PointSource>(&from.body)) {
     const Index own = body.points.owned.value_or(body.points.own());
-    counts.push_back(
-        {"source_row",
-         body.points.mesh ? "number of each point's element or node in the file, from 0"
-                          : "number of each point in the file's order, from 0",
-         body.points.mesh ? body.points.source_row
+    counts.push_back({"source_row",
+                      body.points.mesh
+                          ? "number of each point's element or node in the file, from 0"
+                      : source->file.empty() ? "number of each point as it was given, from 0"
+                                             : "number of each point in the file's order, from 0",
+                      !body.points.source_row.empty()
+                          ? body.points.source_row
                           : source_rows(source->file, body.points, own, source->length_unit)});
   }
   const auto own = [&](auto values) {

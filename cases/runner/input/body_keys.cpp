@@ -172,6 +172,7 @@ Table<Case> lattice_keys() {
       [](auto&, auto& result) {
         result.body = Lattice();
         lattice(result).dimension = result.dimension;
+        lattice(result).functions = given_functions(result);
       }};
 }
 
@@ -214,6 +215,9 @@ Kind<PointHorizon> point_horizon() {
 
 Table<Case> points_keys() {
   using K = Key<Case>;
+  constexpr auto are_given = [](const Case& from, const Case&) {
+    return from.givens->points.has_value();
+  };
   constexpr auto has_mesh = [](const Case& from, const Case&) {
     const auto* const source = std::get_if<PointSource>(&from.body);
     return source != nullptr && source->is_mesh();
@@ -227,6 +231,7 @@ Table<Case> points_keys() {
          "file with comma- or blank-separated text, or a mesh, by the end of its name (.msh, .inp, "
          ".vtu, .vtk, .exo, .e, .ex2, .med); its path is relative to the case file's folder")
            .required()
+           .unless(are_given, "goes with no points that a program gives; leave one of them out")
            .early()
            .then([](auto&, auto& from) {
              if (points(from).is_mesh()) return;
@@ -257,6 +262,7 @@ Table<Case> points_keys() {
          "file with the neighbours of the points and the shares of their volumes that count, "
          "relative to the case file's folder like `file`; model `bond`")
            .unless(has_mesh, "is for a file of text")
+           .unless(are_given, "is for points from a file")
            .written_if([](auto& from, auto&) { return !points(from).neighbours.empty(); })
            .then([](auto& at, auto& result) {
              if (!points(result).neighbours.empty() && points(result).horizon.ratio > 0.0)
@@ -277,7 +283,16 @@ Table<Case> points_keys() {
            .written_if(has_mesh),
        thickness(in(points, &PointSource::cross_section)),
        area(in(points, &PointSource::cross_section))},
-      [](auto&, auto& result) { result.body = PointSource(); }};
+      [](auto& at, auto& result) {
+        result.body = PointSource();
+        const std::optional<Points>& given = result.givens->points;
+        if (!given) return;
+        if (given->dimension != result.dimension)
+          at.refuse("the points that the program gives have dimension " +
+                    std::to_string(given->dimension) + ", the case has " +
+                    std::to_string(result.dimension));
+        for (const auto& [name, values] : given->columns) result.columns[name];
+      }};
 }
 
 Table<SetRule> set_keys() {

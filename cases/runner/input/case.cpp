@@ -167,9 +167,15 @@ Case read_case(const std::filesystem::path& file, const Settings& overrides) {
   return read_case(file, read_case_text(file), overrides);
 }
 
+std::shared_ptr<const GivenFunctions> given_functions(const Case& from) {
+  return {from.givens, &from.givens->functions};
+}
+
 Case read_case(const std::filesystem::path& file, const std::string& text,
-               const Settings& overrides) {
+               const Settings& overrides, std::shared_ptr<const Givens> givens) {
+  check_functions(givens->functions);
   Case result;
+  result.givens = std::move(givens);
   result.file = file.string();
   result.as_read = text;
   result.settings = overrides;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cases/runner/input/case_location.hpp"
+#include "cases/runner/input/givens.hpp"
 #include "cases/runner/input/settings.hpp"
 #include "solvers/drivers/load_stepping.hpp"
 #include "solvers/formulations/specification/body_specification.hpp"
@@ -37,9 +38,10 @@ struct PointHorizon {
   double ratio = 0.0;   ///< horizon / size; 0: the length
 };
 
-/// Points that come from a file instead of a lattice (table [points]).
+/// Points that come from a file, or are given by a program, instead of a lattice (table [points]).
 struct PointSource {
-  std::filesystem::path file;  ///< absolute; in the case file relative to the case file's folder
+  /// Absolute; in the case file relative to the case file's folder. Empty: the points are given.
+  std::filesystem::path file;
   std::filesystem::path neighbours{};  ///< absolute; empty: the points within the horizon
   double cross_section = 1.0;          ///< 1D: area [m2]; 2D: thickness [m]
   PointHorizon horizon{};
@@ -150,6 +152,9 @@ struct Case : BodySpecification {
   std::vector<ProbeSpecification> probes;
   std::vector<CrackTipSpecification> crack_tips;
 
+  /// What a program gives beside the text; never null.
+  std::shared_ptr<const Givens> givens = std::make_shared<const Givens>();
+
   /// Parameters that expressions of supports and loads may use: those of the loading, and the time
   /// of a motion.
   [[nodiscard]] std::vector<std::string> parameters() const;
@@ -178,8 +183,13 @@ struct Case : BodySpecification {
 [[nodiscard]] Case read_case(const std::filesystem::path& file, const Settings& overrides = {});
 
 /// Reads and checks a case from the text that its file has, or had.
-[[nodiscard]] Case read_case(const std::filesystem::path& file, const std::string& text,
-                             const Settings& overrides);
+/// @param givens what a program gives beside it
+[[nodiscard]] Case read_case(
+    const std::filesystem::path& file, const std::string& text, const Settings& overrides,
+    std::shared_ptr<const Givens> givens = std::make_shared<const Givens>());
+
+/// Functions that expressions of the case may call; lives as long as they do.
+[[nodiscard]] std::shared_ptr<const GivenFunctions> given_functions(const Case& from);
 
 /// Puts file, line and column of a key in front of a message: those of the longest part of the key
 /// that the case file has, or the file alone.

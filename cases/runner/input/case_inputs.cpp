@@ -40,7 +40,7 @@ std::filesystem::path absolute_beside_case(const Case& from, const std::string& 
 std::vector<std::filesystem::path> inputs_of(const Case& from) {
   std::vector<std::filesystem::path> files{from.file};
   if (const auto* points = std::get_if<PointSource>(&from.body)) {
-    files.push_back(points->file);
+    files.push_back(points->file);  // empty if the points are given
     if (!points->neighbours.empty()) files.push_back(points->neighbours);
   }
   if (const auto* lattice = std::get_if<Lattice>(&from.body)) {
@@ -57,7 +57,7 @@ std::vector<std::filesystem::path> inputs_of(const Case& from) {
 std::string checksums_of_files(const Case& from) {
   std::vector<std::filesystem::path> files = inputs_of(from);
   files.erase(files.begin());
-  std::string lines;
+  std::string lines = lines_of(*from.givens);
   for (const std::filesystem::path& file : files)
     lines += fmt::format("{:016x} {}\n", checksum_of(file), file.string());
   return lines;

@@ -15,7 +15,8 @@ namespace peristat {
 /// Files that a case reads, the case file first.
 [[nodiscard]] std::vector<std::filesystem::path> inputs_of(const Case& from);
 
-/// A line for each file that the case reads, without the case file: checksum of its bytes and path.
+/// A line for each thing that a program gives (see lines_of), and for each file that the case
+/// reads, without the case file: checksum of its bytes and path.
 /// @throws InputError without a key if a file can't be read
 [[nodiscard]] std::string checksums_of_files(const Case& from);
 

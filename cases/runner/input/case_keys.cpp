@@ -49,6 +49,8 @@ Table<Case> all_keys() {
            .on_ranks(),
        K("lattice", itself, lattice_keys(), "table: points on a lattice")
            .written_if(body_is<Lattice>)
+           .unless([](auto&, const Case& from) { return from.givens->points.has_value(); },
+                   "goes with no points that a program gives; they need the table [points]")
            .one_of(),
        K("points", itself, points_keys(), "table: points from a file")
            .written_if(body_is<PointSource>)

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "src/core/expression.hpp"
 #include "src/core/input_error.hpp"
 
 namespace peristat {
@@ -182,6 +183,8 @@ class DimensionReader {
     static constexpr std::array<std::string_view, 5> keeping{"abs", "min", "max", "sum", "avg"};
     const bool keeps = std::ranges::find(keeping, name) != keeping.end();
     const bool turns = name == "sin" || name == "cos" || name == "tan";
+    // Tables and functions that a program gives take any argument, and have no unit.
+    const bool is_free = name == "table" || why_no_column(name).empty();
     const Measured angle = unit_of_key("rad").dimension;
     Measured value;
     do {
@@ -194,7 +197,7 @@ class DimensionReader {
         value = common_dimension(value, argument);
       else if (name == "sqrt")
         value = argument ? root(*argument) : argument;
-      else if (name != "sign" && name != "table" && !(turns && argument == angle))
+      else if (name != "sign" && !is_free && !(turns && argument == angle))
         require_plain(argument, "the argument of " + name);
     } while (take(","));
     if (!take(")")) refuse_form();

@@ -59,8 +59,8 @@ std::string with_absolute_tables(const Entry& at, const std::string& text) {
 std::string checked(const Entry& at, const std::string& text, int dimension,
                     const std::vector<std::string>& parameters) {
   std::string resolved = with_absolute_tables(at, text);
-  static_cast<void>(
-      Expression(resolved, dimension, spacing_of(at.so_far), parameters, at.so_far.columns));
+  static_cast<void>(Expression(resolved, dimension, spacing_of(at.so_far), parameters,
+                               at.so_far.columns, at.so_far.givens->functions));
   return resolved;
 }
 
@@ -517,7 +517,8 @@ Kind<double> stretch() {
     double value = 0.0;
     try {
       const Expression of(with_absolute_tables(at, at.from.string(at.key)), 0,
-                          lattice != nullptr ? lattice->spacing : Spacing(), {"horizon"});
+                          lattice != nullptr ? lattice->spacing : Spacing(), {"horizon"},
+                          at.so_far.columns, at.so_far.givens->functions);
       value = of({}, std::array{horizon});
     } catch (const InputError& error) {
       at.refuse(error.allowed());

@@ -24,7 +24,8 @@ std::string load_table_key(std::size_t k) {
 /// Entries of a table that is an expression: one for each step, and 0 before the first.
 std::vector<double> entries_of(const Entry& at, const std::string& expression, int steps) {
   try {
-    const Expression of_step(expression, 0, 0.0, {"step"});
+    const Expression of_step(expression, 0, 0.0, {"step"}, at.so_far.columns,
+                             at.so_far.givens->functions);
     std::vector<double> entries;
     for (int step = 0; step <= steps; ++step) {
       const std::array<double, 1> value{double(step)};

@@ -282,8 +282,11 @@ void Results::Files::describe(const CaseText& text) {
   master.write("/case/as_resolved", text.as_resolved,
                {"none", "the case with overrides and defaults in place (TOML)"});
   if (!text.files.empty()) {
-    master.write("/case/files", text.files,
-                 {"none", "checksum (FNV-1a) and path of each file that the case reads"});
+    master.write(
+        "/case/files", text.files,
+        {"none",
+         "checksum (FNV-1a) and path of each file that the case reads; names of what a program "
+         "gave"});
   }
   write_settings(master, text.settings);
   master.make_table("/history", history_header);

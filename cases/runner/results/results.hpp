@@ -26,7 +26,7 @@ struct CaseText {
   std::map<std::string, std::string> versions{};  ///< "peristat", "hdf5", ... -> "1.0.0"
   std::filesystem::path file{};  ///< absolute; a later run of the same file may replace this one
   Settings settings{};           ///< values given by `--set`
-  std::string files{};           ///< that the case reads: checksum and path in a line each
+  std::string files{};  ///< that the case reads, and what a program gives, see checksums_of_files
 };
 
 /// Optional output of a run.

@@ -18,6 +18,7 @@
 #include "src/connectivity/free_motion.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/given_points.hpp"
 #include "src/geometry/point_file.hpp"
 #include "src/neighbourhood/ghost_sites.hpp"
 
@@ -89,10 +90,13 @@ Points make_points_of(const Case& from) {
       std::optional<NeighbourFile> neighbours;
       if (!source.neighbours.empty())
         neighbours = {source.neighbours, source.horizon.length, source.cross_section};
-      points = source.is_mesh() ? read_mesh_points(source, from.dimension)
-                                : read_points(source.file, from.dimension, source.cross_section,
-                                              neighbours, source.length_unit);
+      points = from.givens->points
+                   ? points_of_given(*from.givens->points, source.cross_section, source.length_unit)
+               : source.is_mesh() ? read_mesh_points(source, from.dimension)
+                                  : read_points(source.file, from.dimension, source.cross_section,
+                                                neighbours, source.length_unit);
     }
+    points.functions = given_functions(from);
     for (std::size_t k = 0; k < from.sets.size(); ++k) {
       const SetRule& rule = from.sets[k];
       const std::string table = "set[" + std::to_string(k) + "]";

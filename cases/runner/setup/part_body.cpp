@@ -65,6 +65,11 @@ void refuse_convolutions(const Case& from) {
 
 /// Refuses values that run on one rank only, for keys with other values that run on several.
 void refuse_values_without_ranks(const Case& from) {
+  if (!from.givens->none()) {
+    throw InputError("", lines_of(*from.givens),
+                     "functions and points that a program gives are for one rank: write the points "
+                     "to a file, and the functions as expressions or tables");
+  }
   refuse_convolutions(from);
   const bool is_lattice = std::holds_alternative<Lattice>(from.body);
   if (const auto* const source = std::get_if<PointSource>(&from.body);

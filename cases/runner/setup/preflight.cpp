@@ -132,7 +132,7 @@ class Values {
 
   [[nodiscard]] Preflight::Applied of(const GivenValue& given) const {
     const Expression expression(given.text, given.has_place ? from_.dimension : 0, spacing_,
-                                from_.parameters(), body_.points.columns);
+                                from_.parameters(), body_.points.columns, from_.givens->functions);
     const auto typed = from_.typed.find(given.key);
     Preflight::Applied value{given.kind, given.key, given.where, given.unit,
                              typed == from_.typed.end() ? given.text : typed->second};
@@ -197,6 +197,31 @@ class Values {
     return places;
   }
 
+  /// Values at places, all at once unless some have none.
+  [[nodiscard]] static std::vector<double> values(const Expression& expression,
+                                                  const std::vector<Place>& places,
+                                                  const std::vector<double>& parameters) {
+    std::vector<Coordinates> at;
+    std::vector<Index> points;
+    for (const Place& place : places) {
+      at.push_back(place.at);
+      points.push_back(place.point);
+    }
+    try {
+      return expression.at(at, parameters, points);
+    } catch (const InputError&) {
+      std::vector<double> some;
+      for (const Place& place : places) {
+        try {
+          some.push_back(expression(place.at, parameters, place.point));
+        } catch (const InputError&) {
+          continue;
+        }
+      }
+      return some;
+    }
+  }
+
   /// Range of values, leaving out places where the expression is undefined: it acts on no point
   /// there.
   [[nodiscard]] Range range(const Expression& expression, const std::vector<Place>& places,
@@ -205,14 +230,9 @@ class Values {
     // The load under displacement control is not known: values are given for a load of 1.
     if (body_.conditions->control() != nullptr && stage > 0.0) parameters.front() = 1.0;
     Range range;
-    for (const auto& [at, point] : places) {
-      try {
-        const double value = expression(at, parameters, point);
-        range.least = std::min(range.least, value);
-        range.most = std::max(range.most, value);
-      } catch (const InputError&) {
-        continue;
-      }
+    for (const double value : values(expression, places, parameters)) {
+      range.least = std::min(range.least, value);
+      range.most = std::max(range.most, value);
     }
     return range;
   }

@@ -31,9 +31,14 @@ std::vector<double> given_factors(const Points& points, const std::string& text,
   std::vector<double> factors(std::size_t(points.own()), 1.0);
   with_key(key, [&] {
     const Expression expression = expression_of(text, points);
+    std::vector<Index> members;
     for (Index i = 0; i < points.own(); ++i) {
-      if (!applies(i)) continue;
-      const double factor = value_at(expression, points, i);
+      if (applies(i)) members.push_back(i);
+    }
+    const std::vector<double> values = values_at(expression, points, members);
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const Index i = members[k];
+      const double factor = values[k];
       if (!(factor >= least && factor <= most)) {
         throw InputError("", '"' + text + '"',
                          "is " + number_text(factor) + " at " + place_of(points, i) +

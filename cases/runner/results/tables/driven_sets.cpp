@@ -10,6 +10,7 @@
 #include "src/conditions/traction.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/body_cells.hpp"
+#include "src/geometry/expression_at_points.hpp"
 
 namespace peristat {
 namespace {
@@ -179,7 +180,8 @@ void DrivenSets::add_values(std::span<const double> displacement,
   for (const auto& [driven, points, count, loaded] : measured_) {
     double mean = 0.0;
     if (!driven.value.empty()) {
-      const Expression value(driven.value, points_.dimension, points_.spacing, loads.names);
+      const Expression value(driven.value, points_.dimension, points_.spacing, loads.names,
+                             points_.columns, functions_of(points_.functions));
       mean = driven.factor * value(driven.place, loads.values);
     } else if (count > 0.0) {
       mean = sum(displacement, points, driven.component) / count;
