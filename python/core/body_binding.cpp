@@ -40,6 +40,12 @@ py::dict columns(const py::object& self) {
   return all;
 }
 
+py::object given_numbers(const py::object& self) {
+  const std::vector<std::int32_t>& rows = points_of(self.cast<const BoundBody&>()).source_row;
+  if (rows.empty()) return py::none();
+  return view_of(rows.data(), {py::ssize_t(rows.size())}, self);
+}
+
 std::vector<std::string> warnings(const BoundBody& of) {
   const Working working;
   return located_errors(*of.of,
@@ -63,6 +69,7 @@ void bind_body(py::module_& module) {
       .def_property_readonly("volumes", volumes)
       .def_property_readonly("sets", sets)
       .def_property_readonly("columns", columns)
+      .def_property_readonly("given_numbers", given_numbers)
       .def("warnings", warnings);
 }
 

@@ -9,6 +9,7 @@
 #include "cases/runner/commands/check.hpp"
 #include "cases/runner/commands/check_tangent.hpp"
 #include "cases/runner/setup/body.hpp"
+#include "python/core/givens.hpp"
 #include "python/core/threads.hpp"
 #include "python/core/working.hpp"
 
@@ -37,9 +38,12 @@ std::string printed(const Print& print) {
   return close();
 }
 
-SharedCase read(const std::string& file, const std::string& text, const Settings& settings) {
+std::shared_ptr<Case> read(const std::string& file, const std::string& text,
+                           const Settings& settings, const py::dict& functions,
+                           const py::object& points) {
+  const std::shared_ptr<const Givens> givens = givens_of(functions, points);
   const Working working;
-  return std::make_shared<const Case>(read_case(file, text, settings));
+  return std::make_shared<Case>(read_case(file, text, settings, givens));
 }
 
 std::string check_text(const Case& of, int threads) {
@@ -69,10 +73,8 @@ BoundBody body_of(const SharedCase& of, int threads) {
 
 void bind_case(py::module_& module) {
   py::class_<Case, std::shared_ptr<Case>>(module, "Case")
-      .def(py::init([](const std::string& file, const std::string& text, const Settings& settings) {
-             return std::const_pointer_cast<Case>(read(file, text, settings));
-           }),
-           py::arg("file"), py::arg("text"), py::arg("settings"))
+      .def(py::init(&read), py::arg("file"), py::arg("text"), py::arg("settings"),
+           py::arg("functions"), py::arg("points"))
       .def_property_readonly("resolved", [](const Case& of) { return of.as_resolved; })
       .def_property_readonly("title", [](const Case& of) { return of.title; })
       .def_property_readonly("dimension", [](const Case& of) { return of.dimension; })

@@ -9,6 +9,7 @@
 #include "cases/runner/commands/run.hpp"
 #include "python/core/arrays.hpp"
 #include "python/core/case_binding.hpp"
+#include "python/core/givens.hpp"
 #include "python/core/step.hpp"
 #include "python/core/threads.hpp"
 #include "python/core/working.hpp"
@@ -66,7 +67,8 @@ class PythonCompany {
   }
 
   void tell(const std::string& line, bool is_problem) {
-    call([&] { on_line_(line, is_problem); });
+    // That a callback has ended the run is what it wanted, and no problem.
+    call([&] { on_line_(line, is_problem && !stops_); });
   }
 
   void tell(const AcceptedStep& told) {
@@ -123,13 +125,15 @@ RunEnd run_case(const SharedCase& of, const std::optional<BoundBody>& body, py::
   return company.settle();
 }
 
-RunEnd resume_run(const std::string& directory, const Settings& settings, py::object on_step,
-                  py::object on_line, int threads, const std::string& log) {
+RunEnd resume_run(const std::string& directory, const Settings& settings, const py::dict& functions,
+                  const py::object& points, py::object on_step, py::object on_line, int threads,
+                  const std::string& log) {
   PythonCompany company(nullptr, std::move(on_step), std::move(on_line));
+  const std::shared_ptr<const Givens> givens = givens_of(functions, points);
   {
     const Working working;
     static_cast<void>(
-        resume(directory, settings, options_of(threads, log, false, company), sole_rank()));
+        resume(directory, settings, options_of(threads, log, false, company), sole_rank(), givens));
   }
   return company.settle();
 }
@@ -149,8 +153,9 @@ void bind_runs(py::module_& module) {
       .def_readonly("reason", &RunEnd::reason);
   module.def("run", run_case, py::arg("case"), py::arg("body"), py::arg("on_step"),
              py::arg("on_line"), py::arg("threads"), py::arg("log"), py::arg("overwrite"));
-  module.def("resume", resume_run, py::arg("directory"), py::arg("settings"), py::arg("on_step"),
-             py::arg("on_line"), py::arg("threads"), py::arg("log"));
+  module.def("resume", resume_run, py::arg("directory"), py::arg("settings"), py::arg("functions"),
+             py::arg("points"), py::arg("on_step"), py::arg("on_line"), py::arg("threads"),
+             py::arg("log"));
 }
 
 }  // namespace peristat::python

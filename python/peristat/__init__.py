@@ -25,7 +25,9 @@ NAMES = {
     "Steps": "steps",
     "load_case": "case",
     "open_results": "results",
+    "Sweep": "sweeping",
     "resume": "run",
+    "sweep": "sweeping",
 }
 
 __all__ = [*NAMES, "versions"]

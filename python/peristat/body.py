@@ -1,5 +1,6 @@
 """A body that was made of a case."""
 
+from ._package import thread_count
 from .case import Check, _with_mode
 
 
@@ -61,10 +62,15 @@ class Body:
         """Further numbers of each point by name."""
         return self._core.columns
 
+    @property
+    def given_numbers(self):
+        """Number of each point in the given arrays, or its row in a file of points; or None."""
+        return self._core.given_numbers
+
     def check(self, threads=0):
         """Counts, supports, memory and time, and warnings; see `Case.check`."""
         with self._case._located_errors():
-            return Check(self._read.check(threads))
+            return Check(self._read.check(thread_count(threads)))
 
     def solve(self, mode=None, **options):
         """Solves the body along its loading programme.

@@ -1,7 +1,6 @@
 """A case: what a case file says, as tables of Python."""
 
 import contextlib
-import copy
 import json
 import os
 import pathlib
@@ -10,7 +9,7 @@ import sys
 import tomllib
 
 from . import _schema, tables, toml_text
-from ._package import load_core
+from ._package import load_core, thread_count
 from .errors import InputError, input_error
 from .functions import GivenFunctions
 
@@ -67,7 +66,7 @@ class Case(tables.Table):
             table[last] = value
         if was_file:
             self._settings.append((key, self._value_text(value, key)))
-            object.__setattr__(self, "_unchanged", copy.deepcopy(self.plain()))
+            object.__setattr__(self, "_unchanged", self.plain())
 
     def get(self, key, default=None):
         """Value of a dotted key as it was given; `default` where it was not."""
@@ -80,7 +79,7 @@ class Case(tables.Table):
         other._start(self._file, self._points)
         for key in ("_text", "_functions"):
             object.__setattr__(other, key, getattr(self, key))
-        object.__setattr__(other, "_unchanged", copy.deepcopy(self._unchanged))
+        object.__setattr__(other, "_unchanged", self._unchanged)
         object.__setattr__(other, "_settings", list(self._settings))
         tables.Table.__init__(other, self._schema, "", self.plain())
         return other
@@ -123,7 +122,7 @@ class Case(tables.Table):
             InputError: what a run would refuse.
         """
         with self._located_errors():
-            return Check(self._read().check(threads))
+            return Check(self._read().check(thread_count(threads)))
 
     def check_tangent(self, deformation="", threads=0):
         """Compares residual and tangent with finite differences, see `peristat check-tangent`.
@@ -132,7 +131,7 @@ class Case(tables.Table):
             deformation: current coordinates as expressions of x, y, z, separated by ";".
         """
         with self._located_errors():
-            return json.loads(self._read().check_tangent(deformation, threads))
+            return json.loads(self._read().check_tangent(deformation, thread_count(threads)))
 
     def calibrate(self, strengths=False):
         """Constants and moduli of the materials, fracture energies, and strengths on request."""
@@ -150,7 +149,7 @@ class Case(tables.Table):
 
         with self._located_errors():
             read = self._read()
-            return Body(self.copy(), read, read.body(threads))
+            return Body(self.copy(), read, read.body(thread_count(threads)))
 
     def solve(self, mode=None, **options):
         """Makes the body and solves it; the options are those of `Body.solve`."""
@@ -167,8 +166,14 @@ class Case(tables.Table):
     def _read(self):
         """The case as C++ has read and checked it."""
         text = self.text()
+        settings = self._settings if self._is_file() else []
         with self._located_errors():
-            return load_core().Case(str(self._file), text, self._settings if self._is_file() else [])
+            return load_core().Case(str(self._file), text, settings, *self._givens())
+
+    def _givens(self):
+        """Functions that the case uses, and its points."""
+        texts = [self.text(), *(value for _, value in self._settings)]
+        return self._functions.used_in(" ".join(texts)), self._points
 
     @contextlib.contextmanager
     def _located_errors(self):
@@ -233,14 +238,14 @@ def load_case(file):
         reason = getattr(error, "strerror", None) or str(error)
         raise input_error("file", os.fspath(file), f"the case file can't be read: {reason}") from None
     except tomllib.TOMLDecodeError:
-        load_core().Case(str(file), text, [])  # names line and column
+        load_core().Case(str(file), text, [], {}, None)  # names line and column
         raise
     case = Case.__new__(Case)
     case._start(file)
     with _places_of(file, text):
         tables.Table.__init__(case, _schema.document(), "", values)
     object.__setattr__(case, "_text", text)
-    object.__setattr__(case, "_unchanged", copy.deepcopy(case.plain()))
+    object.__setattr__(case, "_unchanged", case.plain())
     return case
 
 
@@ -250,7 +255,7 @@ def _places_of(file, text):
     try:
         yield
     except InputError:
-        load_core().Case(str(file), text, [])
+        load_core().Case(str(file), text, [], {}, None)
         raise
 
 

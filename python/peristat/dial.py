@@ -13,6 +13,7 @@ class Dial:
     that a step that is cut finds the values between.
 
         opening = ps.Dial(0.0)
+        opening.turn_to(first_value, within=0.02)
         for step in body.steps():
             opening.turn_to(next_value, step, within=0.02)
     """
@@ -25,8 +26,10 @@ class Dial:
         """The last setting."""
         return self._values[-1]
 
-    def turn_to(self, value, step, within):
+    def turn_to(self, value, step=None, *, within):
         """Goes to a value while the load factor grows by `within` from that of the step.
+
+        Without a step it starts from load factor 0, before the run.
 
         Settings beyond the load factor of the step are dropped; what the run has used stays.
 
@@ -35,7 +38,7 @@ class Dial:
         """
         if not within > 0.0:
             raise input_error("within", repr(within), "must be a positive part of the load factor")
-        now = float(step.load)
+        now = 0.0 if step is None else float(step.load)
         here = self(now)
         keep = bisect.bisect_left(self._loads, now)
         self._loads[keep:] = [now, now + float(within)]

@@ -1,6 +1,8 @@
 """The exceptions of peristat. That a run does not converge is no exception: see Run.status."""
 
 import builtins
+import difflib
+from collections.abc import Iterable
 
 
 class InputError(ValueError):
@@ -37,3 +39,12 @@ def input_error(key, value, allowed, place=""):
     head = " = ".join(part for part in (key, value) if part)
     message = f"{head}: {allowed}" if head else allowed
     return InputError(f"{place}: {message}" if place else message, key, value, allowed, place)
+
+
+def unknown(kind: str, name: object, names: Iterable[str], where: str = "") -> InputError:
+    """The refusal of a name that is none of `names`, with the nearest of them and the list."""
+    names = list(names)
+    near = difflib.get_close_matches(str(name), names, n=1, cutoff=0.5)
+    question = f"; did you mean {near[0]}?" if near else ""
+    there = f"there are {', '.join(names)}" if names else "there are none"
+    return input_error("", "", f"there is no {kind} {name!r}{question} ({there})", where)

@@ -9,6 +9,7 @@ from .errors import input_error
 
 PREFIX = "python_"
 CALL = re.compile(rf"\b{PREFIX}\w+")
+NUMBER = re.compile(r"load\d?|t")
 
 
 class GivenFunctions:
@@ -71,8 +72,15 @@ def _parameters(function, key):
 
 
 def _filler(name, function):
+    # Loads and times are numbers; places and columns are arrays, also of one point.
+    are_numbers = [bool(NUMBER.fullmatch(each)) for each in _parameters(function, name)]
+
     def fill(arguments, count):
-        values = numpy.asarray(function(*arguments))
+        given = [
+            float(argument[0]) if is_number else argument
+            for argument, is_number in zip(arguments, are_numbers, strict=True)
+        ]
+        values = numpy.asarray(function(*given))
         if values.dtype.kind not in "bifu":
             raise TypeError(f"{name} returned {values.dtype} in place of numbers")
         if values.shape not in {(), (1,), (count,)}:

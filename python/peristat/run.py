@@ -3,14 +3,13 @@
 import os
 import pathlib
 import sys
-import weakref
 
 from . import toml_text
-from ._package import load_core
-from .errors import InputError, input_error
+from ._package import load_core, thread_count
+from .errors import input_error
 from .results import Results
 
-_runs = weakref.WeakValueDictionary()  # by the folder that a run of this process has written last
+_folders = set()  # that runs of this process have written
 
 
 class Run(Results):
@@ -19,14 +18,20 @@ class Run(Results):
     The last state is in memory; anything else is read from the results folder when it is asked for.
     """
 
-    def __init__(self, folder, end):
+    def __init__(self, folder, end, case=None):
         super().__init__(folder)
         self._end = end
+        self._case = case
 
     @property
     def converged(self):
         """True if the run reached the end of its load."""
         return self.status == "completed"
+
+    @property
+    def reason(self):
+        """Why the run ended before its load did, a sentence; empty if it did not."""
+        return ": ".join(part for part in (super().reason, self._end.reason) if part)
 
     def displacement(self, step=-1):
         """Displacement of the points at a step [m], points x dimension.
@@ -39,13 +44,14 @@ class Run(Results):
 
     def resume(self, settings=None, **options):
         """Goes on from the last accepted step, see `peristat.resume`."""
-        return resume(self.path, settings, **options)
+        return resume(self.path, settings, case=self._case, **options)
 
 
 def run_case(case, body, *, output=None, on_step=None, threads=0, quiet=False, log="", overwrite=False):
     """Runs a case; its body may have been made before. See `Body.solve`."""
     if on_step is not None and not callable(on_step):
         raise input_error("on_step", repr(on_step)[:80], "must be a function of a step")
+    threads = thread_count(threads)
     core = load_core()
     placed = _with_output(case, output)
     read = placed._read()
@@ -60,15 +66,16 @@ def run_case(case, body, *, output=None, on_step=None, threads=0, quiet=False, l
             os.fspath(log),
             overwrite,
         )
-    return _registered(Run(folder, end))
+    return Run(folder, end, placed)
 
 
-def resume(folder, settings=None, *, on_step=None, threads=0, quiet=False, log=""):
+def resume(folder, settings=None, *, case=None, on_step=None, threads=0, quiet=False, log=""):
     """Goes on with an interrupted or failed run from its last accepted step.
 
     Args:
         folder: results folder of the run.
         settings: keys that extend the run: {"loading.largest_step": 0.01}.
+        case: gives its functions and points, if the run used any.
 
     Returns:
         Run: the results, with those of before.
@@ -76,11 +83,13 @@ def resume(folder, settings=None, *, on_step=None, threads=0, quiet=False, log="
     Raises:
         InputError: there is nothing to resume, or a setting would make it another case.
     """
+    threads = thread_count(threads)
     texts = [(key, toml_text.value_text(value, key)) for key, value in (settings or {}).items()]
+    functions, points = ({}, None) if case is None else case._givens()
     end = load_core().resume(
-        os.fspath(folder), texts, on_step, _no_line if quiet else _print_line, threads, os.fspath(log)
+        os.fspath(folder), texts, functions, points, on_step, _no_line if quiet else _print_line, threads, os.fspath(log)
     )
-    return _registered(Run(folder, end))
+    return Run(folder, end, case)
 
 
 def _with_output(case, output):
@@ -92,22 +101,14 @@ def _with_output(case, output):
     if case.get("output.directory") is None and not case._is_file():
         placed.set("output.directory", f"results/{case.name}")
     folder = pathlib.Path(placed._read().directory)
-    taken, count = folder.resolve(), 1
-    while taken in _runs:
+    free, count = folder, 1
+    while free.resolve() in _folders:
         count += 1
-        taken = folder.with_name(f"{folder.name}-{count}").resolve()
+        free = folder.with_name(f"{folder.name}-{count}")
+    _folders.add(free.resolve())
     if count > 1:
-        placed.set("output.directory", str(taken))
+        placed.set("output.directory", str(free))
     return placed
-
-
-def _registered(run):
-    folder = run.path.resolve()
-    earlier = _runs.get(folder)
-    if earlier is not None:
-        earlier._replaced = True
-    _runs[folder] = run
-    return run
 
 
 def _print_line(line, is_problem):

@@ -2,6 +2,8 @@
 
 import collections.abc
 
+import numpy
+
 from . import _schema
 from .errors import input_error
 
@@ -85,7 +87,7 @@ class Table(collections.abc.MutableMapping):
     def plain(self):
         """The table as dicts and lists, without tables that are empty."""
         return {
-            name: value.plain() if isinstance(value, (Table, TableList)) else value
+            name: _plain(value)
             for name, value in self._values.items()
             if not isinstance(value, (Table, TableList)) or len(value)
         }
@@ -159,6 +161,17 @@ def _element(tables, number, key):
     if not number.endswith("]") or not number[:-1].isdigit() or int(number[:-1]) >= count:
         raise input_error(key, "", f"[{number} is none of the {count} tables, which count from 0")
     return tables[int(number[:-1])]
+
+
+def _plain(value):
+    """Dicts and lists of one's own for tables, lists and arrays; other values as they are."""
+    if isinstance(value, (Table, TableList)):
+        return value.plain()
+    if isinstance(value, dict):
+        return {name: _plain(item) for name, item in value.items()}
+    if isinstance(value, numpy.ndarray):
+        return value.tolist()
+    return [_plain(item) for item in value] if isinstance(value, (list, tuple)) else value
 
 
 def _is_array(schema, name):
