@@ -14,6 +14,8 @@ from .results import open_results as open_results
 from .run import Run as Run
 from .run import resume as resume
 from .steps import Steps as Steps
+from .sweeping import Sweep as Sweep
+from .sweeping import sweep as sweep
 
 NAMES: dict[str, str]
 

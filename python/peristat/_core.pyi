@@ -80,10 +80,19 @@ class Body:
     def sets(self) -> dict[str, NDArray[numpy.int32]]: ...
     @property
     def columns(self) -> dict[str, _Reals]: ...
+    @property
+    def given_numbers(self) -> NDArray[numpy.int32] | None: ...
     def warnings(self) -> list[str]: ...
 
 class Case:
-    def __init__(self, file: str, text: str, settings: list[tuple[str, str]]) -> None: ...
+    def __init__(
+        self,
+        file: str,
+        text: str,
+        settings: list[tuple[str, str]],
+        functions: dict[str, Any],
+        points: Any,
+    ) -> None: ...
     @property
     def resolved(self) -> str: ...
     @property
@@ -115,6 +124,8 @@ def run(
 def resume(
     directory: str,
     settings: list[tuple[str, str]],
+    functions: dict[str, Any],
+    points: Any,
     on_step: Callable[[Step], Any] | None,
     on_line: Callable[[str, bool], Any],
     threads: int,
