@@ -37,7 +37,7 @@ class Run(Results):
         return self.status == "completed"
 
     @property
-    def reason(self):
+    def reason(self) -> str:
         """Why the run ended before its load did, a sentence; empty if it did not."""
         return ": ".join(part for part in (super().reason, self._end.reason) if part)
 

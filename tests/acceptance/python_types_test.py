@@ -23,13 +23,13 @@ import peristat as ps
 case = ps.Case("strip", dimension=2)
 case.lattice.spacing = "1 mm"
 case.lattice.add_shape(add="box", min=[0, 0], max=numpy.array([0.05, 0.01])).name = "all"
-case.material.damage.law = "brittle"
+case.material.damage.law = "critical_stretch"
 case.add_support(set="left", displacement=[0, lambda load: 1e-3 * load, ps.Dial()])
 case.crack[0].from_ = [1, 2]
 case["set"][0]["where"] = "x < 0"
 case.set("loading.steps", 50)
 run: ps.Run = case.body().solve(mode="adaptive", on_step=lambda step: step.stop("enough"))
-last: numpy.ndarray = run.displacement()
+furthest: float = run.displacement().max()
 for step in case.steps():
     loads: float = step.load + step.field("damage").max()
 results: ps.Results = ps.open_results("results/strip")
@@ -52,13 +52,16 @@ def public(names):
 
 
 class Types(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.cache = cls.enterClassContext(tempfile.TemporaryDirectory())  # of the types of NumPy
+
     def check(self, text):
         """What mypy says about a script, by line."""
         if importlib.util.find_spec("mypy") is None:
             self.skipTest("mypy is missing (apt install mypy)")
-        with tempfile.TemporaryDirectory() as folder:
-            command = [sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent", "--cache-dir", folder, "-c", text]
-            checked = subprocess.run(command, env={"MYPYPATH": str(PACKAGE.parent), "PATH": "/usr/bin"}, capture_output=True, text=True)
+        command = [sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent", "--cache-dir", self.cache, "-c", text]
+        checked = subprocess.run(command, env={"MYPYPATH": str(PACKAGE.parent)}, capture_output=True, text=True)
         self.assertEqual(checked.stderr, "")
         self.assertLess(checked.returncode, 2, checked.stdout)
         return {int(line): said for line, said in re.findall(r"^<string>:(\d+): error: (.*)", checked.stdout, re.MULTILINE)}
