@@ -24,6 +24,9 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
     "libopenblas0-openmp, openmpi-bin, python3 (>= 3.11), python3 (<< 3.12), python3-munkres, python3-numpy, python3-h5py, python3-matplotlib, python3-pil, python3-meshio, python3-netcdf4")
 
+# Compile the package of Python, and remove what was compiled.
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/postinst ${PROJECT_SOURCE_DIR}/cmake/prerm)
+
 # Debian's format of the licence, with indented paragraphs.
 file(READ LICENSE BSD_3_CLAUSE)
 string(STRIP "${BSD_3_CLAUSE}" BSD_3_CLAUSE)
