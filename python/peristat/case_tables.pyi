@@ -1,8 +1,8 @@
 # Written by tests/unit/cases/python_stub_test.py --write from docs/case.schema.json.
 """Types of the tables of a case: the keys of case files, for editors and type checkers."""
 
-from collections.abc import Callable, MutableMapping, MutableSequence
-from typing import Any, Literal, TypeAlias
+from collections.abc import Callable, Iterable, Mapping, MutableMapping, MutableSequence
+from typing import Any, Generic, Literal, TypeAlias, TypeVar
 
 from numpy.typing import ArrayLike
 
@@ -12,6 +12,20 @@ Expression: TypeAlias = float | str | Callable[..., Any]
 """A number, a text such as "0.1 mm * load", or a function of Python whose parameters say on what it depends."""
 List: TypeAlias = ArrayLike | list[Any] | tuple[Any, ...]
 """Values in a list, tuple or array, or lists of them."""
+
+_Kind = TypeVar("_Kind")
+
+class Inner(Generic[_Kind]):
+    """A table in a table, to which a dict can be assigned."""
+
+    def __get__(self, table: Any, owner: Any) -> _Kind: ...
+    def __set__(self, table: Any, value: Mapping[str, Any]) -> None: ...
+
+class Array(Generic[_Kind]):
+    """An array of tables, to which a list of dicts can be assigned."""
+
+    def __get__(self, table: Any, owner: Any) -> MutableSequence[_Kind]: ...
+    def __set__(self, table: Any, value: Iterable[Mapping[str, Any]]) -> None: ...
 
 class Table(MutableMapping[str, Any]):
     def __getitem__(self, key: str) -> Any: ...
@@ -107,10 +121,10 @@ class Lattice(Table):
     seed: int
     """seed of the random shifts and positions; the same seed gives the same points. Default: 1. Allowed: whole number from 0"""
     def add_shape(self, *, add: Literal["box", "disk", "ellipse", "cylinder", "sphere", "polygon", "image", "stl"] = ..., subtract: Literal["box", "disk", "ellipse", "cylinder", "sphere", "polygon", "image", "stl"] = ..., name: str = ..., cuts_bonds: bool = ..., min: List = ..., max: List = ..., centre: List = ..., radius: Quantity = ..., radii: List = ..., angle: Quantity = ..., axis: List = ..., length: Quantity = ..., vertices: List = ..., file: str = ..., scale: Quantity = ..., grey: List = ..., translate: List = ...) -> LatticeShape: ...
-    shape: MutableSequence[LatticeShape]
+    shape: Array[LatticeShape]
     """tables: shapes that make up the body. at least one is required"""
     def add_layer(self, *, name: str = ..., side: Literal["x-", "x+", "y-", "y+", "z-", "z+"] = ..., thickness: int = ..., where: str = ...) -> LatticeLayer: ...
-    layer: MutableSequence[LatticeLayer]
+    layer: Array[LatticeLayer]
     """tables: points outside the body. Default: none"""
 
 class Points(Table):
@@ -188,21 +202,21 @@ class SetShapeStl(Table):
     """stl: shift after the scaling [m]. Default: `[0.0, 0.0]`. Allowed: a number per dimension"""
 
 class SetShape(Table):
-    box: SetShapeBox
-    disk: SetShapeDisk
-    ellipse: SetShapeEllipse
-    cylinder: SetShapeCylinder
-    sphere: SetShapeDisk
-    polygon: SetShapePolygon
-    image: SetShapeImage
-    stl: SetShapeStl
+    box: Inner[SetShapeBox]
+    disk: Inner[SetShapeDisk]
+    ellipse: Inner[SetShapeEllipse]
+    cylinder: Inner[SetShapeCylinder]
+    sphere: Inner[SetShapeDisk]
+    polygon: Inner[SetShapePolygon]
+    image: Inner[SetShapeImage]
+    stl: Inner[SetShapeStl]
 
 class Set(Table):
     name: str
     """name of the set. required. Allowed: letters, digits, `_`, `-`; at most 100 characters; no other set or layer has it"""
     where: str
     """selects the points where it is not zero. this or `shape` is required. Allowed: an expression of place"""
-    shape: SetShape
+    shape: Inner[SetShape]
     """selects the points in it; its keys are those of `[[lattice.shape]]`: `{ box = { min = [0, 0], max = [1, 1] } }`. this or `where` is required. Allowed: `'box'`, `'disk'`, `'ellipse'`, `'cylinder'`, `'sphere'`, `'polygon'`, `'image'`, `'stl'`"""
 
 class Crack(Table):
@@ -312,18 +326,18 @@ class Material(Table):
     """coefficient α of linear expansion, for `[temperature]` [1/K]. Default: none. Allowed: -1 to 1"""
     density: Quantity
     """mass density, for gravity and mode `dynamics`; dynamic relaxation has a pseudo density of its own [kg/m3]. Default: none. Allowed: positive"""
-    damage: MaterialDamage
+    damage: Inner[MaterialDamage]
     """table `[material.damage]`. Default: no damage"""
-    fibre: MaterialFibre
+    fibre: Inner[MaterialFibre]
     """table `[material.fibre]`: moduli and stretches that depend on the direction of the bond. Default: none"""
     def add_scatter(self, *, of: Literal["stiffness", "strength"] = ..., factor: Expression = ..., distribution: Literal["weibull"] = ..., weibull_modulus: Quantity = ..., correlation_length: Quantity = ..., seed: int = ...) -> MaterialScatter: ...
-    scatter: MutableSequence[MaterialScatter]
+    scatter: Array[MaterialScatter]
     """tables `[[material.scatter]]`: factors that vary from point to point, random or given. Default: none"""
 
 class Region(Table):
     set: str
     """set of the points that have this material. required. Allowed: name of a set or layer; no region shares points with another"""
-    material: Material
+    material: Inner[Material]
     """table `[region.material]`, with the keys of [`material]`. required"""
 
 class Interface(Table):
@@ -331,7 +345,7 @@ class Interface(Table):
     """the two materials that meet at the interface. Default: all pairs that no other `[[interface]]` names. Allowed: two sets of regions; `'material'` for the points in none"""
     rule: Literal["harmonic", "arithmetic", "weaker"]
     """how the constants of a bond between them, or of an interaction of points of both, follow from those of its points, and likewise the stretches of like laws of damage: their harmonic or arithmetic mean, or the smallest value. Default: `'harmonic'`. Allowed: `'harmonic'`, `'arithmetic'`, `'weaker'`"""
-    material: Material
+    material: Inner[Material]
     """table `[interface.material]`, with the keys of [`material]` but `density` and `scatter`: constants and damage of its own. Default: none: the `rule` holds"""
 
 class Support(Table):
@@ -376,7 +390,7 @@ class Constraint(Table):
     displacement: Expression
     """sum of the weighted mean displacements of all terms [m]. Default: `'0'`. Allowed: number, or expression of `load` alone"""
     def add_term(self, *, set: str = ..., weights: List = ...) -> ConstraintTerm: ...
-    term: MutableSequence[ConstraintTerm]
+    term: Array[ConstraintTerm]
     """tables: the terms. required"""
 
 class Symmetry(Table):
@@ -620,79 +634,79 @@ class CaseTable(Table):
     """one line that describes the case. Default: name of the file without its ending. Allowed: any text"""
     dimension: int
     """dimension of the body. required. Allowed: 1 to 3"""
-    units: Units
+    units: Inner[Units]
     """table: units of the plain numbers and expressions of the file. Default: SI units"""
-    lattice: Lattice
+    lattice: Inner[Lattice]
     """table: points on a lattice. exactly one of `lattice`, `points`"""
-    points: Points
+    points: Inner[Points]
     """table: points from a file. exactly one of `lattice`, `points`"""
     def add_set(self, *, name: str = ..., where: str = ..., shape: dict[str, Any] | Table = ...) -> Set: ...
     def add_crack(self, *, outline: List = ..., from_: List = ..., to: List = ..., vertices: List = ...) -> Crack: ...
-    crack: MutableSequence[Crack]
+    crack: Array[Crack]
     """tables: cracks that are there from the start. Default: none"""
-    quadrature: Quadrature
+    quadrature: Inner[Quadrature]
     """table: corrections of the weights. Default: all defaults"""
-    material: Material
+    material: Inner[Material]
     """table: model, constants and damage of the points in no region. required without `[[region]]`"""
     def add_region(self, *, set: str = ..., material: dict[str, Any] | Table = ...) -> Region: ...
-    region: MutableSequence[Region]
+    region: Array[Region]
     """tables: sets of points with materials of their own. Default: none"""
     def add_interface(self, *, between: List = ..., rule: Literal["harmonic", "arithmetic", "weaker"] = ..., material: dict[str, Any] | Table = ...) -> Interface: ...
-    interface: MutableSequence[Interface]
+    interface: Array[Interface]
     """tables: interactions between points of two materials. Default: none"""
     def add_support(self, *, set: str = ..., displacement: List = ...) -> Support: ...
-    support: MutableSequence[Support]
+    support: Array[Support]
     """tables: prescribed displacements. Default: none"""
     def add_rigid(self, *, set: str = ..., centre: List = ..., displacement: List = ..., rotation: List = ...) -> Rigid: ...
-    rigid: MutableSequence[Rigid]
+    rigid: Array[Rigid]
     """tables: sets that move as rigid bodies. Default: none"""
     def add_roller(self, *, set: str = ..., at: List = ..., to: List = ..., name: str = ..., normal: List = ..., displacement: Expression = ...) -> Roller: ...
-    roller: MutableSequence[Roller]
+    roller: Array[Roller]
     """tables: points that slide along a plane at any angle. Default: none"""
     def add_constraint(self, *, name: str = ..., displacement: Expression = ..., term: List = ...) -> Constraint: ...
-    constraint: MutableSequence[Constraint]
+    constraint: Array[Constraint]
     """tables: linear constraints between sets. Default: none"""
     def add_symmetry(self, *, axis: Literal["x", "y", "z"] = ..., at: Quantity = ...) -> Symmetry: ...
-    symmetry: MutableSequence[Symmetry]
+    symmetry: Array[Symmetry]
     """tables: planes of symmetry, with the bonds across them. Default: none"""
     def add_period(self, *, axis: Literal["x", "y", "z"] = ..., from_: Quantity = ..., to: Quantity = ..., gradient: List = ...) -> Period: ...
-    period: MutableSequence[Period]
+    period: Array[Period]
     """tables: sides across which the body repeats. Default: none"""
     def add_load(self, *, set: str = ..., body_force: List = ..., total_force: List = ..., gravity: List = ..., traction: List = ..., pressure: Expression = ..., stress: List = ..., boundary: str = ..., side: Literal["x-", "x+", "y-", "y+", "z-", "z+"] = ..., depth: Literal["row", "horizon", "surface"] = ...) -> Load: ...
-    load: MutableSequence[Load]
+    load: Array[Load]
     """tables: forces. Default: none"""
     def add_foundation(self, *, name: str = ..., set: str = ..., side: Literal["x-", "x+", "y-", "y+", "z-", "z+"] = ..., modulus: List = ..., stiffness: List = ..., displacement: List = ...) -> Foundation: ...
-    foundation: MutableSequence[Foundation]
+    foundation: Array[Foundation]
     """tables: springs between a part of the body and a ground. Default: none"""
     def add_eigenstrain(self, *, set: str = ..., strain: Expression = ...) -> Eigenstrain: ...
-    eigenstrain: MutableSequence[Eigenstrain]
+    eigenstrain: Array[Eigenstrain]
     """tables: strains that cost no energy. Default: none"""
-    temperature: Temperature
+    temperature: Inner[Temperature]
     """table: change of temperature. Default: all defaults"""
     def add_control(self, *, set: str = ..., weights: List = ...) -> Control: ...
-    control: MutableSequence[Control]
+    control: Array[Control]
     """tables: the displacement that is controlled instead of `load`. Default: none"""
     def add_initial(self, *, set: str = ..., displacement: List = ..., velocity: List = ...) -> Initial: ...
-    initial: MutableSequence[Initial]
+    initial: Array[Initial]
     """tables: displacements and velocities at time 0. Default: none"""
     def add_absorbing(self, *, set: str = ..., rate: Expression = ...) -> Absorbing: ...
-    absorbing: MutableSequence[Absorbing]
+    absorbing: Array[Absorbing]
     """tables: layers that absorb waves. Default: none"""
-    loading: Loading
+    loading: Inner[Loading]
     """table: the path of the loads, and its steps. Default: all defaults"""
-    solver: Solver
+    solver: Inner[Solver]
     """table: search for equilibrium. Default: all defaults"""
-    relaxation: Relaxation
+    relaxation: Inner[Relaxation]
     """table: steps by dynamic relaxation. Default: all defaults"""
-    arc_length: ArcLength
+    arc_length: Inner[ArcLength]
     """table: steps in mode `arc_length`. Default: all defaults"""
-    dynamics: Dynamics
+    dynamics: Inner[Dynamics]
     """table: the motion in time. required in mode `dynamics`"""
-    output: Output
+    output: Inner[Output]
     """table: results folder. Default: all defaults"""
     def add_probe(self, *, name: str = ..., set: str = ..., at: List = ..., from_: List = ..., field: Literal["displacement", "force", "damage", "energy_density", "stretch", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"] = ..., to: List = ..., component: Literal["x", "y", "z", "1", "2", "3", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"] = ..., statistic: Literal["mean", "max", "min", "rms_error", "max_error"] = ..., expected: List = ..., axis: Literal["x", "y", "z"] = ..., other: str = ...) -> Probe: ...
-    probe: MutableSequence[Probe]
+    probe: Array[Probe]
     """tables: values that are recorded in the history. Default: none"""
     def add_crack_tip(self, *, name: str = ..., at: List = ..., direction: List = ..., front: List = ..., inner: Quantity = ..., outer: Quantity = ..., cut: Quantity = ...) -> CrackTip: ...
-    crack_tip: MutableSequence[CrackTip]
+    crack_tip: Array[CrackTip]
     """tables: J, stress intensity factors and T-stress in the history. Default: none"""

@@ -25,6 +25,8 @@ case.lattice.spacing = "1 mm"
 case.lattice.add_shape(add="box", min=[0, 0], max=numpy.array([0.05, 0.01])).name = "all"
 case.material.damage.law = "critical_stretch"
 case.add_support(set="left", displacement=[0, lambda load: 1e-3 * load, ps.Dial()])
+case.solver = {"linear": "pcg"}
+case.crack = [{"to": [0, 0]}]
 case.crack[0].from_ = [1, 2]
 case["set"][0]["where"] = "x < 0"
 case.set("loading.steps", 50)
@@ -38,6 +40,7 @@ print(results.history["load_factor"], ps.resume("results/strip", {"loading.steps
 WRONG = {
     "case.latice.spacing = 1": 'has no attribute "latice"',
     "case.material.youngs_modulus = [1]": "Incompatible types in assignment",
+    "case.lattice = 3": "Incompatible types in assignment",
     "case.add_support(sett='left')": 'Unexpected keyword argument "sett"',
     "case.solver.mode = 'newtn'": "Incompatible types in assignment",
     "case.check().warning": 'has no attribute "warning"',

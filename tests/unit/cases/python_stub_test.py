@@ -18,8 +18,8 @@ STUB = ROOT / "python/peristat/case_tables.pyi"
 HEAD = '''# Written by tests/unit/cases/python_stub_test.py --write from docs/case.schema.json.
 """Types of the tables of a case: the keys of case files, for editors and type checkers."""
 
-from collections.abc import Callable, MutableMapping, MutableSequence
-from typing import Any, Literal, TypeAlias
+from collections.abc import Callable, Iterable, Mapping, MutableMapping, MutableSequence
+from typing import Any, Generic, Literal, TypeAlias, TypeVar
 
 from numpy.typing import ArrayLike
 
@@ -29,6 +29,20 @@ Expression: TypeAlias = float | str | Callable[..., Any]
 """A number, a text such as "0.1 mm * load", or a function of Python whose parameters say on what it depends."""
 List: TypeAlias = ArrayLike | list[Any] | tuple[Any, ...]
 """Values in a list, tuple or array, or lists of them."""
+
+_Kind = TypeVar("_Kind")
+
+class Inner(Generic[_Kind]):
+    """A table in a table, to which a dict can be assigned."""
+
+    def __get__(self, table: Any, owner: Any) -> _Kind: ...
+    def __set__(self, table: Any, value: Mapping[str, Any]) -> None: ...
+
+class Array(Generic[_Kind]):
+    """An array of tables, to which a list of dicts can be assigned."""
+
+    def __get__(self, table: Any, owner: Any) -> MutableSequence[_Kind]: ...
+    def __set__(self, table: Any, value: Iterable[Mapping[str, Any]]) -> None: ...
 
 class Table(MutableMapping[str, Any]):
     def __getitem__(self, key: str) -> Any: ...
@@ -74,13 +88,13 @@ class Writer:
             if inner is not None:
                 of = self.table(inner, (name if not top else "") + key.title().replace("_", ""))
             if inner is items:
-                kind = f"MutableSequence[{of}]"
+                kind = f"Array[{of}]"
                 keys = ", ".join(f"{attribute(k)}: {self.argument(v)} = ..." for k, v in inner["properties"].items())
                 lines.append(f"    def add_{key}(self, *, {keys}) -> {of}: ...")
                 if top and key == "set":  # Case.set is a method; the array is case["set"]
                     continue
             else:
-                kind = type_of(value) if inner is None else of
+                kind = type_of(value) if inner is None else f"Inner[{of}]"
             text = ". ".join(value.get("description", "").split("\n\n")).replace("\n", " ").replace("\\", "\\\\").replace('"', "'")
             lines.append(f"    {attribute(key)}: {kind}")
             if text:
