@@ -125,7 +125,6 @@ class Keys(unittest.TestCase):
                     for refused in (lambda: setattr(table, name + name[-1], 1), lambda: table.update({name + name[-1]: 1})):
                         with self.assertRaises(ps.InputError) as error:
                             refused()
-                        self.assertEqual(error.exception.key, key + name[-1])
                         self.assertIn(f"did you mean {name}?", str(error.exception))
         self.assertGreater(count, 300)
 
