@@ -33,7 +33,7 @@ NAMES = {
 __all__ = [*NAMES, "versions"]
 
 
-def versions():
+def versions() -> dict[str, str]:
     """Versions of peristat, its libraries and its compiler, by name."""
     from ._package import load_core
 

@@ -6,6 +6,7 @@ import operator
 import os
 import pathlib
 import sys
+from typing import Any
 
 from .errors import input_error
 
@@ -14,7 +15,7 @@ SOURCES = HERE.parents[1]
 IN_SOURCES = (SOURCES / "CMakeLists.txt").is_file()
 
 
-def load_core():
+def load_core() -> Any:
     """Loads the compiled module `peristat._core`; once."""
     name = "peristat._core"
     if name in sys.modules:

@@ -12,6 +12,7 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from ._names import unknown
 from .errors import InputError
 from .pictures.hdf5_reader import as_text
 from .pictures.results_folder import ResultsFile, ResultsFolder, point_sets, read_results_folder
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MARKER = "peristat.json"  # locked by the run that writes the folder
 VECTORS = ("displacement", "force", "velocity")  # fields that are drawn by their magnitude
@@ -253,7 +257,7 @@ class Results:
 
     # ---- pictures ----
 
-    def plot(self, name: str | None = None, step: int = -1):
+    def plot(self, name: str | None = None, step: int = -1) -> "Figure":
         """A picture as the program draws it (docs/results.md, Pictures), as a matplotlib figure.
 
         name  of a picture ("deformed", "energies"), or of a field, which colours the deformed body: "stretch". Without a
@@ -272,7 +276,7 @@ class Results:
             return drawing.figure()
         return self._field_picture(name, step, known)
 
-    def curve(self, x: str | None = None, y: str | Sequence[str] | None = None):
+    def curve(self, x: str | None = None, y: str | Sequence[str] | None = None) -> "Figure":
         """The load-displacement picture of the run, or columns y of the history over its column x, as a figure.
 
         x  column; without it the load factor
