@@ -33,10 +33,7 @@ def open_results(folder: str | os.PathLike) -> "Results":
 
 
 class Columns(Mapping):
-    """Columns of numbers or texts by name, each read when it is asked for: `table["step"]`, an array of rows.
-
-    A "/" in the name of a set or a probe is a "|" in that of its column; both are understood.
-    """
+    """Columns of numbers or texts by name, each read when it is asked for: `table["step"]`, an array of rows."""
 
     def __init__(self, results: "Results", group: str, kind: str):
         self._results, self._group, self._kind = results, group, kind
@@ -48,7 +45,7 @@ class Columns(Mapping):
         self._columns: dict[str, np.ndarray] = {}
 
     def __getitem__(self, name: str) -> np.ndarray:
-        name = self._stored(name)
+        self._require(name)
         if name not in self._columns:
             with self._results._file() as file:
                 self._columns[name] = _constant(file.column(f"{self._group}/{name}"))
@@ -56,10 +53,11 @@ class Columns(Mapping):
 
     def unit(self, name: str) -> str:
         """Unit of a column."""
-        return self.units[self._stored(name)]
+        self._require(name)
+        return self.units[name]
 
     def __contains__(self, name: object) -> bool:
-        return isinstance(name, str) and name.replace("/", "|") in self.units
+        return name in self.units
 
     def get(self, name: str, default=None):
         return self[name] if name in self else default
@@ -73,10 +71,9 @@ class Columns(Mapping):
     def __repr__(self) -> str:
         return f"<{self._group}: {', '.join(self.units) or 'nothing yet'}>"
 
-    def _stored(self, name: str) -> str:
+    def _require(self, name: str) -> None:
         if name not in self:
             raise unknown(self._kind, name, self.units, self._results.path)
-        return name.replace("/", "|")
 
 
 class Results:
@@ -142,7 +139,7 @@ class Results:
 
     @cached_property
     def settings(self) -> dict[str, str]:
-        """What `--set` gave, by key, in all sessions of the run."""
+        """What `--set` gave in all sessions of the run: values by key, as text in TOML."""
         with self._file() as file:
             if "case/settings/key" not in file:
                 return {}
