@@ -259,6 +259,7 @@ class Results:
         """
         from .pictures.figures import drawings
 
+        self._require_same_run()
         known = []
         for drawing in drawings(self._folder, self._number(step) if self.steps else None):
             if name not in (None, drawing.name):
@@ -281,6 +282,7 @@ class Results:
             return self.plot("load_displacement")
         from .pictures.column_picture import Column, draw_columns
 
+        self._require_same_run()
         names = [y] if isinstance(y, str) else list(y)
         abscissa, *columns = (Column(name, self._numbers(name), self.history.unit(name)) for name in [x or "load_factor", *names])
         if len({column.unit for column in columns}) != 1:
@@ -310,7 +312,6 @@ class Results:
 
     @cached_property
     def _folder(self) -> ResultsFolder:
-        self._file().__exit__(None, None, None)  # refuses a folder that another run has replaced
         return read_results_folder(self.path)
 
     # ---- how it is shown ----
@@ -328,7 +329,7 @@ class Results:
             if peaks:
                 name = max(peaks, key=peaks.get)
                 rows["peak"] = f"{peaks[name]:.6g} N ({name})"
-            if self.history.get("broken_bonds", steps)[-1]:
+            if "broken_bonds" in self.history:
                 rows["broken bonds"] = f"{self.history['broken_bonds'][-1]:.0f}"
         cells = "".join(f"<tr><th style='text-align:left'>{name}</th><td style='text-align:left'>{html.escape(str(text))}</td></tr>"
                         for name, text in rows.items() if text)  # fmt: skip
@@ -336,10 +337,14 @@ class Results:
 
     # ---- reading ----
 
-    def _file(self) -> ResultsFile:
+    def _require_same_run(self) -> None:
+        """What is kept of one run is never mixed with what another one has written."""
         if _session(self.path) != self._session:
             raise InputError(f"{self.path}: another run, or a continuation, has written here since these results were opened; "
                              "call reload()")  # fmt: skip
+
+    def _file(self) -> ResultsFile:
+        self._require_same_run()
         return ResultsFile(self.path)
 
     def _number(self, step: int) -> int:
