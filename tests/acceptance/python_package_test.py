@@ -494,6 +494,29 @@ class TestSweep(InFolder):
         self.assertFalse(pathlib.Path("results").exists())
 
 
+class TestLaw(InFolder):
+    def test_a_sampled_law_is_that_of_the_program(self):
+        case = strip()
+        case.set("support[1].displacement[0]", "0.2 mm*load")
+        case.set("solver.mode", "relaxation")
+        case.set("relaxation.steps", 3)
+        case.material.damage = {"law": "linear", "onset": 1e-3, "critical": 6e-3}
+        given = case.copy()
+        given.material.damage = ps.sampled_law(
+            lambda s: 1e-3 * (6e-3 - s) / (6e-3 - 1e-3), elastic_until=1e-3, breaks_at=6e-3
+        )
+        built_in, sampled = case.solve(quiet=True), given.solve(quiet=True)
+        self.assertGreater(built_in.field("damage").max(), 0.1)
+        np.testing.assert_allclose(sampled.field("damage"), built_in.field("damage"), atol=1e-9)
+
+    def test_what_is_no_law_is_refused(self):
+        self.assertRefuses(lambda: ps.sampled_law(lambda s: 2 * s, 1e-3, 2e-3), "elastic part")
+        self.assertRefuses(lambda: ps.sampled_law(lambda s: s[:2], 1e-3, 2e-3), "shape")
+        case = strip()
+        case.material.damage = ps.sampled_law(lambda s: s + (s - 1e-3) ** 2, 1e-3, 2e-3)
+        self.assertRefuses(case.body, "material.damage")
+
+
 class TestMemory(InFolder):
     def test_bodies_made_and_dropped_leave_nothing(self):
         def resident():
