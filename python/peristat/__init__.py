@@ -27,6 +27,7 @@ NAMES = {
     "open_results": "results",
     "Sweep": "sweeping",
     "resume": "run",
+    "sampled_law": "law",
     "sweep": "sweeping",
 }
 
