@@ -8,6 +8,7 @@ from .dial import Dial as Dial
 from .errors import InputError as InputError
 from .errors import MachineError as MachineError
 from .errors import MemoryError as MemoryError
+from .law import sampled_law as sampled_law
 from .points import Points as Points
 from .results import Results as Results
 from .results import open_results as open_results
