@@ -89,7 +89,7 @@ free = np.array(rows)
 # ## With a controller
 #
 # A `Dial` stands where an expression of the load may stand. `turn_to(value, step, within=...)` says where it goes
-# from the present step on, while the load factor grows by `within`: here by one step.
+# from the present step on, while the load factor grows by `within`: here by one step. Step 0 is the body at rest.
 #
 # The plan is a crack that is half a millimetre longer after each step. The controller knows nothing of
 # beams. It supposes that the crack answers the next increment of the opening as it answered the last four in the
@@ -101,7 +101,6 @@ speed = 0.5e-3  # m of crack per step
 one = 1 / 100  # load factor of a step
 half = ps.Dial(0.0)
 increment = 0.8e-6  # m, while the body is still elastic
-half.turn_to(increment, within=one)
 
 rows, plan = [], []
 steps = glued_bars(half).body().steps(quiet=True)
@@ -116,7 +115,7 @@ for step in steps:
     if plan:
         wanted = speed + (plan[-1] - length_now) / 2
         increment = np.clip(wanted * opened / 2 / grown, increment / 2, increment * 2)
-    half.turn_to(half.value + increment, step, within=one)
+    half.turn_to(half(step.load) + increment, step, within=one)
     if length_now > end:
         break
 steered = np.array(rows)
