@@ -66,18 +66,19 @@ for size in sizes:
 # %% [markdown]
 # ## The case
 #
-# With `units.length = "mm"` the coordinates of the file are millimetres. A horizon of three spacings and the exact
-# parts of quadrilaterals within it are what the page on meshes recommends.
+# With `units.length = "mm"` the coordinates of the file are millimetres, and plain numbers of stresses are in
+# N/mm2, MPa. Results are in SI units. A horizon of three spacings, the exact
+# parts of quadrilaterals within it; near surfaces bonds are strengthened until they store the right energy.
 
 # %%
-modulus, traction = 70e9, 10e6  # Pa
+modulus, traction = 70e3, 10.0  # MPa, as millimetres and newtons make them
 
 
 def bracket(size):
     case = ps.Case("bracket", dimension=2, title=f"Bracket, elements of {size} mm")
     case.units.length = "mm"
     case.points = {"file": f"bracket_{size}.msh", "horizon": 2.8 * size, "thickness": thickness}
-    case.quadrature.update(volume_correction="exact", surface_correction="volume")
+    case.quadrature.update(volume_correction="exact", surface_correction="energy")
     case.material.youngs_modulus = modulus
     case.add_support(set="left", displacement=["0", "0"])
     case.add_load(set="right", traction=[f"{traction}*load", 0])
@@ -104,7 +105,7 @@ runs[1.0].plot("displacement")
 
 
 def finite_elements(nodes, triangles):
-    """Displacements of the nodes [m], nodes x 2, for nodes in metres."""
+    """Displacements of the nodes [mm], nodes x 2."""
     corners = nodes[triangles]
     sides = np.roll(corners, -1, axis=1) - np.roll(corners, 1, axis=1)  # opposite to each corner
     doubled = np.abs(np.cross(sides[:, 0], sides[:, 1]))  # area
@@ -114,25 +115,25 @@ def finite_elements(nodes, triangles):
     strains[:, 0, 0::2] = strains[:, 2, 1::2] = gradients[..., 0]
     strains[:, 1, 1::2] = strains[:, 2, 0::2] = gradients[..., 1]
     law = modulus / (1 - 1 / 9) * np.array([[1, 1 / 3, 0], [1 / 3, 1, 0], [0, 0, 1 / 3]])
-    blocks = np.einsum("eki,kl,elj->eij", strains, law, strains) * (doubled / 2 * thickness * 1e-3)[:, None, None]
+    blocks = np.einsum("eki,kl,elj->eij", strains, law, strains) * (doubled / 2 * thickness)[:, None, None]
     unknowns = (2 * triangles[..., None] + [0, 1]).reshape(-1, 6)
     rows, columns = np.repeat(unknowns, 6, axis=1).ravel(), np.tile(unknowns, 6).ravel()
     stiffness = scipy.sparse.csr_matrix((blocks.ravel(), (rows, columns)))
     force = np.zeros(2 * len(nodes))
-    end = np.flatnonzero(nodes[:, 0] > length * 1e-3 - 1e-9)
+    end = np.flatnonzero(nodes[:, 0] > length - 1e-6)
     end = end[nodes[end, 1].argsort()]
-    halves = np.diff(nodes[end, 1]) / 2 * traction * thickness * 1e-3
+    halves = np.diff(nodes[end, 1]) / 2 * traction * thickness
     force[2 * end[:-1]] += halves
     force[2 * end[1:]] += halves
-    free = np.repeat(nodes[:, 0] > 1e-9, 2)
+    free = np.repeat(nodes[:, 0] > 1e-6, 2)
     displacement = np.zeros(2 * len(nodes))
     displacement[free] = scipy.sparse.linalg.spsolve(stiffness[free][:, free].tocsc(), force[free])
     return displacement.reshape(-1, 2)
 
 
 nodes, triangles = mesh("reference.msh", 0.5, quadrilaterals=False)
-fem = finite_elements(nodes * 1e-3, triangles)
-fem_end = fem[nodes[:, 0] > length - 1e-6, 0].mean()
+fem = finite_elements(nodes, triangles)
+fem_end = fem[nodes[:, 0] > length - 1e-6, 0].mean() * 1e-3  # m
 print(f"{len(triangles)} triangles: the end moves by {fem_end * 1e6:.2f} µm")
 
 # %% [markdown]
@@ -141,7 +142,7 @@ print(f"{len(triangles)} triangles: the end moves by {fem_end * 1e6:.2f} µm")
 # The supports' reaction must be the load, and the end's displacement must approach that of finite elements.
 
 # %%
-load = traction * height * thickness * 1e-6  # N
+load = traction * height * thickness  # N
 ends = np.array([runs[size].probes["end"][-1] for size in sizes])
 for size, end in zip(sizes, ends):
     reaction = runs[size].history["reaction_x:left"][-1]
@@ -155,3 +156,20 @@ axes.legend();
 
 # %%
 runs[0.5].plot("von_mises")
+
+# %% [markdown]
+# The end moves 4.2, 2.4 and 1.2 % less than that of finite elements for elements of 2, 1 and 0.5 mm: the difference
+# halves with the size. Part of it is that the supported and the loaded points stand half an element inside. With
+# `surface_correction="volume"` it is 3.6 % at 0.5 mm, without a correction -1.4 %.
+#
+# **For your own problem.** Any script of Gmsh will do, if it names the physical groups and makes elements of one size;
+# so will a `.geo` file, or files of Abaqus, VTK, Exodus and MED. Triangles and tetrahedra take
+# `volume_correction="linear"`. Pressures act on groups of lines as tractions do. Add `case.material.damage` to tear the
+# bracket: the boundary of the mesh already cuts bonds across the holes.
+
+# %%
+for size in sizes:
+    assert abs(runs[size].history["reaction_x:left"][-1] + load) < 1e-6 * load
+assert abs(body.volumes.sum() * 1e9 - (length * height - 2 * np.pi * 8**2) * thickness) < 2  # chords of the holes
+differences = ends / fem_end - 1
+assert abs(differences[-1]) < 0.02 and (np.diff(abs(differences)) < 0).all()
