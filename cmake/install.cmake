@@ -28,6 +28,12 @@ target_link_options(peristat_library PRIVATE LINKER:-Bsymbolic-functions)
 # Paths to the library, the modules, and the OpenMP variant of OpenBLAS.
 set(module_folder ${CMAKE_INSTALL_LIBDIR}/peristat)
 set(program_folder libexec/peristat)  # known to the launcher
+# Debian's python3 finds the package below the prefix /usr; the launcher of another prefix sets PYTHONPATH.
+set(python_folder lib/python3/dist-packages/peristat)  # known to the launcher
+if(SKBUILD)  # a wheel has the package alone, with the modules in it (pyproject.toml)
+  set(python_folder peristat)
+  set(module_folder peristat)
+endif()
 file(RELATIVE_PATH libraries_from_program /${program_folder} /${CMAKE_INSTALL_LIBDIR})
 set_target_properties(peristat_library PROPERTIES
   INSTALL_RPATH "$ORIGIN/peristat" INSTALL_RPATH_USE_LINK_PATH ON)
@@ -50,14 +56,24 @@ set(tools_folder share/peristat)
 foreach(tool IN ITEMS sweep trust meshes)
   install(DIRECTORY cases/runner/${tool} DESTINATION ${tools_folder} FILES_MATCHING PATTERN *.py)
 endforeach()
-install(DIRECTORY python/peristat DESTINATION ${tools_folder}/python FILES_MATCHING PATTERN *.py)
+install(DIRECTORY python/peristat/ DESTINATION ${python_folder}
+        FILES_MATCHING PATTERN *.py PATTERN *.pyi PATTERN py.typed PATTERN __pycache__ EXCLUDE)
+if(TARGET peristat_python)
+  file(RELATIVE_PATH libraries_from_python /${python_folder} /${CMAKE_INSTALL_LIBDIR})
+  file(RELATIVE_PATH modules_from_python /${python_folder} /${module_folder})
+  set_target_properties(peristat_python PROPERTIES
+    INSTALL_RPATH "$ORIGIN/${modules_from_python};$ORIGIN/${libraries_from_python}"
+    INSTALL_RPATH_USE_LINK_PATH ON)
+  install(TARGETS peristat_python LIBRARY DESTINATION ${python_folder} COMPONENT python)
+endif()
 install(DIRECTORY cases DESTINATION ${tools_folder} PATTERN runner EXCLUDE)
 install(FILES docs/case.schema.json DESTINATION ${tools_folder}/docs)  # where the cases look for it
 install(DIRECTORY docs TYPE DOC)
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE TYPE DOC)
 install(FILES benchmarks/RESULTS.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/benchmarks)
 
-install(TARGETS peristat_trilinos peristat_ranks peristat_mumps LIBRARY DESTINATION ${module_folder})
+install(TARGETS peristat_trilinos peristat_ranks peristat_mumps
+        LIBRARY DESTINATION ${module_folder} COMPONENT python)
 install(TARGETS peristat_library EXPORT peristatTargets LIBRARY)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/peristat)
 install(EXPORT peristatTargets NAMESPACE peristat:: DESTINATION ${package_folder})

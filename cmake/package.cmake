@@ -19,10 +19,13 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
 # In addition to the libraries' dependencies: OpenBLAS with OpenMP, because they accept any variant;
-# mpirun for --ranks; and munkres, which satisfies matplotlib's fonttools: otherwise apt installs SciPy,
-# its pythran and with that a compiler.
+# mpirun for --ranks; the python3 that the compiled part of its package is for; and munkres, which
+# satisfies matplotlib's fonttools: otherwise apt installs SciPy, its pythran and with that a compiler.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
-    "libopenblas0-openmp, openmpi-bin, python3, python3-munkres, python3-numpy, python3-h5py, python3-matplotlib, python3-pil, python3-meshio, python3-netcdf4")
+    "libopenblas0-openmp, openmpi-bin, python3 (>= 3.11), python3 (<< 3.12), python3-munkres, python3-numpy, python3-h5py, python3-matplotlib, python3-pil, python3-meshio, python3-netcdf4")
+
+# Compile the package of Python, and remove what was compiled.
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/postinst ${PROJECT_SOURCE_DIR}/cmake/prerm)
 
 # Debian's format of the licence, with indented paragraphs.
 file(READ LICENSE BSD_3_CLAUSE)

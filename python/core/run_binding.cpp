@@ -33,14 +33,14 @@ class PythonCompany {
  public:
   PythonCompany(std::shared_ptr<const Body> body, py::object on_step, py::object on_line)
       : on_step_(std::move(on_step)), on_line_(std::move(on_line)) {
-    end_.body = std::move(body);
-    company_.body = end_.body;
+    company_.body = std::move(body);
     company_.line = [this](const std::string& line, bool is_problem) { tell(line, is_problem); };
     if (!on_step_.is_none()) {
       company_.accepted = [this](const AcceptedStep& step) { tell(step); };
     }
     company_.interrupted = [this] { return stops_ || failure_ || is_interrupted(); };
-    company_.ended = [this](LoadSteppingResult&& result) {
+    company_.ended = [this](std::shared_ptr<const Body> of, LoadSteppingResult&& result) {
+      end_.body = std::move(of);
       end_.displacement = std::move(result.state.displacement);
     };
   }
@@ -67,7 +67,8 @@ class PythonCompany {
   }
 
   void tell(const std::string& line, bool is_problem) {
-    call([&] { on_line_(line, is_problem); });
+    // That a callback has ended the run is what it wanted, and no problem.
+    call([&] { on_line_(line, is_problem && !stops_); });
   }
 
   void tell(const AcceptedStep& told) {

@@ -4,9 +4,28 @@
 
 #include "python/core/arrays.hpp"
 #include "solvers/observe/internal_force.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/nearest_name.hpp"
 
 namespace peristat::python {
 namespace py = pybind11;
+
+namespace {
+
+[[noreturn]] void refuse_field(const std::string& name) {
+  std::vector<std::string> known;
+  std::string list;
+  for (const PointField& field : point_fields()) {
+    known.push_back(field.name);
+    list += (list.empty() ? "" : ", ") + field.name;
+  }
+  const std::string near = nearest_name(name, known);
+  throw InputError("field", name,
+                   "no field of this name" + (near.empty() ? "" : "; did you mean " + near + "?") +
+                       "; there are " + list);
+}
+
+}  // namespace
 
 const AcceptedStep& Step::told() const {
   if (told_ != nullptr) return *told_;
@@ -22,6 +41,8 @@ py::array_t<double> Step::displacement() const {
 
 py::array_t<double> Step::field(const std::string& name) {
   const AcceptedStep& step = told();
+  const PointField* const field = point_field(name);
+  if (field == nullptr) refuse_field(name);
   if (!observed_) {
     const AcceptedState& state = step.state;
     observed_ = std::make_unique<Observation>(
@@ -32,7 +53,7 @@ py::array_t<double> Step::field(const std::string& name) {
   const std::vector<double>& values = observed_->values(name);
   const Points& points = step.body.points;
   std::vector<py::ssize_t> shape{points.own()};
-  for (const std::uint64_t extent : point_field(name)->extents(points.dimension)) {
+  for (const std::uint64_t extent : field->extents(points.dimension)) {
     shape.push_back(py::ssize_t(extent));
   }
   return copy_of(values.data(), shape);

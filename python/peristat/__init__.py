@@ -25,15 +25,16 @@ NAMES = {
     "Steps": "steps",
     "load_case": "case",
     "open_results": "results",
-    "Sweep": "sweep",
+    "Sweep": "sweeping",
     "resume": "run",
-    "sweep": "sweep",
+    "sampled_law": "law",
+    "sweep": "sweeping",
 }
 
 __all__ = [*NAMES, "versions"]
 
 
-def versions():
+def versions() -> dict[str, str]:
     """Versions of peristat, its libraries and its compiler, by name."""
     from ._package import load_core
 

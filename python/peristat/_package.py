@@ -2,16 +2,20 @@
 
 import importlib.machinery
 import importlib.util
+import operator
 import os
 import pathlib
 import sys
+from typing import Any
+
+from .errors import input_error
 
 HERE = pathlib.Path(__file__).resolve().parent
 SOURCES = HERE.parents[1]
 IN_SOURCES = (SOURCES / "CMakeLists.txt").is_file()
 
 
-def load_core():
+def load_core() -> Any:
     """Loads the compiled module `peristat._core`; once."""
     name = "peristat._core"
     if name in sys.modules:
@@ -53,3 +57,15 @@ def _core_file():
         f"the compiled part of peristat is for another Python than {sys.executable} "
         f"({sys.version.split()[0]}): there is no _core{suffix} in {HERE}"
     )
+
+
+def thread_count(threads):
+    """A number of threads for C++, which refuses one that is too large.
+
+    Raises:
+        InputError: it is no whole number.
+    """
+    try:
+        return operator.index(threads)
+    except TypeError:
+        raise input_error("threads", repr(threads)[:80], "must be a whole number; 0: all") from None

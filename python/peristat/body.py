@@ -1,6 +1,16 @@
 """A body that was made of a case."""
 
-from .case import Check, _with_mode
+from typing import TYPE_CHECKING, Any
+
+from ._package import thread_count
+from .case import Case, Check, _with_mode
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import NDArray
+
+    from .run import Run
+    from .steps import Steps
 
 
 class Body:
@@ -13,65 +23,65 @@ class Body:
         self._case, self._read, self._core = case, read, core
 
     @property
-    def case(self):
+    def case(self) -> Case:
         """A copy of the case that the body was made of."""
         return self._case.copy()
 
     @property
-    def count(self):
+    def count(self) -> int:
         """Number of points."""
         return self._core.count
 
     @property
-    def dimension(self):
+    def dimension(self) -> int:
         return self._core.dimension
 
     @property
-    def bonds(self):
+    def bonds(self) -> int:
         """Number of bonds."""
         return self._core.bonds
 
     @property
-    def spacing(self):
+    def spacing(self) -> float:
         """Spacing of the lattice, or the mean spacing of a cloud [m]."""
         return self._core.spacing
 
     @property
-    def horizon(self):
+    def horizon(self) -> float:
         """[m]"""
         return self._core.horizon
 
     @property
-    def positions(self):
+    def positions(self) -> "NDArray[numpy.float64]":
         """Reference positions, points x dimension [m]."""
         return self._core.positions
 
     @property
-    def volumes(self):
+    def volumes(self) -> "NDArray[numpy.float64]":
         """Volume of each point [m3]."""
         return self._core.volumes
 
     @property
-    def sets(self):
+    def sets(self) -> "dict[str, NDArray[numpy.integer]]":
         """Numbers of the points of each set, from 0, by the set's name."""
         return self._core.sets
 
     @property
-    def columns(self):
+    def columns(self) -> "dict[str, NDArray[numpy.float64]]":
         """Further numbers of each point by name."""
         return self._core.columns
 
     @property
-    def given_numbers(self):
+    def given_numbers(self) -> "NDArray[numpy.integer] | None":
         """Number of each point in the given arrays, or its row in a file of points; or None."""
         return self._core.given_numbers
 
-    def check(self, threads=0):
+    def check(self, threads: int = 0) -> Check:
         """Counts, supports, memory and time, and warnings; see `Case.check`."""
         with self._case._located_errors():
-            return Check(self._read.check(threads))
+            return Check(self._read.check(thread_count(threads)))
 
-    def solve(self, mode=None, **options):
+    def solve(self, mode: str | None = None, **options: Any) -> "Run":
         """Solves the body along its loading programme.
 
         Args:
@@ -99,7 +109,7 @@ class Body:
             return _with_mode(self._case, mode).solve(**options)
         return run_case(self._case, self, **options)
 
-    def steps(self, mode=None, **options):
+    def steps(self, mode: str | None = None, **options: Any) -> "Steps":
         """Solves the body step by step: `for step in body.steps(): ...`.
 
         The body of the loop sees each accepted `Step` before the next is searched, and may turn a

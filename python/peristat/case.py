@@ -7,16 +7,26 @@ import pathlib
 import re
 import sys
 import tomllib
+from typing import TYPE_CHECKING, Any
 
 from . import _schema, tables, toml_text
-from ._package import load_core
+from ._package import load_core, thread_count
 from .errors import InputError, input_error
 from .functions import GivenFunctions
+
+if TYPE_CHECKING:
+    from .body import Body
+    from .case_tables import CaseTable
+    from .points import Points
+    from .run import Run
+    from .steps import Steps
+else:
+    CaseTable = tables.Table
 
 _PRIVATE = ("_file", "_name", "_text", "_unchanged", "_settings", "_functions", "_points")
 
 
-class Case(tables.Table):
+class Case(CaseTable):
     """A body, its material, supports, loads and how they are solved; the keys are those of case files.
 
         case = ps.Case("strip", dimension=2)
@@ -33,7 +43,7 @@ class Case(tables.Table):
     Files that the case names are searched from the working folder; of a loaded case from its folder.
     """
 
-    def __init__(self, name=None, /, given_points=None, **values):
+    def __init__(self, name: str | None = None, /, given_points: "Points | None" = None, **values: Any) -> None:
         self._start(pathlib.Path.cwd() / f"{_checked_name(name)} (Python)", given_points)
         super().__init__(_schema.document(), "", values)
 
@@ -44,11 +54,11 @@ class Case(tables.Table):
         object.__setattr__(self, "_functions", GivenFunctions())
 
     @property
-    def name(self):
+    def name(self) -> str:
         """Name of the case in messages and in the default results folder."""
         return self._file.stem if self._is_file() else self._file.name.removesuffix(" (Python)")
 
-    def set(self, key, value):
+    def set(self, key: str, value: Any) -> None:
         """Sets the value of a dotted key, as `--set` does: `case.set("loading.steps", 50)`.
 
         Elements count from 0: "support[0].displacement[1]".
@@ -68,12 +78,12 @@ class Case(tables.Table):
             self._settings.append((key, self._value_text(value, key)))
             object.__setattr__(self, "_unchanged", self.plain())
 
-    def get(self, key, default=None):
+    def get(self, key: str, default: Any = None) -> Any:
         """Value of a dotted key as it was given; `default` where it was not."""
         table, last = tables.find(self, key)
         return table._values.get(table._key(last)[0], default)
 
-    def copy(self):
+    def copy(self) -> "Case":
         """A case of its own with the same keys, functions and points."""
         other = type(self).__new__(type(self))
         other._start(self._file, self._points)
@@ -84,13 +94,13 @@ class Case(tables.Table):
         tables.Table.__init__(other, self._schema, "", self.plain())
         return other
 
-    def text(self):
+    def text(self) -> str:
         """The case as the text of a case file. Functions are calls in it, `python_pull(load)`."""
         if self._is_file():
             return self._text
         return toml_text.text_of(self._without_functions(self.plain(), ""))
 
-    def save(self, file):
+    def save(self, file: str | os.PathLike[str]) -> None:
         """Writes a case file, which the command line runs; refuses to replace another file.
 
         Raises:
@@ -107,7 +117,7 @@ class Case(tables.Table):
         except FileExistsError:
             raise input_error("file", os.fspath(file), "exists; choose another name") from None
 
-    def resolved(self):
+    def resolved(self) -> str:
         """All keys and values in force, with defaults, as TOML in SI units.
 
         Raises:
@@ -115,30 +125,30 @@ class Case(tables.Table):
         """
         return self._read().resolved
 
-    def check(self, threads=0):
+    def check(self, threads: int = 0) -> "Check":
         """Builds the body without solving: counts, supports, memory, time; and warnings.
 
         Raises:
             InputError: what a run would refuse.
         """
         with self._located_errors():
-            return Check(self._read().check(threads))
+            return Check(self._read().check(thread_count(threads)))
 
-    def check_tangent(self, deformation="", threads=0):
+    def check_tangent(self, deformation: str = "", threads: int = 0) -> dict[str, Any]:
         """Compares residual and tangent with finite differences, see `peristat check-tangent`.
 
         Args:
             deformation: current coordinates as expressions of x, y, z, separated by ";".
         """
         with self._located_errors():
-            return json.loads(self._read().check_tangent(deformation, threads))
+            return json.loads(self._read().check_tangent(deformation, thread_count(threads)))
 
-    def calibrate(self, strengths=False):
+    def calibrate(self, strengths: bool = False) -> dict[str, Any]:
         """Constants and moduli of the materials, fracture energies, and strengths on request."""
         with self._located_errors():
             return json.loads(self._read().calibrate(strengths))
 
-    def body(self, threads=0):
+    def body(self, threads: int = 0) -> "Body":
         """The body: points, bonds, material, supports and loads.
 
         Raises:
@@ -149,15 +159,15 @@ class Case(tables.Table):
 
         with self._located_errors():
             read = self._read()
-            return Body(self.copy(), read, read.body(threads))
+            return Body(self.copy(), read, read.body(thread_count(threads)))
 
-    def solve(self, mode=None, **options):
+    def solve(self, mode: str | None = None, **options: Any) -> "Run":
         """Makes the body and solves it; the options are those of `Body.solve`."""
         from .run import run_case
 
         return run_case(_with_mode(self, mode), None, **options)
 
-    def steps(self, mode=None, **options):
+    def steps(self, mode: str | None = None, **options: Any) -> "Steps":
         """Makes the body and solves it step by step; see `Body.steps`."""
         from .steps import Steps
 
@@ -216,7 +226,7 @@ class Check(str):
     """What `check` tells, as text, and its warnings."""
 
     @property
-    def warnings(self):
+    def warnings(self) -> list[str]:
         mark = "warning: "
         return [line.removeprefix(mark) for line in self.splitlines() if line.startswith(mark)]
 
@@ -224,7 +234,7 @@ class Check(str):
         return str(self)
 
 
-def load_case(file):
+def load_case(file: str | os.PathLike[str]) -> Case:
     """Reads a case file; `case.set` and the tables may change it afterwards.
 
     Raises:

@@ -1,8 +1,12 @@
 """A load that a program turns while a run goes on."""
 
 import bisect
+from typing import TYPE_CHECKING
 
 from .errors import input_error
+
+if TYPE_CHECKING:
+    from ._core import Step
 
 
 class Dial:
@@ -18,15 +22,15 @@ class Dial:
             opening.turn_to(next_value, step, within=0.02)
     """
 
-    def __init__(self, value=0.0):
+    def __init__(self, value: float = 0.0) -> None:
         self._loads, self._values = [0.0], [float(value)]
 
     @property
-    def value(self):
+    def value(self) -> float:
         """The last setting."""
         return self._values[-1]
 
-    def turn_to(self, value, step=None, *, within):
+    def turn_to(self, value: float, step: "Step | None" = None, *, within: float) -> None:
         """Goes to a value while the load factor grows by `within` from that of the step.
 
         Without a step it starts from load factor 0, before the run.
@@ -44,7 +48,7 @@ class Dial:
         self._loads[keep:] = [now, now + float(within)]
         self._values[keep:] = [here, float(value)]
 
-    def __call__(self, load):
+    def __call__(self, load: float) -> float:
         load = float(load)
         k = bisect.bisect_right(self._loads, load)
         if k == 0:

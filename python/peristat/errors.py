@@ -15,7 +15,7 @@ class InputError(ValueError):
         place: where it stands, "plate.toml:12:3", or empty.
     """
 
-    def __init__(self, message, key="", value="", allowed="", place=""):
+    def __init__(self, message: str, key: str = "", value: str = "", allowed: str = "", place: str = "") -> None:
         super().__init__(message)
         self.key = key
         self.value = value
@@ -34,7 +34,7 @@ class MemoryError(builtins.MemoryError):
     """There is too little memory; told before it is taken."""
 
 
-def input_error(key, value, allowed, place=""):
+def input_error(key: str, value: str, allowed: str, place: str = "") -> InputError:
     """An InputError with the message "key = value: allowed"."""
     head = " = ".join(part for part in (key, value) if part)
     message = f"{head}: {allowed}" if head else allowed

@@ -1,6 +1,9 @@
 """Points of a body from arrays."""
 
+from collections.abc import Mapping
+
 import numpy
+from numpy.typing import ArrayLike
 
 from .errors import input_error
 
@@ -19,7 +22,13 @@ class Points:
     beside: `ps.Case(dimension=2, points={"horizon": "3 mm"}, given_points=ps.Points(...))`.
     """
 
-    def __init__(self, positions, volumes, sets=None, columns=None):
+    def __init__(
+        self,
+        positions: ArrayLike,
+        volumes: ArrayLike,
+        sets: Mapping[str, ArrayLike] | None = None,
+        columns: Mapping[str, ArrayLike] | None = None,
+    ) -> None:
         self.positions = _numbers("positions", positions)
         if self.positions.ndim != 2 or self.positions.shape[1] not in (1, 2, 3):
             raise input_error(
@@ -32,7 +41,7 @@ class Points:
             for name, values in (columns or {}).items()
         }
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.positions)
 
     def _of_points(self, key, values):

@@ -12,6 +12,7 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from ._names import unknown
 from .errors import InputError
 from .pictures.hdf5_reader import as_text
 from .pictures.results_folder import ResultsFile, ResultsFolder, point_sets, read_results_folder
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MARKER = "peristat.json"  # locked by the run that writes the folder
 VECTORS = ("displacement", "force", "velocity")  # fields that are drawn by their magnitude
@@ -33,10 +37,7 @@ def open_results(folder: str | os.PathLike) -> "Results":
 
 
 class Columns(Mapping):
-    """Columns of numbers or texts by name, each read when it is asked for: `table["step"]`, an array of rows.
-
-    A "/" in the name of a set or a probe is a "|" in that of its column; both are understood.
-    """
+    """Columns of numbers or texts by name, each read when it is asked for: `table["step"]`, an array of rows."""
 
     def __init__(self, results: "Results", group: str, kind: str):
         self._results, self._group, self._kind = results, group, kind
@@ -48,7 +49,7 @@ class Columns(Mapping):
         self._columns: dict[str, np.ndarray] = {}
 
     def __getitem__(self, name: str) -> np.ndarray:
-        name = self._stored(name)
+        self._require(name)
         if name not in self._columns:
             with self._results._file() as file:
                 self._columns[name] = _constant(file.column(f"{self._group}/{name}"))
@@ -56,10 +57,11 @@ class Columns(Mapping):
 
     def unit(self, name: str) -> str:
         """Unit of a column."""
-        return self.units[self._stored(name)]
+        self._require(name)
+        return self.units[name]
 
     def __contains__(self, name: object) -> bool:
-        return isinstance(name, str) and name.replace("/", "|") in self.units
+        return name in self.units
 
     def get(self, name: str, default=None):
         return self[name] if name in self else default
@@ -73,10 +75,9 @@ class Columns(Mapping):
     def __repr__(self) -> str:
         return f"<{self._group}: {', '.join(self.units) or 'nothing yet'}>"
 
-    def _stored(self, name: str) -> str:
+    def _require(self, name: str) -> None:
         if name not in self:
             raise unknown(self._kind, name, self.units, self._results.path)
-        return name.replace("/", "|")
 
 
 class Results:
@@ -142,7 +143,7 @@ class Results:
 
     @cached_property
     def settings(self) -> dict[str, str]:
-        """What `--set` gave, by key, in all sessions of the run."""
+        """What `--set` gave in all sessions of the run: values by key, as text in TOML."""
         with self._file() as file:
             if "case/settings/key" not in file:
                 return {}
@@ -253,7 +254,7 @@ class Results:
 
     # ---- pictures ----
 
-    def plot(self, name: str | None = None, step: int = -1):
+    def plot(self, name: str | None = None, step: int = -1) -> "Figure":
         """A picture as the program draws it (docs/results.md, Pictures), as a matplotlib figure.
 
         name  of a picture ("deformed", "energies"), or of a field, which colours the deformed body: "stretch". Without a
@@ -262,6 +263,7 @@ class Results:
         """
         from .pictures.figures import drawings
 
+        self._require_same_run()
         known = []
         for drawing in drawings(self._folder, self._number(step) if self.steps else None):
             if name not in (None, drawing.name):
@@ -272,7 +274,7 @@ class Results:
             return drawing.figure()
         return self._field_picture(name, step, known)
 
-    def curve(self, x: str | None = None, y: str | Sequence[str] | None = None):
+    def curve(self, x: str | None = None, y: str | Sequence[str] | None = None) -> "Figure":
         """The load-displacement picture of the run, or columns y of the history over its column x, as a figure.
 
         x  column; without it the load factor
@@ -284,6 +286,7 @@ class Results:
             return self.plot("load_displacement")
         from .pictures.column_picture import Column, draw_columns
 
+        self._require_same_run()
         names = [y] if isinstance(y, str) else list(y)
         abscissa, *columns = (Column(name, self._numbers(name), self.history.unit(name)) for name in [x or "load_factor", *names])
         if len({column.unit for column in columns}) != 1:
@@ -313,7 +316,6 @@ class Results:
 
     @cached_property
     def _folder(self) -> ResultsFolder:
-        self._file().__exit__(None, None, None)  # refuses a folder that another run has replaced
         return read_results_folder(self.path)
 
     # ---- how it is shown ----
@@ -331,7 +333,7 @@ class Results:
             if peaks:
                 name = max(peaks, key=peaks.get)
                 rows["peak"] = f"{peaks[name]:.6g} N ({name})"
-            if self.history.get("broken_bonds", steps)[-1]:
+            if "broken_bonds" in self.history:
                 rows["broken bonds"] = f"{self.history['broken_bonds'][-1]:.0f}"
         cells = "".join(f"<tr><th style='text-align:left'>{name}</th><td style='text-align:left'>{html.escape(str(text))}</td></tr>"
                         for name, text in rows.items() if text)  # fmt: skip
@@ -339,10 +341,14 @@ class Results:
 
     # ---- reading ----
 
-    def _file(self) -> ResultsFile:
+    def _require_same_run(self) -> None:
+        """What is kept of one run is never mixed with what another one has written."""
         if _session(self.path) != self._session:
             raise InputError(f"{self.path}: another run, or a continuation, has written here since these results were opened; "
                              "call reload()")  # fmt: skip
+
+    def _file(self) -> ResultsFile:
+        self._require_same_run()
         return ResultsFile(self.path)
 
     def _number(self, step: int) -> int:

@@ -3,11 +3,19 @@
 import os
 import pathlib
 import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy
 
 from . import toml_text
-from ._package import load_core
+from ._package import load_core, thread_count
+from .case import Case
 from .errors import input_error
 from .results import Results
+
+if TYPE_CHECKING:
+    from ._core import Step
 
 _folders = set()  # that runs of this process have written
 
@@ -24,11 +32,16 @@ class Run(Results):
         self._case = case
 
     @property
-    def converged(self):
+    def converged(self) -> bool:
         """True if the run reached the end of its load."""
         return self.status == "completed"
 
-    def displacement(self, step=-1):
+    @property
+    def reason(self) -> str:
+        """Why the run ended before its load did, a sentence; empty if it did not."""
+        return ": ".join(part for part in (super().reason, self._end.reason) if part)
+
+    def displacement(self, step: int = -1) -> numpy.ndarray:
         """Displacement of the points at a step [m], points x dimension.
 
         The last one is a view of the run's memory, without a copy, which can't be written.
@@ -37,7 +50,7 @@ class Run(Results):
             return self._end.displacement
         return super().displacement(step)
 
-    def resume(self, settings=None, **options):
+    def resume(self, settings: dict[str, Any] | None = None, **options: Any) -> "Run":
         """Goes on from the last accepted step, see `peristat.resume`."""
         return resume(self.path, settings, case=self._case, **options)
 
@@ -46,6 +59,7 @@ def run_case(case, body, *, output=None, on_step=None, threads=0, quiet=False, l
     """Runs a case; its body may have been made before. See `Body.solve`."""
     if on_step is not None and not callable(on_step):
         raise input_error("on_step", repr(on_step)[:80], "must be a function of a step")
+    threads = thread_count(threads)
     core = load_core()
     placed = _with_output(case, output)
     read = placed._read()
@@ -63,7 +77,16 @@ def run_case(case, body, *, output=None, on_step=None, threads=0, quiet=False, l
     return Run(folder, end, placed)
 
 
-def resume(folder, settings=None, *, case=None, on_step=None, threads=0, quiet=False, log=""):
+def resume(
+    folder: str | os.PathLike[str],
+    settings: dict[str, Any] | None = None,
+    *,
+    case: Case | None = None,
+    on_step: Callable[["Step"], Any] | None = None,
+    threads: int = 0,
+    quiet: bool = False,
+    log: str | os.PathLike[str] = "",
+) -> Run:
     """Goes on with an interrupted or failed run from its last accepted step.
 
     Args:
@@ -77,6 +100,7 @@ def resume(folder, settings=None, *, case=None, on_step=None, threads=0, quiet=F
     Raises:
         InputError: there is nothing to resume, or a setting would make it another case.
     """
+    threads = thread_count(threads)
     texts = [(key, toml_text.value_text(value, key)) for key, value in (settings or {}).items()]
     functions, points = ({}, None) if case is None else case._givens()
     end = load_core().resume(

@@ -3,6 +3,11 @@
 import queue
 import threading
 import weakref
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ._core import Step
+    from .run import Run
 
 
 class Steps:
@@ -24,15 +29,15 @@ class Steps:
         self._close = weakref.finalize(self, _end, self._exchange, self._thread)
 
     @property
-    def run(self):
+    def run(self) -> "Run":
         """The `Run`, whose results are closed first if it is still going on."""
         self.close()
         return self._run
 
-    def __iter__(self):
+    def __iter__(self) -> "Steps":
         return self
 
-    def __next__(self):
+    def __next__(self) -> "Step":
         if not self._is_started:
             self._is_started = True
             self._thread.start()
@@ -42,7 +47,7 @@ class Steps:
             self._exchange.go_on()
         return self._next_told()
 
-    def close(self):
+    def close(self) -> None:
         """Ends the run after the present step."""
         if self._is_started and self._step is not None:
             self._exchange.stop()
@@ -53,10 +58,10 @@ class Steps:
                     return
         self._is_started = True
 
-    def __enter__(self):
+    def __enter__(self) -> "Steps":
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: Any) -> None:
         self.close()
 
     def _next_told(self):

@@ -13,7 +13,7 @@ BARE = re.compile(r"[A-Za-z0-9_-]+\Z")
 def text_of(document):
     """TOML of a dict of tables, arrays of tables and values."""
     lines = []
-    _add_table(lines, document, "")
+    _add_table(lines, document, "", "")
     return "\n".join(lines).strip() + "\n"
 
 
@@ -47,23 +47,23 @@ def value_text(value, key=""):
     )
 
 
-def _add_table(lines, table, path):
-    inner = {}
+def _add_table(lines, table, header, path):
+    """Adds the lines of a table; its path has numbers of elements, which its header has not."""
+    inner = []
     for name, value in table.items():
         key = f"{path}.{name}" if path else name
         if isinstance(value, dict) or _is_array_of_tables(value):
-            inner[key] = (name, value)
+            inner.append((f"{header}.{_name(name)}" if header else _name(name), key, value))
         else:
             lines.append(f"{_name(name)} = {value_text(value, key)}")
-    for key, (name, value) in inner.items():
-        header = ".".join(_name(part) for part in key.split("."))
+    for inner_header, key, value in inner:
         if isinstance(value, dict):
-            lines.extend(["", f"[{header}]"])
-            _add_table(lines, value, key)
+            lines.extend(["", f"[{inner_header}]"])
+            _add_table(lines, value, inner_header, key)
             continue
-        for element in value:
-            lines.extend(["", f"[[{header}]]"])
-            _add_table(lines, element, key)
+        for k, element in enumerate(value):
+            lines.extend(["", f"[[{inner_header}]]"])
+            _add_table(lines, element, inner_header, f"{key}[{k}]")
 
 
 def _is_array_of_tables(value):

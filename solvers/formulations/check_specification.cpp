@@ -368,6 +368,7 @@ void check_materials(const BodySpecification& of, int dimension) {
 }
 
 void check_specification(const BodySpecification& of, const Points& points) {
+  if (points.functions) check_functions(*points.functions);
   check_points_and_operator(of, points);
   check_all_materials(of, points.dimension, options_of(of));
   check_cross_section(of, points);

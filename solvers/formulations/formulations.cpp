@@ -156,6 +156,8 @@ void find_stretches(const Formulation& formulation, MaterialSpecification& mater
                     const std::string& key, const BondSetting& setting, double spacing,
                     double fineness) {
   material = with_fracture_energy(std::move(material), key, setting, spacing);
+  if (material.damage.law == DamageLaw::table)
+    material.damage = with_stretches(material.damage, key, {});
   if (!material.damage.is_by_data()) return;
   if (formulation.crack_energy_of_dilation) {
     const double energy = formulation.crack_energy_of_dilation(material, key, setting, spacing);

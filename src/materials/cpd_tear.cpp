@@ -82,10 +82,17 @@ LinearChange change_of(const std::array<Coordinates, 4>& at, unsigned moves, con
   return {change / dot(b, cross(c, d))};
 }
 
-/// Stretch between onset and critical stretch at which the slope of the integrity jumps.
-double peak_of(const CriticalStretch& law) { return law.onset(); }
-double peak_of(const TanhDegradation& law) { return law.onset(); }
-double peak_of(const ForceEnvelope& law) { return law.peak(); }
+/// Stretches between onset and critical stretch at which the slope of the integrity jumps.
+std::vector<double> kinks_of(const CriticalStretch&) { return {}; }
+std::vector<double> kinks_of(const TanhDegradation&) { return {}; }
+std::vector<double> kinks_of(const ForceEnvelope& law) { return {law.peak()}; }
+std::vector<double> kinks_of(const ForceTable& law) {
+  std::vector<double> kinks;
+  for (const ForceCurve::Knot& knot : law.curve->knots()) {
+    if (knot.stretch > law.curve->onset()) kinks.push_back(knot.stretch * law.critical());
+  }
+  return kinks;
+}
 
 /// Share of the range from onset to critical that the quadrature's ten points resolve.
 double share_per_step(const CriticalStretch&) { return 1.0; }
@@ -93,6 +100,7 @@ double share_per_step(const TanhDegradation& law) { return 1.0 / std::ceil(law.r
 double share_per_step(const ForceEnvelope& law) {
   return 1.0 / std::max(1.0, std::ceil(law.decay / 4.0));
 }
+double share_per_step(const ForceTable&) { return 1.0; }
 
 /// int T d(e^2/2) over the opening, e the relative change of the measure.
 template <class Law, class Change>
@@ -101,19 +109,19 @@ double work(const Law& law, const BondsAcross& across, const Change& change) {
   const double end = across.first_opening_at(law.critical());
   if (law.onset() >= law.critical()) return until(end);
   const double begin = across.first_opening_at(law.onset());
-  std::array<double, 14> stop{begin, end};
-  int stops = 2;
+  std::vector<double> jumps = kinks_of(law), stop{begin, end};
+  jumps.push_back(law.onset());
   double longest = end;
   for (int k = 0; k < across.count; ++k) {
     const BondAcross& bond = across.bond[k];
-    for (const double stretch : {law.onset(), peak_of(law)}) {
+    for (const double stretch : jumps) {
       const double opening = bond.opening_at(stretch);
-      if (opening > begin && opening < end) stop[stops++] = opening;
+      if (opening > begin && opening < end) stop.push_back(opening);
     }
     const double range = bond.opening_at(law.critical()) - bond.opening_at(law.onset());
     longest = std::min(longest, range * share_per_step(law));
   }
-  std::sort(stop.begin(), stop.begin() + stops);
+  std::sort(stop.begin(), stop.end());
   const auto power = [&](double opening) {
     double integrity = 1.0;
     for (int k = 0; k < across.count; ++k) {
@@ -122,7 +130,7 @@ double work(const Law& law, const BondsAcross& across, const Change& change) {
     return integrity * change.at(opening) * change.slope(opening);
   };
   double sum = until(begin);
-  for (int k = 0; k + 1 < stops; ++k) {
+  for (std::size_t k = 0; k + 1 < stop.size(); ++k) {
     double from = stop[k];
     while (from < stop[k + 1]) {
       // The integrity may vary like 1/s: no step more than doubles the opening.
@@ -236,8 +244,13 @@ double CpdTear::energy(const AnyLaw& law, const Coordinates& normal) const {
 }
 
 double CpdTear::quadrature_points(const AnyLaw& of) const {
-  const double steps =
-      std::visit([](const auto& law) { return 1.0 / share_per_step(law); }, of.law);
+  const double steps = std::visit(
+      [](const auto& law) {
+        constexpr double bonds = 4.0;  // across a place, each with its kinks
+        const double further = std::max(1.0, double(kinks_of(law).size())) - 1.0;
+        return 1.0 / share_per_step(law) + bonds * further;
+      },
+      of.law);
   const double places = 2.0 * double(triangles_.size()) + 3.0 * double(tetrahedra_.size());
   const double in_between = of.onset() < of.critical() ? 10.0 * (4.0 + steps) : 1.0;
   return places * in_between * (dimension_ == 2 ? 12.0 : 16.0);

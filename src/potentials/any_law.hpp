@@ -4,6 +4,7 @@
 
 #include "src/potentials/critical_stretch.hpp"
 #include "src/potentials/force_envelope.hpp"
+#include "src/potentials/force_table.hpp"
 #include "src/potentials/harmonic.hpp"
 #include "src/potentials/saw_tooth.hpp"
 #include "src/potentials/stepwise_law.hpp"
@@ -52,10 +53,10 @@ struct OneLawOf {
 };
 
 /// The laws that a material may have.
-using AnyLaw = OneLawOf<CriticalStretch, TanhDegradation, ForceEnvelope>;
+using AnyLaw = OneLawOf<CriticalStretch, TanhDegradation, ForceEnvelope, ForceTable>;
 
 /// Law of a bond: one of these, or the saw-tooth of one.
-using AnyBondLaw = OneLawOf<CriticalStretch, TanhDegradation, ForceEnvelope, SawTooth>;
+using AnyBondLaw = OneLawOf<CriticalStretch, TanhDegradation, ForceEnvelope, ForceTable, SawTooth>;
 
 [[nodiscard]] inline AnyBondLaw bond_law(const AnyLaw& law) {
   return std::visit([](const auto& one) { return AnyBondLaw{one}; }, law.law);

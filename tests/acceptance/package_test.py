@@ -53,23 +53,58 @@ class Package(Folder):
         self.assertTrue(list((self.folder / "moduli").glob("*.png")))
         self.assertEqual(self.installed(), before)
 
+    def python(self, code, **environment):
+        return self.launch("python", "-c", f"import peristat as ps; {code}", PYTHONDONTWRITEBYTECODE="1", **environment)
+
+    def test_python_has_the_package_and_solves(self):
+        before = self.installed()
+        code = "run = ps.load_case('strip.toml').solve(output='python', quiet=True, threads=1); print(run.status, run.dimension)"
+        told = self.python(code)
+        self.assertEqual((told.output, told.errors, told.code), ("completed 2\n", "", 0))
+        self.assert_completed(self.launch("run", "strip.toml", "--output", "program", "--no-plots", "--threads", "1"))
+        python, program = (self.folder / name / "history.csv" for name in ("python", "program"))
+        self.assertGreater(len(python.read_text().splitlines()), 2)
+        self.assertEqual(python.read_text(), program.read_text())
+
+        code = "from peristat import _package as p; print(p.load_core().__file__, ps.__file__, sep='\\n')"
+        files = [pathlib.Path(line).relative_to(self.prefix / "lib/python3/dist-packages") for line in self.python(code).output.splitlines()]
+        self.assertEqual([str(file.parent) for file in files], ["peristat", "peristat"])
+        self.assertTrue((self.prefix / "lib/python3/dist-packages/peristat/py.typed").is_file())
+        self.assertEqual(self.installed(), before)
+
+    def test_errors_cross_the_border_to_python(self):
+        """Exceptions are thrown in the library and caught in the module."""
+        told = self.python("case = ps.load_case('strip.toml'); case.set('loading.steps', -1); case.resolved()")
+        self.assertEqual(told.code, 1)
+        self.assertRegex(told.errors.splitlines()[-1], r"^peristat\.errors\.InputError: .*steps = -1")
+
     def test_every_module_is_found(self):
         as_root = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+
+        def loaded(module, run):
+            self.assertEqual(run.code, 0, run.errors[-2000:])
+            (file,) = set(re.findall(rf"calling init: (.*/peristat_{module}\.so)", run.errors))
+            self.assertEqual(pathlib.Path(os.path.normpath(file)).parent.name, "peristat")
+            self.assertTrue(pathlib.Path(file).resolve().is_relative_to(self.prefix), file)
+
         for module, options in (("trilinos", ["--set", "solver.linear=pcg"]), ("mumps", ["--set", "solver.mode=arc_length"]),
                                 ("ranks", ["--ranks", "2"])):  # fmt: skip
             with self.subTest(module=module):
                 run = self.launch("run", "strip.toml", "--no-plots", "--output", module, *options, LD_DEBUG="files", **as_root)
-                self.assertEqual(run.code, 0, run.errors[-2000:])
-                (loaded,) = set(re.findall(rf"calling init: (.*/peristat_{module}\.so)", run.errors))
-                self.assertEqual(pathlib.Path(os.path.normpath(loaded)).parent.name, "peristat")
-                self.assertTrue(pathlib.Path(loaded).resolve().is_relative_to(self.prefix), loaded)
+                loaded(module, run)
+        for module, key, value in (("trilinos", "solver.linear", "pcg"), ("mumps", "solver.mode", "arc_length")):
+            with self.subTest(module=module, of="python"):
+                code = f"case = ps.load_case('strip.toml'); case.set({key!r}, {value!r}); case.solve(output='python_{module}')"
+                loaded(module, self.python(code, LD_DEBUG="files"))
 
     def test_no_wide_vector_crosses_between_program_and_library(self):
         """A package compiles both for different processors (docs/installing.md#processors)."""
         wide = re.compile(r"simd|__vector|Eigen::")  # Eigen's memory layout also differs
         library = lines("nm", "-C", "--defined-only", "--dynamic", BUILD / "libperistat.so")
         self.assertTrue(any(map(wide.search, library)))  # the library uses some itself
-        taken = [line for line in lines("nm", "-C", "--undefined-only", BUILD / "libperistat_runner.a") if " U peristat::" in line]
+        objects = [BUILD / "libperistat_runner.a", *BUILD.glob("CMakeFiles/peristat_python.dir/python/core/*.o")]
+        self.assertGreater(len(objects), 5)
+        taken = [line for line in lines("nm", "-C", "--undefined-only", *objects) if " U peristat::" in line]
         self.assertGreater(len(taken), 100)
         self.assertEqual([line for line in taken if wide.search(line)], [])
 
@@ -85,6 +120,7 @@ class Package(Folder):
     def test_the_loader_finds_every_library(self):
         binaries = [path for path in self.prefix.rglob("*") if path.is_file() and path.read_bytes()[:4] == b"\x7fELF"]
         names = {path.name for path in binaries}
+        self.assertTrue(any(name.startswith("_core.") for name in names))
         self.assertLessEqual({"peristat", "peristat_trilinos.so", "peristat_ranks.so", "peristat_mumps.so"}, names)
         for binary in binaries:
             found = "\n".join(lines("ldd", binary))
@@ -105,7 +141,7 @@ class Package(Folder):
         told = self.launch("help").output
         self.assertNotIn("./peristat", told)
         listed = set(re.findall(r"^  peristat ([a-z-]+)", told, re.MULTILINE))
-        self.assertLessEqual({"run", "resume", "check", "sweep", "trust", "plot", "help"}, listed)
+        self.assertLessEqual({"run", "resume", "check", "sweep", "trust", "plot", "python", "help"}, listed)
         self.assertTrue(listed.isdisjoint({"build", "test", "bench", "package"}))
         first = re.search(r"Start with: peristat run (.*)", told)[1]
         self.assert_completed(self.launch("check", first))

@@ -1,5 +1,7 @@
 """Integrity T(s) of a bond and its moment M(s), the integral of r T(r) (docs/theory.md, Damage)."""
 
+import itertools
+
 import numpy
 
 # Composite Gauss-Legendre quadrature: 40 panels of 12 nodes integrate a sigmoid as steep as rate 50 over
@@ -10,21 +12,38 @@ FRACTIONS = ((numpy.arange(PANELS)[:, None] + (NODES + 1) / 2) / PANELS).ravel()
 SHARES = numpy.tile(WEIGHTS / 2 / PANELS, PANELS)
 
 
+def ends_of(table):
+    """Onset and critical stretch of the law table: the last pair of the elastic part, and the last pair."""
+    pairs = list(zip(table["stretches"], table["forces"], strict=True))
+    elastic = list(itertools.takewhile(lambda pair: abs(pair[1] - pair[0]) <= 1e-6 * pair[0], pairs))
+    return {"onset": elastic[-1][0], "critical": pairs[-1][0]}
+
+
+def curve_of(table):
+    """Stretches and forces of the law table from the origin on, over its last stretch; None for another law."""
+    if table["law"] != "table":
+        return None
+    return tuple(numpy.array([0.0, *table[key]]) / table["stretches"][-1] for key in ("stretches", "forces"))
+
+
 class Law:
-    """Laws of bonds: numbers for all bonds, or arrays with an entry for each."""
+    """Laws of bonds: numbers for all bonds, or arrays with an entry for each. All laws named table have one curve."""
 
     PARTS = ("name", "onset", "critical", "rate", "peak", "hardening")
 
-    def __init__(self, name, onset, critical, rate, peak=0.0, hardening=0.0):
+    def __init__(self, name, onset, critical, rate, peak=0.0, hardening=0.0, *, curve=None):
         self.name, self.onset, self.critical, self.rate = name, onset, critical, rate
-        self.peak, self.hardening = peak, hardening
+        self.peak, self.hardening, self.curve = peak, hardening, curve
 
     @classmethod
     def of_table(cls, table):
         """Law from its table in the case file."""
+        if table["law"] == "table":
+            table = table | ends_of(table)
         name, critical = table["law"], float(table["critical"])
         return cls(name, critical if name == "critical_stretch" else float(table["onset"]), critical,
-                   float(table.get("rate", 3.0)), float(table.get("peak", 0.0)), float(table.get("hardening", 0.5)))  # fmt: skip
+                   float(table.get("rate", 3.0)), float(table.get("peak", 0.0)), float(table.get("hardening", 0.5)),
+                   curve=curve_of(table))  # fmt: skip
 
     @classmethod
     def elastic(cls):
@@ -37,15 +56,15 @@ class Law:
 
     def of(self, bonds):
         """The laws of some of the bonds."""
-        return Law(*(part[bonds] if numpy.ndim(part) else part for part in self.parts))
+        return Law(*(part[bonds] if numpy.ndim(part) else part for part in self.parts), curve=self.curve)
 
     def spread(self, count):
         """Expands numbers to an entry per bond."""
-        return Law(*(numpy.broadcast_to(part, count) for part in self.parts))
+        return Law(*(numpy.broadcast_to(part, count) for part in self.parts), curve=self.curve)
 
     def columns(self):
         """The laws shaped for several stretches per bond."""
-        return Law(*(part[:, None] for part in self.parts))
+        return Law(*(part[:, None] for part in self.parts), curve=self.curve)
 
     def published(self, stretch):
         """Equation 12 of [ADAPT], between onset and critical stretch."""
@@ -66,7 +85,21 @@ class Law:
         exponential = (numpy.exp(-self.rate * fallen) - end) / (1 - end)
         left = numpy.where(self.name == numpy.array("exponential"), exponential, 1 - fallen)
         rising = self.onset + self.hardening * (stretch - self.onset)
-        return numpy.where(numpy.real(stretch) < peak, rising, highest * left) / stretch
+        force = numpy.where(numpy.real(stretch) < peak, rising, highest * left)
+        if self.curve is not None:
+            force = numpy.where(self.name == numpy.array("table"), self.on_curve(stretch)[0], force)
+        return force / stretch
+
+    def on_curve(self, stretch):
+        """Force of the law table, and its integral from 0."""
+        stretches, forces = self.curve
+        at = stretch / self.critical
+        k = numpy.clip(numpy.searchsorted(stretches, numpy.real(at), side="right"), 1, len(stretches) - 1)
+        beyond = at - stretches[k - 1]
+        force = forces[k - 1] + (forces[k] - forces[k - 1]) / (stretches[k] - stretches[k - 1]) * beyond
+        pieces = numpy.diff(stretches) * (forces[1:] + forces[:-1]) / 2
+        work = numpy.concatenate([[0.0], numpy.cumsum(pieces)])[k - 1] + (forces[k - 1] + force) / 2 * beyond
+        return self.critical * force, self.critical**2 * work
 
     def softening(self, stretch):
         is_tanh = numpy.char.startswith(numpy.array(self.name, "U20"), "tanh")
@@ -98,6 +131,8 @@ class Law:
             # In two pieces: the force of the blended law has a kink at its peak.
             kink = numpy.where(law.name == "blended", numpy.where(numpy.real(end) < law.peak, end, law.peak), law.onset)
             value[beyond] += law.between(law.onset, kink) + law.between(kink, end)
+            if self.curve is not None:
+                value[beyond] = numpy.where(law.name == "table", law.on_curve(end)[1], value[beyond])
         return value
 
     def between(self, start, end):

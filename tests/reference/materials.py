@@ -5,7 +5,7 @@ import math
 
 import numpy
 
-from tests.reference.laws import Law
+from tests.reference.laws import Law, curve_of, ends_of
 
 BETWEEN = {
     "harmonic": lambda values: 0.0 * values[0] if (numpy.array(values) == 0).any() else len(values) / sum(1 / v for v in values),
@@ -108,6 +108,9 @@ class Materials:
             law.name[mask], law.rate[mask] = table["law"], table["rate"]
             law.onset[mask], law.critical[mask] = onset[mask], critical[mask]
             law.hardening[mask] = table["hardening"]
+            if table["law"] == "table":
+                assert law.curve is None or str(law.curve) == str(curve_of(table)), "one curve for all"
+                law.curve = curve_of(table)
             if table["law"] == "blended":
                 law.peak[mask] = law.onset[mask] + rise(table) * (critical - onset)[mask]
 
@@ -149,7 +152,10 @@ class Materials:
 
 def damage_of(table):
     damage = table.get("damage", {})
-    return {"rate": 3.0, "hardening": 0.5, "no_fail": []} | damage if damage.get("law", "none") != "none" else None
+    if damage.get("law", "none") == "none":
+        return None
+    ends = ends_of(damage) if damage["law"] == "table" else {}
+    return {"rate": 3.0, "hardening": 0.5, "no_fail": []} | ends | damage
 
 
 def rise(damage):
@@ -162,6 +168,8 @@ def like(one, other):
         return False
     if one["law"] == "blended":
         return one["hardening"] == other["hardening"] and rise(one) == rise(other)
+    if one["law"] == "table":
+        return one["stretches"] == other["stretches"] and one["forces"] == other["forces"]
     return one["law"] in ("critical_stretch", "linear") or one["rate"] == other["rate"]
 
 

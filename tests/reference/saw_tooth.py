@@ -24,8 +24,8 @@ class Smooth:
 
     CELLS = 4000
 
-    def __init__(self, name, onset, rate, peak, hardening):
-        law = Law(name, onset, 1.0, rate, peak, hardening)
+    def __init__(self, name, onset, rate, peak, hardening, curve):
+        law = Law(name, onset, 1.0, rate, peak, hardening, curve=curve and tuple(map(numpy.array, curve)))
         places = numpy.linspace(onset, 1.0, self.CELLS + 1)
         self.onset, self.cell = onset, (1.0 - onset) / self.CELLS
         integrity = law.softening(places)
@@ -89,11 +89,11 @@ def last_of(low, high, holds):
 
 
 @functools.cache
-def teeth_of(name, onset, rate, peak, hardening, most):
+def teeth_of(name, onset, rate, peak, hardening, curve, most):
     """Secants with the narrowest band that a number of teeth allows; stretches over the critical one."""
     if name == "critical_stretch":
         return Teeth([1.0], [1.0], [1.0])
-    smooth = Smooth(name, onset, rate, peak, hardening)
+    smooth = Smooth(name, onset, rate, peak, hardening, curve)
     wide = 1.0
     while smooth.in_band(wide, most) is None:
         wide *= 2
@@ -113,7 +113,8 @@ class SawTooth:
             columns = [law.onset / law.critical, law.rate, numpy.where(failing, law.peak / law.critical, 0.0), law.hardening]
         kinds, self.kind = {}, numpy.zeros(len(law.name), int)
         for bond in numpy.flatnonzero(failing):
-            key = (str(law.name[bond]), *(float(f"{column[bond]:.10g}") for column in columns))
+            curve = tuple(map(tuple, law.curve)) if law.name[bond] == "table" else None
+            key = (str(law.name[bond]), *(float(f"{column[bond]:.10g}") for column in columns), curve)
             self.kind[bond] = kinds.setdefault(key, len(kinds))
         self.teeth = [teeth_of(*key, most) for key in kinds] or [Teeth([1.0], [1.0], [1.0])]
         self.strengths = padded([teeth.strengths for teeth in self.teeth], numpy.inf)

@@ -3,6 +3,7 @@
 import os
 import re
 import subprocess
+import sysconfig
 import unittest
 
 from tests.unit.architecture_test import ROOT, in_parallel, sources
@@ -24,7 +25,7 @@ def compile_alone(header):
     """The compiler's messages; empty if there are none."""
     name = header.relative_to(ROOT).as_posix()
     result = subprocess.run(
-        [os.environ.get("PERISTAT_CXX", "c++"), "-std=c++20", "-fsyntax-only", "-fopenmp", "-I", ROOT]
+        [os.environ.get("PERISTAT_CXX", "c++"), "-std=c++20", "-fsyntax-only", "-fopenmp", "-I", ROOT, "-isystem", sysconfig.get_path("include")]
         + ['-DPERISTAT_SOURCE_DIR=""', "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wno-psabi", "-Werror", "-x", "c++", "-"],
         input=f'#include "{name}"\n',
         capture_output=True,

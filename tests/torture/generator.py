@@ -125,7 +125,7 @@ class Generator:
         if self.of_kernel.random() < 0.3:
             material["influence"] = str(self.of_kernel.choice([*POWERS, "gaussian"]))
         law = self.choice("none", "critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended",
-                          weights=(0.2, 0.2, 0.15, 0.2, 0.1, 0.1, 0.05))  # fmt: skip
+                          "table", weights=(0.2, 0.2, 0.15, 0.2, 0.1, 0.05, 0.05, 0.05))  # fmt: skip
         self.critical = self.power(-4, -1)
         if law != "none":
             damage = {"law": law, "critical": self.critical}
@@ -136,6 +136,10 @@ class Generator:
             if law == "blended":
                 damage["peak"] = damage["onset"] + self.between(0.1, 0.9) * (self.critical - damage["onset"])
                 damage["hardening"] = self.between(0.1, 0.9)
+            if law == "table":
+                onset, fallen = damage["onset"], self.between(0.05, 0.95)
+                damage = {"law": law, "stretches": [onset, (onset + self.critical) / 2, self.critical],
+                          "forces": [onset, onset * fallen, onset * fallen * self.between(0.0, 1.0)]}  # fmt: skip
             if self.chance(0.6):
                 damage["no_fail"] = ["left", "right"]
             material["damage"] = damage

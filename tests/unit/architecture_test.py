@@ -10,7 +10,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # From the lowest floor up. Tests and benchmarks may include any floor.
-FLOORS = ["src", "assembly", "solvers", "cases"]
+FLOORS = ["src", "assembly", "solvers", "cases", "python"]
 # Rooms of the floors; each may include itself and earlier ones.
 ROOMS = [
     "src/core",
@@ -65,12 +65,14 @@ ROOMS = [
     "cases/runner/results",
     "cases/runner/commands",
     "cases/runner",
+    "python/core",
 ]
 # Ceilings, to be lowered.
 PARTITION_BRANCHES, MODEL_BRANCHES = 60, 15
 OUTSIDE = ["tests", "benchmarks"]
 # Headers outside the standard library that headers of a floor may include; keep it this small.
 ALLOWED_IN_HEADERS = {"omp.h"}
+BINDING = "pybind11/"  # headers of python/core exist to bind, and no other floor includes them
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 STANDARD_HEADER = re.compile(r"[a-z_0-9]+")  # <vector>: neither a folder nor an extension
 CLANG_FORMAT_VERSION = "14"  # versions format differently; this is the one of Debian 12
@@ -113,7 +115,8 @@ def misplaced_includes(file, text):
                 if ROOMS.index(room_of(name)) > ROOMS.index(room_of(file)):
                     wrong.append(f'{file}: "{name}" is in a room above its own')
         elif file.endswith(".hpp") and floor in FLOORS:
-            if not STANDARD_HEADER.fullmatch(name) and name not in ALLOWED_IN_HEADERS:
+            allowed = STANDARD_HEADER.fullmatch(name) or name in ALLOWED_IN_HEADERS
+            if not allowed and not (floor == "python" and name.startswith(BINDING)):
                 wrong.append(f"{file}: <{name}> belongs in a .cpp file")
     return wrong
 
@@ -152,6 +155,11 @@ class Architecture(unittest.TestCase):
         self.assertEqual(wrong("solvers/linear/solver.cpp", "#include <cholmod.h>"), 0)
         self.assertEqual(wrong("solvers/search/newton.cpp", '#include "src/core/types.hpp"'), 0)
         self.assertEqual(wrong("src/geometry/points.hpp", "#include <vector>"), 0)
+        self.assertEqual(wrong("cases/runner/main.cpp", '#include "python/core/step.hpp"'), 1)
+        self.assertEqual(wrong("python/core/step.cpp", '#include "cases/runner/commands/run.hpp"'), 0)
+        self.assertEqual(wrong("python/core/step.hpp", "#include <pybind11/numpy.h>"), 0)
+        self.assertEqual(wrong("cases/runner/input/case.hpp", "#include <pybind11/numpy.h>"), 1)
+        self.assertEqual(wrong("python/core/step.hpp", "#include <Eigen/Dense>"), 1)
         self.assertEqual(wrong("tests/unit/a_test.cpp", '#include "cases/runner/input/case.hpp"'), 0)
 
     def test_every_file_stands_in_a_room(self):

@@ -55,7 +55,7 @@ class Launcher(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name).resolve()
         root = self.folder / "house"
-        for part in ["src", "assembly", "solvers", "python/peristat/pictures", "cases/runner/sweep", "cases/runner/trust", "cmake", "build/release"]:
+        for part in ["src", "assembly", "solvers", "python/core", "python/peristat/pictures", "cases/runner/sweep", "cases/runner/trust", "cmake", "build/release"]:
             (root / part).mkdir(parents=True)
         for name in ["peristat", "CMakeLists.txt", "CMakePresets.json"]:
             shutil.copy(ROOT / name, root)
@@ -170,6 +170,32 @@ class Launcher(unittest.TestCase):
         self.assertTrue(result.stdout.startswith("trust ['surfing', '--quick'] "), result.stdout)
         self.assertIn("trust ['--help']", self.launch("help", "trust").stdout)
 
+    def python(self, *arguments, **environment):
+        """./peristat python with a package that names its folder, as if its compiled part had been built."""
+        (self.root / "python/peristat/__init__.py").write_text("import pathlib; HERE = pathlib.Path(__file__).parent\n")
+        (self.root / "build/release/_core.cpython-311-x86_64-linux-gnu.so").touch()
+        return self.launch("python", *arguments, **environment)
+
+    def test_python_has_the_package(self):
+        code = "import sys, peristat, os; print(peristat.HERE, sys.executable, sys.argv[1:], os.environ['PERISTAT_LAUNCHER'])"
+        expected = f"{self.root}/python/peristat /usr/bin/python3 ['two words', ''] {self.launcher}\n"
+        (self.folder / "a script.py").write_text(code)
+        for started in (["-c", code], ["a script.py"]):
+            result = self.python(*started, "two words", "")
+            self.assertEqual((result.stdout, result.stderr, result.returncode), (expected, "", 0))
+        self.assertEqual(self.python("-c", "import sys; sys.exit(7)").returncode, 7)
+        self.assertIn("./peristat python [SCRIPT", self.launch("help", "python").stdout)
+
+    def test_python_keeps_the_path_of_its_user(self):
+        (self.folder / "own.py").write_text("print('own')")
+        self.assertEqual(self.python("-c", "import own, peristat", PYTHONPATH=str(self.folder)).stdout, "own\n")
+
+    def test_a_script_of_python_in_the_background_can_be_interrupted(self):
+        code = "import signal; print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)"
+        self.python("-c", "")
+        script = f"'{self.launcher}' python -c '{code}' & wait $!"
+        self.assertEqual(subprocess.run(["sh", "-c", script], capture_output=True, text=True).stdout, "True\n")
+
     def test_a_sweep_knows_the_program(self):
         result = self.launch("sweep", "a case.toml", "--vary", "x=1,2")
         self.assertEqual(result.returncode, 3, result.stderr)
@@ -260,6 +286,22 @@ class Launcher(unittest.TestCase):
         self.assertTrue(calls.startswith(first))
         self.assertRegex(first, "--target peristat peristat_trilinos peristat_ranks peristat_mumps")
         self.assertTrue(calls.endswith("--target peristat peristat_mumps\n"), calls)
+
+    def test_the_package_of_python_is_built_at_its_first_use_and_with_the_program(self):
+        self.build_with('echo "$@" >>cmake_calls')
+        calls, tools = self.root / "cmake_calls", {"PATH": f"{self.folder / 'tools'}:{os.environ['PATH']}"}
+        self.assertIn("peristat_library peristat_python\n", calls.read_text())  # ./peristat build
+        self.launch("python", "-c", "", **tools)
+        first = calls.read_text()
+        self.assertTrue(first.endswith("--target peristat peristat_python\n"), first)
+        self.python("-c", "", **tools)  # which is there and up to date
+        self.assertEqual(calls.read_text(), first)
+        for used in (["check", "x"], ["python", "-c", ""]):  # an old one must not be loaded
+            (self.root / "python/core/changed.cpp").write_text(used[0])
+            self.launch(*used, **tools)
+            self.assertTrue(calls.read_text().endswith("--target peristat peristat_python\n"))
+            self.assertGreater(len(calls.read_text()), len(first))
+            first = calls.read_text()
 
     def test_a_module_is_built_alone_and_of_the_sources_of_the_program(self):
         self.build_with('echo "$@" >>cmake_calls')

@@ -154,7 +154,9 @@ class CaseRun {
     conclude(result);
     results_->close(summary_);
     const Exit exit = tell(result);
-    if (options_.company && options_.company->ended) options_.company->ended(std::move(result));
+    if (options_.company && options_.company->ended) {
+      options_.company->ended(body_, std::move(result));
+    }
     return exit;
   }
 
@@ -441,11 +443,13 @@ Exit run(const Case& from, const RunOptions& options, const Communicator& ranks,
     const Failure failure = current_failure();
     if (ranks.count() > 1) give_way_to_first(ranks);
     results->fail(summary, failure.message);
+    // What a given function throws is its program's, which knows what to do.
+    if (failure.code == Exit::bug && !from.givens->none()) throw;
     if (ranks.count() > 1) {
       say_last_words(fmt::format("peristat: {}\n{}\n", failure.message, results->what_is_left()));
       ranks.abort(static_cast<int>(failure.code));
     }
-    progress.problem(failure.message);
+    if (!options.company) progress.problem(failure.message);  // else the exception tells it
     progress.problem(results->what_is_left());
     if (options.company) {
       if (failure.code == Exit::out_of_memory) results->abandon();

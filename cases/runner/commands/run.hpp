@@ -30,6 +30,7 @@ struct RunOptions {
 ///                code is the same on all
 /// @param earlier run to resume: of the same case, or of one that this one extends
 /// @throws InputError, MemoryError before anything is written
+/// @throws what a given function throws, after the results are closed as failed
 /// @throws MachineError if the machine fails, std::bad_alloc if the memory does: every accepted
 ///         step is kept, and the summary says "failed" if it can be written. In company also any
 ///         other exception, of its callbacks, too. With several ranks

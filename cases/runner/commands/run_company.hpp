@@ -27,7 +27,7 @@ struct RunCompany {
   Progress::Sink line{};               ///< gets the lines of the run in the place of the terminal
   std::function<void(const AcceptedStep&)> accepted{};
   std::function<bool()> interrupted{};  ///< true: the run ends after the step, as by a signal
-  std::function<void(LoadSteppingResult&&)> ended{};
+  std::function<void(std::shared_ptr<const Body> body, LoadSteppingResult&&)> ended{};
 };
 
 }  // namespace peristat

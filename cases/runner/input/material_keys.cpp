@@ -35,12 +35,21 @@ namespace {
 void require_law(const Entry& at, DamageSpecification&) {
   if (at.from.has("law")) return;
   for (const char* key : {"fracture_energy", "fracture_toughness", "strength", "critical", "onset",
-                          "peak", "hardening", "rate"}) {
+                          "peak", "hardening", "rate", "stretches", "forces"}) {
     if (!at.from.has(key)) continue;
     at.from.refuse(key,
                    "needs a law in the same table, such as law = \"linear\"; without a law there "
                    "is no damage, which law = \"none\" states");
   }
+}
+
+Kind<std::vector<double>> numbers_of_curve() {
+  const Range range{0.0, 1e3, "must be from 0 to 1000", false};
+  return {[=](const Entry& at) { return at.from.numbers(at.key, range); },
+          [](const std::vector<double>& numbers, const Case&) {
+            return array_text(numbers, toml_number);
+          },
+          list_schema(number_schema(range, "1"), 2), "list of numbers", "1"};
 }
 
 Table<DamageSpecification> damage_keys(const std::string& material) {
@@ -63,6 +72,7 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
                             {"linear", DamageLaw::linear},
                             {"exponential", DamageLaw::exponential},
                             {"blended", DamageLaw::blended},
+                            {"table", DamageLaw::table},
                             {"energy_density", DamageLaw::energy_density}}),
          "`\"none\"`: no damage, and the other keys of the table have no effect; "
          "`\"critical_stretch\"`: a bond is undamaged up to `critical` and then broken; "
@@ -71,7 +81,8 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "it does not jump; `\"linear\"`: the force falls linearly from `onset` to zero at "
          "`critical`; `\"exponential\"`: it falls exponentially, without a jump at `critical`; "
          "`\"blended\"`: it rises on a lower slope from `onset` to `peak`, and then falls "
-         "linearly; `\"energy_density\"`: a point fails at once and for good where its energy "
+         "linearly; `\"table\"`: the force is the curve of `stretches` and `forces`; "
+         "`\"energy_density\"`: a point fails at once and for good where its energy "
          "density exceeds `fracture_energy` / (2 δ); this law is for `kinematics = \"linear\"`, "
          "and with `solver.operator = \"fft\"` for all models")
            .early(),
@@ -102,6 +113,7 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
            .unless(is_whole, "")
            .by_rules(damage_rules)
            .then(require_key([](auto& damage) { return damage.critical == 0.0; }))
+           .written_if([](auto& damage, auto&) { return damage.critical != 0.0; })
            .default_words("this, `fracture_energy` or `fracture_toughness` is required with a law"),
        K("onset", &Spec::onset, stretch(),
          "laws that soften: stretch $s_m$ beyond which a bond loses stiffness")
@@ -134,6 +146,22 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "stretches; `exponential`: how much more steeply the force falls at first")
            .unless(is_whole, "")
            .by_rules(damage_rules),
+       K("stretches", &Spec::stretches, numbers_of_curve(),
+         "`table`: stretches, ascending; the first ends the elastic part, at the last one the bond "
+         "breaks")
+           .unless(is_whole, "")
+           .by_rules(damage_rules)
+           .written_if([](auto& damage, auto&) { return !damage.stretches.empty(); })
+           .moreover("1e-9 to 1000")
+           .default_words("required with law `table`"),
+       K("forces", &Spec::forces, numbers_of_curve(),
+         "`table`: force of a bond at each of the `stretches` over its constant $c$, so that the "
+         "first is the first stretch; linear in between. Force over stretch must not grow. The "
+         "last may be 0")
+           .unless(is_whole, "")
+           .by_rules(damage_rules)
+           .written_if([](auto& damage, auto&) { return !damage.forces.empty(); })
+           .default_words("required with law `table`"),
        K("no_fail", &Spec::no_fail, known_sets(),
          "sets of points whose bonds stay elastic at any stretch, including bonds to points "
          "outside the sets")

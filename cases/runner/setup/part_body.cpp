@@ -66,7 +66,7 @@ void refuse_convolutions(const Case& from) {
 /// Refuses values that run on one rank only, for keys with other values that run on several.
 void refuse_values_without_ranks(const Case& from) {
   if (!from.givens->none()) {
-    throw InputError("", lines_of(*from.givens),
+    throw InputError("", "",
                      "functions and points that a program gives are for one rank: write the points "
                      "to a file, and the functions as expressions or tables");
   }

@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib.tri import Triangulation
 
 WIDEST = 0.95  # radius over cell size of the largest gap that is filled; one missing point leaves more
 
@@ -84,6 +83,8 @@ def _cuts(points, sizes, triangles, filled):
 def _triangles(points, sizes):
     """Delaunay triangles (anticlockwise), and whether the cloud fills each; none for collinear points."""
     try:
+        from matplotlib.tri import Triangulation
+
         triangles = Triangulation(*(points - points.mean(axis=0)).T).triangles.astype(np.int64)
     except (RuntimeError, ValueError):
         return np.zeros((0, 3), dtype=np.int64), np.zeros(0, dtype=bool)

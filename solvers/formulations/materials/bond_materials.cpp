@@ -57,6 +57,8 @@ bool same_law(const DamageSpecification& one, const DamageSpecification& other) 
     case DamageLaw::blended:
       // Values found from data have round-off, and the tolerance of a strength.
       return one.hardening == other.hardening && std::abs(one.rise() - other.rise()) < 1e-6;
+    case DamageLaw::table:
+      return one.stretches == other.stretches && one.forces == other.forces;
     case DamageLaw::critical_stretch:
     case DamageLaw::linear:
     case DamageLaw::none:

@@ -38,6 +38,9 @@ AnyLaw law_of(const DamageSpecification& damage) {
       return {ForceEnvelope{onset, critical, rate}};
     case DamageLaw::blended:
       return {ForceEnvelope{onset, critical, 0.0, damage.rise(), damage.hardening}};
+    case DamageLaw::table:
+      return {ForceTable{std::make_shared<const ForceCurve>(damage.stretches, damage.forces),
+                         damage.stretches.back()}};
     case DamageLaw::critical_stretch:
     case DamageLaw::none:
       break;

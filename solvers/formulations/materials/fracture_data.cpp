@@ -407,6 +407,13 @@ double FractureScale::strength(const DamageSpecification& damage) const {
 
 DamageSpecification with_stretches(const DamageSpecification& damage, const std::string& key,
                                    const FractureScale& scale) {
+  if (damage.law == DamageLaw::table) {
+    const AnyLaw law = law_of(damage);
+    DamageSpecification found = damage;
+    found.onset = law.onset();
+    found.critical = law.critical();
+    return found;
+  }
   if (!damage.is_by_data()) return damage;
   const std::string table = key + ".damage.";
   if (scale.tear && damage.fracture_energy) require_quick(damage, table, *scale.tear);
@@ -437,6 +444,7 @@ double total_work(const DamageSpecification& damage) {
 double peak_force(const DamageSpecification& damage) {
   if (!damage.softens()) return damage.critical;
   const AnyLaw law = law_of(damage);
+  if (const auto* table = std::get_if<ForceTable>(&law.law)) return table->peak_force();
   if (const auto* envelope = std::get_if<ForceEnvelope>(&law.law)) return envelope->peak_force();
   // The force of a tanh law rises to one peak and falls; the peak is found by golden sections.
   const auto force = [&](double s) { return s * law.integrity(s); };

@@ -39,6 +39,7 @@ struct FractureScale {
 /// bond of the same energy (blended: a quarter, and a peak force of half). In cpd G is that of a
 /// CpdTear: c A is replaced by the G/W of the law that is found, and the brittle bond is one of the
 /// same W.
+/// A table has its own onset and critical stretch.
 /// @param key of the material, for errors
 /// @throws InputError ("material.damage.strength", …) if there are no such stretches, with the
 ///         largest spacing that has them

@@ -1,8 +1,11 @@
 #include "solvers/formulations/specification/check_damage.hpp"
 
+#include <cmath>
 #include <string_view>
+#include <vector>
 
 #include "solvers/formulations/specification/require.hpp"
+#include "src/potentials/force_table.hpp"
 
 namespace peristat {
 namespace {
@@ -14,7 +17,47 @@ bool is_given(const DamageSpecification& damage, std::string_view key) {
   if (key == "strength") return damage.strength.has_value();
   if (key == "critical") return damage.critical != 0.0;
   if (key == "onset") return damage.onset != 0.0;
+  if (key == "stretches") return !damage.stretches.empty();
+  if (key == "forces") return !damage.forces.empty();
   return key == "peak" && damage.peak != 0.0;
+}
+
+/// Refuses curves of a force that are none of a bond that loses its stiffness for good.
+void check_table(const DamageSpecification& damage, const std::string& table) {
+  constexpr std::size_t most_pairs = 1000;
+  const std::vector<double>&s = damage.stretches, &f = damage.forces;
+  require(s.size() >= 2, table + "stretches", "",
+          "needs at least two stretches: the end of the elastic part, and where the bond breaks");
+  require(s.size() <= most_pairs, table + "stretches", std::to_string(s.size()),
+          "may have at most " + std::to_string(most_pairs) + " stretches");
+  require(f.size() == s.size(), table + "forces", "",
+          "needs a force for each of the " + std::to_string(s.size()) + " stretches; there are " +
+              std::to_string(f.size()));
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    const std::string number = "[" + std::to_string(k) + "]";
+    require_within(s[k], 1e-9, 1e3, table + "stretches" + number);
+    require(k == 0 || s[k] > s[k - 1], table + "stretches" + number, number_text(s[k]),
+            "must be larger than the one before, " + number_text(k == 0 ? 0.0 : s[k - 1]));
+    require(std::isfinite(f[k]) && f[k] >= 0.0, table + "forces" + number, number_text(f[k]),
+            "must be 0 or positive");
+    require(f[k] > 0.0 || k + 1 == s.size(), table + "forces" + number, number_text(f[k]),
+            "is the last one: a bond without force is broken");
+    // The integrity f/s, up to the round-off of a proportional part.
+    constexpr double round_off = 1e-9;
+    require(k == 0 || f[k] * s[k - 1] <= f[k - 1] * s[k] * (1.0 + round_off),
+            table + "forces" + number, number_text(f[k]),
+            "is more than in proportion to the stretch: a bond does not regain stiffness, so force "
+            "over stretch must not grow; here it may be at most " +
+                number_text(k == 0 ? 0.0 : f[k - 1] / s[k - 1] * s[k]));
+  }
+  require(std::abs(f[0] - s[0]) <= round_off_of_elastic_pairs * s[0], table + "forces[0]",
+          number_text(f[0]),
+          "must be the first stretch, " + number_text(s[0]) +
+              ": forces are over the constant c of the undamaged bond, and the first pair ends the "
+              "elastic part");
+  require(ForceCurve(s, f).onset() < 1.0 - 1e-9, table + "forces", "",
+          "never fall below the stretches; a bond that breaks at once has law "
+          "\"critical_stretch\"");
 }
 
 /// Refuses a law with too little or too much data to find its stretches.
@@ -24,7 +67,7 @@ void check_data(const DamageSpecification& damage, const std::string& table) {
   require_positive(damage.strength, table + "strength");
   if (damage.law == DamageLaw::none) {
     for (const std::string key :
-         {"fracture_energy", "fracture_toughness", "strength", "critical"}) {
+         {"fracture_energy", "fracture_toughness", "strength", "critical", "stretches"}) {
       require_absent(is_given(damage, key), table + key, "needs a law");
     }
     return;
@@ -32,6 +75,7 @@ void check_data(const DamageSpecification& damage, const std::string& table) {
   for (const auto& [key, is_idle, why] : damage_rules) {
     require_absent(is_given(damage, key) && is_idle(damage), table + key, why);
   }
+  if (damage.law == DamageLaw::table) return check_table(damage, table);
   if (damage.law == DamageLaw::energy_density) {
     require(damage.has_fracture_energy(), table + "fracture_energy", "", "is missing");
     return;
@@ -51,6 +95,7 @@ void check_data(const DamageSpecification& damage, const std::string& table) {
 void check_damage(const DamageSpecification& damage, const std::string& table) {
   check_data(damage, table);
   if (damage.law == DamageLaw::none) return;
+  if (damage.law == DamageLaw::table) return;
   const auto check_stretch = [&](double stretch, const char* key) {
     if (stretch != 0.0) require_within(stretch, 1e-9, 1e3, table + key);
   };

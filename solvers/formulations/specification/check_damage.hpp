@@ -12,14 +12,28 @@ constexpr bool is_sized(const DamageSpecification& damage) {
   return damage.has_fracture_energy() || (damage.strength && !damage.softens());
 }
 
+/// True if a curve decides all of the law.
+constexpr bool is_given_by_table(const DamageSpecification& damage) {
+  return damage.law == DamageLaw::table;
+}
+
 /// When a datum of a law has no effect, and why.
 struct DamageRule {
   const char* key;
   bool (*is_idle)(const DamageSpecification&);
   const char* why;
 };
-inline constexpr std::array<DamageRule, 10> damage_rules{
-    {{"fracture_toughness", [](auto& damage) { return damage.fracture_energy.has_value(); },
+inline constexpr std::array<DamageRule, 17> damage_rules{
+    {{"stretches", [](auto& damage) { return !is_given_by_table(damage); },
+      "is for the law \"table\""},
+     {"forces", [](auto& damage) { return !is_given_by_table(damage); },
+      "is for the law \"table\""},
+     {"fracture_energy", is_given_by_table, "follows from stretches and forces"},
+     {"fracture_toughness", is_given_by_table, "follows from stretches and forces"},
+     {"strength", is_given_by_table, "follows from stretches and forces"},
+     {"critical", is_given_by_table, "is the last of stretches"},
+     {"onset", is_given_by_table, "follows from stretches and forces"},
+     {"fracture_toughness", [](auto& damage) { return damage.fracture_energy.has_value(); },
       "is another way to give fracture_energy; give one of them"},
      {"strength", [](auto& damage) { return damage.law == DamageLaw::energy_density; },
       "is for the laws of stretches"},

@@ -35,7 +35,8 @@ enum class DamageLaw {
   tanh_continuous,
   linear,
   exponential,
-  blended
+  blended,
+  table  ///< the force is a given curve
 };
 
 /// Stretches of a law of bonds; those of `critical_stretch` are equal.
@@ -51,6 +52,8 @@ struct DamageSpecification {
   std::vector<std::string> no_fail{};  ///< sets whose points' bonds never fail
   double peak = 0.0;                   ///< s_p, of the blended law
   double hardening = 0.5;              ///< h, of the blended law
+  /// Pairs of the law table: stretches, ascending, and forces over the constant c; see ForceTable.
+  std::vector<double> stretches{}, forces{};
   /// In the place of `critical`: fracture energy of a plane crack, the mean over its directions
   /// [J/m2].
   std::optional<double> fracture_energy{};
@@ -84,7 +87,8 @@ struct DamageSpecification {
   }
   /// True if the law has a rate.
   [[nodiscard]] bool has_rate() const {
-    return softens() && law != DamageLaw::linear && law != DamageLaw::blended;
+    return softens() && law != DamageLaw::linear && law != DamageLaw::blended &&
+           law != DamageLaw::table;
   }
   /// Fraction of the range from onset to critical over which the force rises.
   [[nodiscard]] double rise() const {

@@ -139,7 +139,7 @@ void expect_same_conditions(const Body& a, const Body& b, double relative) {
   expect(a.conditions->environment(half)->eigenstretch,
          b.conditions->environment(half)->eigenstretch);
   EXPECT_EQ(a.points.sets, b.points.sets);
-  EXPECT_EQ(a.factors.stiffness, b.factors.stiffness);
+  expect(a.factors.stiffness, b.factors.stiffness);
 }
 
 TEST(Givens, AreTheSameBodyAsTheirExpressions) {
@@ -184,10 +184,10 @@ TEST(Givens, HaveTheUnitsOfTheCase) {
 
 TEST(Givens, MayStandBesideUnits) {
   int calls = 0;
-  const Case from = read_case(
-      "a.toml", with_texts("upper(y)", "factor(x, y)", "2e-3 m*field(x, load)", "total(load)"), {},
-      counting_givens(calls));
-  EXPECT_EQ(*from.supports[0].displacement[0], "2e-3*field(x, load)");
+  const std::string text = replaced_all(as_calls, "[\"field(x, load)\", \"free\"]",
+                                        "[\"2e-3 m*field(x, load)\", \"free\"]");
+  const Case from = read_case("a.toml", text, {}, counting_givens(calls));
+  EXPECT_EQ(*from.supports[1].displacement[0], "0.002*field(x, load)");
 }
 
 TEST(Givens, AreRefusedWithTheirNames) {

@@ -1,6 +1,7 @@
 /// Case files and users of the library are refused with the same words: the rules stand once.
 
 #include <fstream>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "cases/runner/input/case.hpp"
 #include "solvers/formulations/check_specification.hpp"
 #include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
 
 namespace peristat {
 namespace {
@@ -17,7 +19,7 @@ namespace {
 struct Rule {
   std::string name, key;  ///< of the case file
   std::string lines;      ///< after those of the plate
-  void (*change)(BodySpecification&);
+  std::function<void(BodySpecification&)> change;
 };
 
 const std::string plate = R"(
@@ -66,6 +68,21 @@ const std::string regions =
 void make_solid(BodySpecification& of, MaterialModel model) {
   of.material.model = model;
   of.material.poisson_ratio = 0.2;
+}
+/// A table of forces that is refused.
+Rule table_rule(const char* name, const char* key, const std::vector<double>& stretches,
+                const std::vector<double>& forces) {
+  const auto list = [](const std::vector<double>& numbers) {
+    std::string text;
+    for (const double number : numbers) text += (text.empty() ? "[" : ", ") + number_text(number);
+    return text + "]\n";
+  };
+  return {name, std::string("material.damage.") + key,
+          damage + "law = \"table\"\nstretches = " + list(stretches) + "forces = " + list(forces),
+          [=](auto& of) {
+            of.material.damage = {
+                .law = DamageLaw::table, .stretches = stretches, .forces = forces};
+          }};
 }
 void add_region(BodySpecification& of) { of.regions.push_back({"low", of.material}); }
 
@@ -138,6 +155,29 @@ INSTANTIATE_TEST_SUITE_P(
              [](auto& of) {
                of.material.damage = {.law = DamageLaw::critical_stretch, .critical = 0.02};
                of.material.damage.fracture_toughness = 1e6;
+             }},
+        table_rule("ForceThatGrowsTooMuch", "forces[2]", {0.01, 0.02, 0.03}, {0.01, 0.01, 0.016}),
+        table_rule("ForceOfNoElasticPart", "forces[0]", {0.01, 0.02}, {0.011, 0.0}),
+        table_rule("ForceThatComesBack", "forces[1]", {0.01, 0.02, 0.03}, {0.01, 0.0, 0.0}),
+        table_rule("ForceMissing", "forces", {0.01, 0.02, 0.03}, {0.01, 0.0}),
+        table_rule("ForceThatNeverFalls", "forces", {0.01, 0.02}, {0.01, 0.02}),
+        table_rule("StretchesThatDescend", "stretches[1]", {0.01, 0.005}, {0.01, 0.0}),
+        Rule{"CriticalOfATable", "material.damage.critical",
+             damage +
+                 "law = \"table\"\nstretches = [0.01, 0.02]\nforces = [0.01, 0]\ncritical = 0.02",
+             [](auto& of) {
+               of.material.damage = {.law = DamageLaw::table,
+                                     .critical = 0.02,
+                                     .stretches = {0.01, 0.02},
+                                     .forces = {0.01, 0.0}};
+             }},
+        Rule{"StretchesOfALinearLaw", "material.damage.stretches",
+             damage + "law = \"linear\"\nonset = 0.01\ncritical = 0.02\nstretches = [0.01, 0.02]",
+             [](auto& of) {
+               of.material.damage = {.law = DamageLaw::linear,
+                                     .onset = 0.01,
+                                     .critical = 0.02,
+                                     .stretches = {0.01, 0.02}};
              }},
         Rule{"PeakOfALinearLaw", "material.damage.peak",
              damage + "law = \"linear\"\nonset = 0.01\npeak = 0.015\ncritical = 0.02",

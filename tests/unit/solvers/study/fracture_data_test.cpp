@@ -95,6 +95,17 @@ TEST(FractureData, OfTheLinearLawHaveAClosedForm) {
               1e-8);
 }
 
+TEST(FractureData, OfATableAreItsOwn) {
+  DamageSpecification damage = law(DamageLaw::table);
+  damage.stretches = {1e-4, 2e-4, 4e-4};
+  damage.forces = {1e-4, 1.5e-4, 0.0};
+  const DamageSpecification found = with_stretches(damage, "m", scale);
+  EXPECT_DOUBLE_EQ(found.onset, 1e-4);
+  EXPECT_EQ(found.critical, 4e-4);
+  EXPECT_DOUBLE_EQ(peak_force(found), 1.5e-4);
+  EXPECT_NEAR(total_work(found), (0.5 + 1.25 + 1.5) * 1e-8, 1e-22);
+}
+
 std::string refusal(const DamageSpecification& damage) {
   try {
     static_cast<void>(with_stretches(damage, "m", scale));

@@ -1,6 +1,7 @@
 #include "src/materials/cpd_tear.hpp"
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -12,12 +13,16 @@ namespace peristat {
 namespace {
 
 constexpr double spacing = 2e-3;
-const std::vector<AnyLaw> laws{{CriticalStretch{0.02}},
-                               {TanhDegradation{0.01, 0.02, 3.0}},
-                               {TanhDegradation::continuous(0.01, 0.02, 20.0)},
-                               {ForceEnvelope{0.01, 0.02}},
-                               {ForceEnvelope{1e-4, 0.02, 10.0}},
-                               {ForceEnvelope{0.005, 0.02, 0.0, 0.4, 0.5}}};
+const std::vector<AnyLaw> laws{
+    {CriticalStretch{0.02}},
+    {TanhDegradation{0.01, 0.02, 3.0}},
+    {TanhDegradation::continuous(0.01, 0.02, 20.0)},
+    {ForceEnvelope{0.01, 0.02}},
+    {ForceEnvelope{1e-4, 0.02, 10.0}},
+    {ForceEnvelope{0.005, 0.02, 0.0, 0.4, 0.5}},
+    {ForceTable{std::make_shared<const ForceCurve>(std::vector{0.005, 0.011, 0.013, 0.02},
+                                                   std::vector{0.005, 0.008, 0.004, 0.001}),
+                0.02}}};
 
 double thickness(int dimension) { return dimension == 2 ? 0.5 : 1.0; }
 

@@ -2,6 +2,7 @@
 #include "src/potentials/degraded.hpp"
 
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -42,6 +43,19 @@ ForceEnvelope example<ForceEnvelope>() {
   return {onset, critical, 2.0, 0.3, 0.4};
 }
 
+/// A force that rises on a lower slope, falls in two parts, and jumps to zero at the end.
+const std::vector<double> stretches_of_table{onset, 0.017, 0.019, critical},
+    forces_of_table{onset, 0.0163, 0.012, 0.004};
+
+ForceTable table_of(const std::vector<double>& stretches, const std::vector<double>& forces) {
+  return {std::make_shared<const ForceCurve>(stretches, forces), stretches.back()};
+}
+
+template <>
+ForceTable example<ForceTable>() {
+  return table_of(stretches_of_table, forces_of_table);
+}
+
 /// Numerical integral of T phi_0' from a to b by the composite midpoint rule with Richardson's
 /// extrapolation; neither end nor the points meet a jump of T, nor cells a kink.
 template <class Law, class Whole = Harmonic>
@@ -50,6 +64,13 @@ double work_between(const Law& law, double a, double b, const Whole& whole = {1.
     const double kink = law.peak();
     if (a < kink && kink < b)
       return work_between(law, a, kink, whole) + work_between(law, kink, b, whole);
+  }
+  if constexpr (requires { law.curve; }) {
+    for (const ForceCurve::Knot& knot : law.curve->knots()) {
+      const double kink = knot.stretch * law.critical();
+      if (a * (1.0 + 1e-12) < kink && kink < b * (1.0 - 1e-12))
+        return work_between(law, a, kink, whole) + work_between(law, kink, b, whole);
+    }
   }
   const auto midpoint = [&](int cells) {
     double sum = 0.0;
@@ -76,8 +97,8 @@ class EveryDegradation<Degraded<Law, Whole>> : public ::testing::Test {
 };
 using Degradations =
     ::testing::Types<Degraded<CriticalStretch>, Degraded<TanhDegradation>, Degraded<ForceEnvelope>,
-                     Degraded<CriticalStretch, Stiffening>, Degraded<TanhDegradation, Stiffening>,
-                     Degraded<ForceEnvelope, Stiffening>>;
+                     Degraded<ForceTable>, Degraded<CriticalStretch, Stiffening>,
+                     Degraded<TanhDegradation, Stiffening>, Degraded<ForceEnvelope, Stiffening>>;
 TYPED_TEST_SUITE(EveryDegradation, Degradations);
 
 TYPED_TEST(EveryDegradation, FirstIsDerivativeOfValueInLoadingAndUnloading) {
@@ -292,6 +313,55 @@ TEST(ForceEnvelope, NeverJumpsAndLosesIntegrityAllTheWay) {
       EXPECT_LT(now, last);
       last = now;
     }
+  }
+}
+
+TEST(ForceTable, GoesThroughItsPairs) {
+  const ForceTable law = example<ForceTable>();
+  for (std::size_t k = 0; k + 1 < stretches_of_table.size(); ++k) {
+    const double s = stretches_of_table[k], t = stretches_of_table[k + 1];
+    EXPECT_NEAR(s * law.integrity(s), forces_of_table[k], 1e-16);
+    EXPECT_NEAR(0.5 * (s + t) * law.integrity(0.5 * (s + t)),
+                0.5 * (forces_of_table[k] + forces_of_table[k + 1]), 1e-16);
+  }
+  const double last = std::nextafter(critical, 0.0);
+  EXPECT_NEAR(last * law.integrity(last), 0.004, 1e-12) << "the force jumps at the end";
+  EXPECT_EQ(law.integrity(critical), 0.0);
+  EXPECT_EQ(law.onset(), onset);
+  EXPECT_DOUBLE_EQ(law.peak_force(), 0.0163);
+  // Trapezoids.
+  EXPECT_NEAR(law.work(Harmonic{1.0}, critical),
+              0.5 * onset * onset + 0.5e-3 * 0.0323 + 1e-3 * 0.0283 + 0.5e-3 * 0.016, 1e-17);
+  EXPECT_EQ(law.work(Harmonic{1.0}, 2.0 * critical), law.work(Harmonic{1.0}, critical));
+}
+
+TEST(ForceTable, OfTwoPairsIsTheLinearLaw) {
+  const ForceEnvelope linear{onset, critical};
+  const ForceTable table = table_of({onset, critical}, {onset, 0.0});
+  for (const double kappa : {0.0, 0.0165, 0.019}) {
+    for (int k = 1; k < 200; ++k) {
+      const double s = 1.2 * critical * k / 200.0;
+      const auto a = Degraded<ForceEnvelope>{2.0, linear}(s, kappa);
+      const auto b = Degraded<ForceTable>{2.0, table}(s, kappa);
+      EXPECT_NEAR(a.value, b.value, 1e-15 * onset);
+      EXPECT_NEAR(a.first, b.first, 1e-14 * onset);
+      EXPECT_NEAR(a.second, b.second, 1e-12);
+    }
+  }
+}
+
+TEST(ForceTable, IsElasticUpToTheLastPairOfTheElasticPart) {
+  const ForceTable law = table_of({0.01, 0.012, 0.02}, {0.01, 0.012 * (1.0 - 1e-7), 0.0});
+  EXPECT_DOUBLE_EQ(law.onset(), 0.012);
+  EXPECT_EQ(law.integrity(0.012), 1.0);
+  EXPECT_LT(law.integrity(0.0121), 1.0);
+}
+
+TEST(ForceTable, KeepsItsFormBetweenOtherStretches) {
+  const ForceTable law = example<ForceTable>(), twice = law.between(2.0 * onset, 2.0 * critical);
+  for (const double s : {0.0165, 0.0183, 0.0199}) {
+    EXPECT_DOUBLE_EQ(twice.integrity(2.0 * s), law.integrity(s));
+    EXPECT_NEAR(2.0 * twice.slope(2.0 * s) / law.slope(s), 1.0, 1e-12);
   }
 }
 

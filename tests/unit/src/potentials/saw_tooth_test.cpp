@@ -1,4 +1,6 @@
 #include <cmath>
+#include <memory>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -12,11 +14,16 @@ struct Named {
   AnyBondLaw law;
 };
 
-const Named laws[] = {{"tanh", {TanhDegradation{0.015, 0.02, 3.0}}},
-                      {"continuous", {TanhDegradation::continuous(0.01, 0.03, 2.0)}},
-                      {"linear", {ForceEnvelope{0.01, 0.04}}},
-                      {"exponential", {ForceEnvelope{0.01, 0.08, 5.0}}},
-                      {"blended", {ForceEnvelope{0.01, 0.05, 0.0, 0.3, 0.4}}}};
+const Named laws[] = {
+    {"tanh", {TanhDegradation{0.015, 0.02, 3.0}}},
+    {"continuous", {TanhDegradation::continuous(0.01, 0.03, 2.0)}},
+    {"linear", {ForceEnvelope{0.01, 0.04}}},
+    {"exponential", {ForceEnvelope{0.01, 0.08, 5.0}}},
+    {"blended", {ForceEnvelope{0.01, 0.05, 0.0, 0.3, 0.4}}},
+    {"table",
+     {ForceTable{std::make_shared<const ForceCurve>(std::vector{0.01, 0.015, 0.03, 0.05},
+                                                    std::vector{0.01, 0.012, 0.004, 0.001}),
+                 0.05}}}};
 
 const SawTooth& teeth_of(const AnyBondLaw& law) { return std::get<SawTooth>(law.law); }
 

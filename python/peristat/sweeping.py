@@ -138,7 +138,7 @@ def _solve_aside(case, threads, overwrite):
     package = str(pathlib.Path(__file__).resolve().parents[1])
     path = os.pathsep.join(filter(None, [package, os.environ.get("PYTHONPATH")]))
     done = subprocess.run(
-        [sys.executable, "-c", "from peristat.sweep import _solve_told; _solve_told()"],
+        [sys.executable, "-c", "from peristat.sweeping import _solve_told; _solve_told()"],
         input=told,
         capture_output=True,
         text=True,
