@@ -141,7 +141,7 @@ axes.legend();
 # mode `adaptive` for large bodies; `ps.sweep(..., jobs=2)` runs bodies side by side.
 
 # %%
-assert worst < 1e-9
+assert worst < 1e-6
 for points in lengths:
     error = peaks[points].std(ddof=1) / np.sqrt(bars)
     assert abs(peaks[points].mean() - means[points]) < 3 * error
