@@ -14,6 +14,7 @@ from .results import Results as Results
 from .results import open_results as open_results
 from .run import Run as Run
 from .run import resume as resume
+from .steps import Step as Step
 from .steps import Steps as Steps
 from .sweeping import Sweep as Sweep
 from .sweeping import sweep as sweep

@@ -35,8 +35,8 @@ class Case(CaseTable):
         case.material.youngs_modulus = "200 GPa"
 
     Args:
-        name: stands for the case in messages and in the default results folder, results/NAME; the
-            default is the name of the script.
+        name: stands for the case in messages, pictures (as its title) and the default results
+            folder, results/NAME; the default is the name of the script.
         given_points: `Points` in the place of a lattice or a file.
         **values: keys and tables of the case.
 
@@ -44,8 +44,9 @@ class Case(CaseTable):
     """
 
     def __init__(self, name: str | None = None, /, given_points: "Points | None" = None, **values: Any) -> None:
-        self._start(pathlib.Path.cwd() / f"{_checked_name(name)} (Python)", given_points)
-        super().__init__(_schema.document(), "", values)
+        name = _checked_name(name)
+        self._start(pathlib.Path.cwd() / f"{name} (Python)", given_points)
+        super().__init__(_schema.document(), "", {"title": name, **values})
 
     def _start(self, file, points=None):
         private = dict(_file=file, _text=None, _unchanged=None, _settings=[], _points=points)

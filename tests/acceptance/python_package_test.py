@@ -1,8 +1,11 @@
 """The package `peristat`: cases, bodies, runs, steps, callbacks, functions, points, sweeps, and what is refused."""
 
+import contextlib
 import gc
+import io
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -515,6 +518,28 @@ class TestLaw(InFolder):
         case = strip()
         case.material.damage = ps.sampled_law(lambda s: s + (s - 1e-3) ** 2, 1e-3, 2e-3)
         self.assertRefuses(case.body, "material.damage")
+
+
+class TestPages(InFolder):
+    def blocks(self, text):
+        return re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+    def test_the_blocks_of_the_page_run(self):
+        text = (ROOT / "docs/python.md").read_text("utf-8").partition("\n## Results\n")[0]
+        pathlib.Path("cases").symlink_to(ROOT / "cases")
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            exec(compile("\n".join(self.blocks(text)), "docs/python.md", "exec"), {})
+        self.assertIn("fracture_energ", said.getvalue())  # of the last block but one
+
+    def test_the_script_of_the_readme_tears_a_plate(self):
+        (script,) = self.blocks((ROOT / "README.md").read_text("utf-8"))
+        self.assertLessEqual(len(script.splitlines()), 25)
+        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": str(ROOT / "python"), "MPLBACKEND": "Agg"})  # fmt: skip
+        self.assertIn("peak 2.41 kN, status completed", done.stdout, done.stderr)
+        for picture in ("torn_plate.png", "curve.png"):
+            self.assertGreater(pathlib.Path(picture).stat().st_size, 10_000)
 
 
 class TestMemory(InFolder):
