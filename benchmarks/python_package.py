@@ -75,17 +75,17 @@ def seconds_of_run(folder, count=20):
     return min(times)
 
 
-def cost_of_callbacks(folder, steps=5000):
+def cost_of_callbacks(folder, steps=500, turns=30):
     """Time of a step without a callback, and what an empty one and one that reads a field add [s]."""
     body, called = bar(steps).body(), []
     callbacks = [None, lambda step: called.append(step.load), lambda step: step.displacement]
     times = [[], [], []]
-    for turn in range(5):  # in turn, so that a busy machine slows all alike
+    for turn in range(turns):  # in turn, so that a busy machine slows all alike
         for kind, on_step in enumerate(callbacks):
             start = time.perf_counter()
             body.solve(output=folder / f"steps-{turn}-{kind}", quiet=True, on_step=on_step, threads=1)
             times[kind].append(time.perf_counter() - start)
-    assert len(called) >= 5 * steps, len(called)
+    assert len(called) >= turns * steps, len(called)
     plain, counted, copied = (min(each) / steps for each in times)
     return plain, counted - plain, copied - plain
 
