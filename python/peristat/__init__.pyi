@@ -8,11 +8,13 @@ from .dial import Dial as Dial
 from .errors import InputError as InputError
 from .errors import MachineError as MachineError
 from .errors import MemoryError as MemoryError
+from .law import sampled_law as sampled_law
 from .points import Points as Points
 from .results import Results as Results
 from .results import open_results as open_results
 from .run import Run as Run
 from .run import resume as resume
+from .steps import Step as Step
 from .steps import Steps as Steps
 from .sweeping import Sweep as Sweep
 from .sweeping import sweep as sweep

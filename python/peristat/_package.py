@@ -21,18 +21,10 @@ def load_core() -> Any:
     if name in sys.modules:
         return sys.modules[name]
     file = _core_file()
-    # Read once, when the library of threads is loaded: threads that wait spin for microseconds.
-    spins = "OMP_WAIT_POLICY" not in os.environ and "GOMP_SPINCOUNT" not in os.environ
-    if spins:
-        os.environ["GOMP_SPINCOUNT"] = "1000"
-    try:
-        loader = importlib.machinery.ExtensionFileLoader(name, str(file))
-        spec = importlib.util.spec_from_file_location(name, file, loader=loader)
-        core = importlib.util.module_from_spec(spec)
-        loader.exec_module(core)
-    finally:
-        if spins:
-            del os.environ["GOMP_SPINCOUNT"]
+    loader = importlib.machinery.ExtensionFileLoader(name, str(file))
+    spec = importlib.util.spec_from_file_location(name, file, loader=loader)
+    core = importlib.util.module_from_spec(spec)
+    loader.exec_module(core)
     sys.modules[name] = core
     if IN_SOURCES:  # builds modules that are missing
         os.environ.setdefault("PERISTAT_LAUNCHER", str(SOURCES / "peristat"))

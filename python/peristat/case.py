@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 else:
     CaseTable = tables.Table
 
-_PRIVATE = ("_file", "_name", "_text", "_unchanged", "_settings", "_functions", "_points")
+_PRIVATE = ("_file", "_text", "_unchanged", "_settings", "_functions", "_points")
 
 
 class Case(CaseTable):
@@ -35,8 +35,8 @@ class Case(CaseTable):
         case.material.youngs_modulus = "200 GPa"
 
     Args:
-        name: stands for the case in messages and in the default results folder, results/NAME; the
-            default is the name of the script.
+        name: stands for the case in messages, pictures (as its title) and the default results
+            folder, results/NAME; the default is the name of the script.
         given_points: `Points` in the place of a lattice or a file.
         **values: keys and tables of the case.
 
@@ -44,8 +44,9 @@ class Case(CaseTable):
     """
 
     def __init__(self, name: str | None = None, /, given_points: "Points | None" = None, **values: Any) -> None:
-        self._start(pathlib.Path.cwd() / f"{_checked_name(name)} (Python)", given_points)
-        super().__init__(_schema.document(), "", values)
+        name = _checked_name(name)
+        self._start(pathlib.Path.cwd() / f"{name}.toml", given_points)
+        super().__init__(_schema.document(), "", {"title": name, **values})
 
     def _start(self, file, points=None):
         private = dict(_file=file, _text=None, _unchanged=None, _settings=[], _points=points)
@@ -56,7 +57,11 @@ class Case(CaseTable):
     @property
     def name(self) -> str:
         """Name of the case in messages and in the default results folder."""
-        return self._file.stem if self._is_file() else self._file.name.removesuffix(" (Python)")
+        return self._file.stem
+
+    def _place(self):
+        """The file that the case stands for: one that is there only if it is still the file's."""
+        return self._file if self._is_file() else self._file.with_name(f"{self.name} (Python)")
 
     def set(self, key: str, value: Any) -> None:
         """Sets the value of a dotted key, as `--set` does: `case.set("loading.steps", 50)`.
@@ -178,7 +183,7 @@ class Case(CaseTable):
         text = self.text()
         settings = self._settings if self._is_file() else []
         with self._located_errors():
-            return load_core().Case(str(self._file), text, settings, *self._givens())
+            return load_core().Case(str(self._place()), text, settings, *self._givens())
 
     def _givens(self):
         """Functions that the case uses, and its points."""

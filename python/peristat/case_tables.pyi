@@ -248,8 +248,8 @@ class Quadrature(Table):
     """model `lps` by collocation: normals of surfaces. `'numerical'`: from the neighbourhoods; `'exact'`: from the shapes' faces, at points that have one face and all of their bonds. Default: `'numerical'`. Allowed: `'numerical'`, `'exact'`"""
 
 class MaterialDamage(Table):
-    law: Literal["none", "critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended", "energy_density"]
-    """`'none'`: no damage, and the other keys of the table have no effect; `'critical_stretch'`: a bond is undamaged up to `critical` and then broken; `'tanh'`: softening from `onset` to `critical` as published in [ADAPT], with jumps of (1 − tanh `rate`)/2 at both ends; `'tanh_continuous'`: the same law, rescaled so that it does not jump; `'linear'`: the force falls linearly from `onset` to zero at `critical`; `'exponential'`: it falls exponentially, without a jump at `critical`; `'blended'`: it rises on a lower slope from `onset` to `peak`, and then falls linearly; `'energy_density'`: a point fails at once and for good where its energy density exceeds `fracture_energy` / (2 δ); this law is for `kinematics = 'linear'`, and with `solver.operator = 'fft'` for all models. Default: `'none'`. Allowed: `'none'`, `'critical_stretch'`, `'tanh'`, `'tanh_continuous'`, `'linear'`, `'exponential'`, `'blended'`, `'energy_density'`"""
+    law: Literal["none", "critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended", "table", "energy_density"]
+    """`'none'`: no damage, and the other keys of the table have no effect; `'critical_stretch'`: a bond is undamaged up to `critical` and then broken; `'tanh'`: softening from `onset` to `critical` as published in [ADAPT], with jumps of (1 − tanh `rate`)/2 at both ends; `'tanh_continuous'`: the same law, rescaled so that it does not jump; `'linear'`: the force falls linearly from `onset` to zero at `critical`; `'exponential'`: it falls exponentially, without a jump at `critical`; `'blended'`: it rises on a lower slope from `onset` to `peak`, and then falls linearly; `'table'`: the force is the curve of `stretches` and `forces`; `'energy_density'`: a point fails at once and for good where its energy density exceeds `fracture_energy` / (2 δ); this law is for `kinematics = 'linear'`, and with `solver.operator = 'fft'` for all models. Default: `'none'`. Allowed: `'none'`, `'critical_stretch'`, `'tanh'`, `'tanh_continuous'`, `'linear'`, `'exponential'`, `'blended'`, `'table'`, `'energy_density'`"""
     fracture_energy: Quantity
     """$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` follows from it. `cpd` takes it at horizon ratios up to 12 in 2D, 3.2 in 3D [J/m2]. Default: none. Allowed: positive"""
     fracture_toughness: Quantity
@@ -266,6 +266,10 @@ class MaterialDamage(Table):
     """`blended`: slope of the force between `onset` and `peak`, relative to that of the undamaged bond [1]. Default: 0.5. Allowed: 0 to 0.99"""
     rate: Quantity
     """tanh laws: $\\beta$, how strongly the softening is concentrated midway between the two stretches; `exponential`: how much more steeply the force falls at first [1]. Default: 3. Allowed: 0.1 to 50"""
+    stretches: List
+    """`table`: stretches, ascending; the first ends the elastic part, at the last one the bond breaks [1]. required with law `table`. Allowed: list of numbers; 1e-9 to 1000"""
+    forces: List
+    """`table`: force of a bond at each of the `stretches` over its constant $c$, so that the first is the first stretch; linear in between. Force over stretch must not grow. The last may be 0 [1]. required with law `table`. Allowed: list of numbers"""
     no_fail: List
     """sets of points whose bonds stay elastic at any stretch, including bonds to points outside the sets. Default: none. Allowed: list of names of sets and layers"""
 

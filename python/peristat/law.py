@@ -1,11 +1,17 @@
 """A law of bonds from a function of NumPy."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy
+from numpy.typing import ArrayLike
 
 from .errors import input_error
 
 
-def sampled_law(force, elastic_until, breaks_at, samples=200):
+def sampled_law(
+    force: Callable[[numpy.ndarray], ArrayLike], elastic_until: float, breaks_at: float, samples: int = 200
+) -> dict[str, Any]:
     """The keys of `material.damage` for a law that is given as a function: law "table".
 
         case.material.damage = ps.sampled_law(lambda s: 1e-4 * numpy.exp(-(s - 1e-4) / 3e-4), 1e-4, 2e-3)

@@ -5,9 +5,13 @@ import threading
 import weakref
 from typing import TYPE_CHECKING, Any
 
+from ._package import load_core
+
 if TYPE_CHECKING:
     from ._core import Step
     from .run import Run
+else:
+    Step = load_core().Step
 
 
 class Steps:

@@ -128,7 +128,7 @@ def _solve_aside(case, threads, overwrite):
     """Solves a case in a process of its own."""
     told = json.dumps(
         {
-            "file": str(case._file),
+            "file": str(case._place()),
             "text": case.text(),
             "settings": case._settings if case._is_file() else [],
             "threads": threads,

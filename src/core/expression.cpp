@@ -209,7 +209,7 @@ struct Expression::Parser {
       const std::size_t open = plain.find_first_not_of(' ', end);
       end = take_call(plain, known->first, known->second, open);
       std::string name;
-      do name = "_" + std::to_string(number++);
+      do name = std::string("_") + std::to_string(number++);  // GCC 12 warns of the shorter form
       while (parser.GetVar().contains(name) || functions->contains(name));
       if (name.size() > end - begin) refuse("has too many calls of given functions");
       parser.DefineVar(name, &calls.back().value);

@@ -1,8 +1,12 @@
 """The package `peristat`: cases, bodies, runs, steps, callbacks, functions, points, sweeps, and what is refused."""
 
+import contextlib
 import gc
+import io
+import math
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -83,6 +87,15 @@ class TestSameAsCommandLine(InFolder):
         found = [line for line in changed.resolved().splitlines() if not line.startswith("title")]
         self.assertEqual([line for line in found if "directory" not in line],
                          [line for line in expected if "directory" not in line])  # fmt: skip
+
+    def test_a_changed_file_goes_on_from_python(self):
+        case = strip()
+        case.save("strip.toml")
+        loaded = ps.load_case("strip.toml")
+        loaded.support[1].displacement[0] = "0.01 mm*load"  # in place
+        run = loaded.solve(quiet=True, on_step=lambda step: step.number == 2 and step.stop())
+        self.assertEqual(run.resume(quiet=True).history["step"][-1], 4)
+        self.assertAlmostEqual(run.reload().field("displacement").max(), 1e-5)
 
     def test_settings_of_a_loaded_case_are_those_of_the_command_line(self):
         case = ps.load_case(ROOT / "cases/cantilever/beam.toml")
@@ -243,6 +256,30 @@ class TestFunctions(InFolder):
         run = case.solve(quiet=True, on_step=lambda step: step.number == 2 and step.stop("enough"))
         self.assertRefuses(lambda: ps.resume(run.path, quiet=True), "python_lambda")
         self.assertEqual(run.resume(quiet=True).history["step"][-1], 4)
+
+    def test_a_run_does_not_go_on_with_another_function(self):
+        case = strip()
+        case.support[1].displacement = [lambda load: 2e-5 * load, "0"]
+        run = case.solve(quiet=True, on_step=lambda step: step.number == 2 and step.stop())
+        other = strip()
+        other.support[1].displacement = [lambda load: 3e-5 * load, "0"]
+        self.assertRefuses(lambda: ps.resume(run.path, case=other, quiet=True), "functions", "5e-06 m")
+
+    def test_functions_of_time_move_a_body_as_their_expressions_do(self):
+        case = ps.Case("bar", dimension=1)
+        case.lattice = {"spacing": 0.01, "area": 1e-4}
+        case.lattice.add_shape(add="box", min=[0.0], max=[1.0])
+        case.lattice.add_layer(name="left", side="x-")
+        case.lattice.add_layer(name="right", side="x+")
+        case.material = {"youngs_modulus": 2e11, "density": 8000.0}
+        case.add_support(set="left", displacement=["1e-4*sin(2e4*t)"])
+        case.add_load(set="right", body_force=["1e8*t/1e-4"])
+        case.solver.mode = "dynamics"
+        case.dynamics = {"end_time": 2e-4}
+        given = case.copy()
+        given.support[0].displacement = [lambda t: 1e-4 * math.sin(2e4 * t)]
+        given.load[0].body_force = [lambda t: 1e8 * t / 1e-4]
+        np.testing.assert_array_equal(case.solve(quiet=True).displacement(), given.solve(quiet=True).displacement())
 
     def test_an_exception_in_a_function_of_a_later_step_reaches_the_caller(self):
         case = strip()
@@ -515,6 +552,28 @@ class TestLaw(InFolder):
         case = strip()
         case.material.damage = ps.sampled_law(lambda s: s + (s - 1e-3) ** 2, 1e-3, 2e-3)
         self.assertRefuses(case.body, "material.damage")
+
+
+class TestPages(InFolder):
+    def blocks(self, text):
+        return re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+    def test_the_blocks_of_the_page_run(self):
+        text = (ROOT / "docs/python.md").read_text("utf-8").partition("\n## Results\n")[0]
+        pathlib.Path("cases").symlink_to(ROOT / "cases")
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            exec(compile("\n".join(self.blocks(text)), "docs/python.md", "exec"), {})
+        self.assertIn("fracture_energ", said.getvalue())  # of the last block but one
+
+    def test_the_script_of_the_readme_tears_a_plate(self):
+        (script,) = self.blocks((ROOT / "README.md").read_text("utf-8"))
+        self.assertLessEqual(len(script.splitlines()), 25)
+        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True,
+                              env={**os.environ, "PYTHONPATH": str(ROOT / "python"), "MPLBACKEND": "Agg"})  # fmt: skip
+        self.assertIn("peak 2.41 kN, status completed", done.stdout, done.stderr)
+        for picture in ("torn_plate.png", "curve.png"):
+            self.assertGreater(pathlib.Path(picture).stat().st_size, 10_000)
 
 
 class TestMemory(InFolder):

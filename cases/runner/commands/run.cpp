@@ -180,6 +180,7 @@ class CaseRun {
       earlier_results_ = earlier_->results(support_sets_, probes_, further_.lines);
       earlier_->load(numbering());
       require_body_of(*earlier_);
+      require_functions_of(*earlier_);
       earlier_->find_followers(study_->equations().assembler());
     }
     count(*body_, study_->free(), options_, ranks_, summary_);
@@ -235,6 +236,29 @@ class CaseRun {
                             body_->conditions->prescribed()))) {
       refuse("its checkpoint belongs to another body");
     }
+  }
+
+  /// Given functions may have changed since the run began: the supports must stand where it left
+  /// them.
+  /// @throws InputError
+  void require_functions_of(const EarlierRun& earlier) const {
+    if (from_.givens->functions.empty()) return;
+    const State& accepted = earlier.checkpoint().path.accepted;
+    std::vector<double> supported = accepted.displacement;
+    body_->conditions->prescribe(load_point(accepted), supported);
+    double largest = 0.0, difference = 0.0;
+    for (std::size_t dof = 0; dof < supported.size(); ++dof) {
+      largest = std::max(largest, std::abs(accepted.displacement[dof]));
+      difference = std::max(difference, std::abs(supported[dof] - accepted.displacement[dof]));
+    }
+    constexpr double round_off = 1e-9;
+    if (difference <= round_off * largest) return;
+    throw InputError(
+        "", "",
+        fmt::format("the functions of its supports are others than when it ran: at the "
+                    "load that it has reached they differ by {:.3g} m",
+                    difference),
+        earlier.directory().string());
   }
 
   void open_results() {

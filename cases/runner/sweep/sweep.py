@@ -15,8 +15,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-# The package peristat: python/ is higher up in the sources than in an installation.
-sys.path[1:1] = [str(folder / "python") for folder in Path(__file__).resolve().parents if (folder / "python/peristat").is_dir()]
+# The package peristat, in the sources or in an installation.
+places = (folder / name for folder in Path(__file__).resolve().parents for name in ("python", "lib/python3/dist-packages"))
+sys.path[1:1] = [str(place) for place in places if (place / "peristat").is_dir()]
 
 from computed import Keys, compute, split_computed
 from jobs import FolderLock, Jobs, bounded, estimated_memory

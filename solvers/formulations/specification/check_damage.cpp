@@ -34,7 +34,7 @@ void check_table(const DamageSpecification& damage, const std::string& table) {
           "needs a force for each of the " + std::to_string(s.size()) + " stretches; there are " +
               std::to_string(f.size()));
   for (std::size_t k = 0; k < s.size(); ++k) {
-    const std::string number = "[" + std::to_string(k) + "]";
+    const std::string number = std::string("[") + std::to_string(k) + "]";
     require_within(s[k], 1e-9, 1e3, table + "stretches" + number);
     require(k == 0 || s[k] > s[k - 1], table + "stretches" + number, number_text(s[k]),
             "must be larger than the one before, " + number_text(k == 0 ? 0.0 : s[k - 1]));
