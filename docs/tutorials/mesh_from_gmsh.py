@@ -157,7 +157,8 @@ axes.legend();
 # %% [markdown]
 # The end moves 4.2, 2.4 and 1.2 % less than that of finite elements for elements of 2, 1 and 0.5 mm: the difference
 # halves with the size. Part of it is that the supported and the loaded points stand half an element inside. With
-# `surface_correction="volume"` it is 3.6 % at 0.5 mm, without a correction -1.4 %.
+# `surface_correction="volume"` it is 3.6 % at 0.5 mm, without a correction -1.4 %. The picture's stresses of elements at
+# a surface are too small, since they miss a part of their neighbourhood (the field `missing_neighbourhood`).
 #
 # **For your own problem.** Any script of Gmsh will do, if it names the physical groups and makes elements of one size;
 # so will a `.geo` file, or files of Abaqus, VTK, Exodus and MED. Triangles and tetrahedra take
