@@ -55,6 +55,7 @@ def execute(made: nbformat.NotebookNode) -> None:
 
     os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(PACKAGE), os.environ.get("PYTHONPATH")]))
     os.environ |= {"OMP_WAIT_POLICY": "passive", "PYDEVD_DISABLE_FILE_VALIDATION": "1"}
+    os.environ.pop("MPLBACKEND", None)  # pictures belong into the notebook
     pictures = f"%config InlineBackend.print_figure_kwargs = {{'dpi': {DOTS_PER_INCH}, 'bbox_inches': 'tight'}}"
     made.cells.insert(0, nbformat.v4.new_code_cell(pictures))
     with tempfile.TemporaryDirectory() as folder:

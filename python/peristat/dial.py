@@ -17,9 +17,8 @@ class Dial:
     that a step that is cut finds the values between.
 
         opening = ps.Dial(0.0)
-        opening.turn_to(first_value, within=0.02)
-        for step in body.steps():
-            opening.turn_to(next_value, step, within=0.02)
+        for step in body.steps():  # step 0 is the body at rest
+            opening.turn_to(opening(step.load) + 1e-6, step, within=0.02)
     """
 
     def __init__(self, value: float = 0.0) -> None:
