@@ -279,7 +279,10 @@ class TestFunctions(InFolder):
         given = case.copy()
         given.support[0].displacement = [lambda t: 1e-4 * math.sin(2e4 * t)]
         given.load[0].body_force = [lambda t: 1e8 * t / 1e-4]
-        np.testing.assert_array_equal(case.solve(quiet=True).displacement(), given.solve(quiet=True).displacement())
+        # The sine of muParser and that of Python may differ in their last bit.
+        np.testing.assert_allclose(
+            given.solve(quiet=True).displacement(), case.solve(quiet=True).displacement(), rtol=1e-12
+        )
 
     def test_an_exception_in_a_function_of_a_later_step_reaches_the_caller(self):
         case = strip()
@@ -417,10 +420,12 @@ class TestRuns(InFolder):
         self.assertIn("interrupted", done.stdout, done.stderr)
 
     def test_another_thread_is_refused_and_the_first_goes_on(self):
-        ended = []
+        ended, begun = [], threading.Event()
         big = strip("big", "0.25 mm")
-        thread = threading.Thread(target=lambda: ended.append(big.solve(quiet=True).status))
+        solve = lambda: ended.append(big.solve(quiet=True, on_step=lambda _: begun.set()).status)  # noqa: E731
+        thread = threading.Thread(target=solve)
         thread.start()
+        begun.wait()
         body, refused = strip(), None
         while thread.is_alive() and not refused:
             try:
