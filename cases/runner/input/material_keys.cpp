@@ -49,7 +49,10 @@ Kind<std::vector<double>> numbers_of_curve() {
           [](const std::vector<double>& numbers, const Case&) {
             return array_text(numbers, toml_number);
           },
-          list_schema(number_schema(range, "1"), 2), "list of numbers", "1"};
+          list_schema(number_schema(range, "1"), 2),
+          "list of numbers",
+          "1",
+          ValueForm::number};
 }
 
 Table<DamageSpecification> damage_keys(const std::string& material) {
