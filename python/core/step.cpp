@@ -89,7 +89,10 @@ py::dict probes(const Step& step) {
 
 void bind_step(py::module_& module) {
   using Record = StepRecord;
-  py::class_<Step, std::shared_ptr<Step>>(module, "Step")
+  py::class_<Step, std::shared_ptr<Step>>(
+      module, "Step",
+      "An accepted step of a run. Its record stays; its fields can be read until the next step is "
+      "searched. Numbers are in SI units.")
       .def_property_readonly("number", of_record<&Record::step>, "Number of the step, from 0.")
       .def_property_readonly("load", of_record<&Record::load_factor>,
                              "Load factor, the first load parameter.")

@@ -60,6 +60,7 @@ def every_table(schema, path=""):
 def table_of(path):
     """A table of a new case, by attributes and `add_`."""
     table = ps.Case("keys")
+    del table.title
     for name in filter(None, path.split(".")):
         is_array = _schema.is_array_of_tables(table._schema["properties"][name])
         table = getattr(table, f"add_{name}")() if is_array else getattr(table, name)
