@@ -13,11 +13,11 @@ from . import _schema, tables, toml_text
 from ._package import load_core, thread_count
 from .errors import InputError, input_error
 from .functions import GivenFunctions
+from .points import Points
 
 if TYPE_CHECKING:
     from .body import Body
     from .case_tables import CaseTable
-    from .points import Points
     from .run import Run
     from .steps import Steps
 else:
@@ -43,8 +43,10 @@ class Case(CaseTable):
     Files that the case names are searched from the working folder; of a loaded case from its folder.
     """
 
-    def __init__(self, name: str | None = None, /, given_points: "Points | None" = None, **values: Any) -> None:
+    def __init__(self, name: str | None = None, /, given_points: Points | None = None, **values: Any) -> None:
         name = _checked_name(name)
+        if given_points is not None and not isinstance(given_points, Points):
+            raise input_error("given_points", repr(given_points)[:80], "must be peristat.Points")
         self._start(pathlib.Path.cwd() / f"{name}.toml", given_points)
         super().__init__(_schema.document(), "", {"title": name, **values})
 

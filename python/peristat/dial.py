@@ -1,6 +1,7 @@
 """A load that a program turns while a run goes on."""
 
 import bisect
+import math
 from typing import TYPE_CHECKING
 
 from .errors import input_error
@@ -37,8 +38,10 @@ class Dial:
         Settings beyond the load factor of the step are dropped; what the run has used stays.
 
         Raises:
-            InputError: `within` is not positive.
+            InputError: `within` is not positive, or the value is not finite.
         """
+        if not math.isfinite(value):
+            raise input_error("value", repr(value), "must be finite")
         if not within > 0.0:
             raise input_error("within", repr(within), "must be a positive part of the load factor")
         now = 0.0 if step is None else float(step.load)

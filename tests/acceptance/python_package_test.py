@@ -333,6 +333,7 @@ class TestPoints(InFolder):
         self.assertRefuses(lambda: ps.Points([[1, 2], [3, 4]], [1, 2, 3]), "volumes")
         self.assertRefuses(lambda: ps.Points([[1, 2], [3, 4]], 1, sets={"a": [5]}), "sets['a']")
         self.assertRefuses(lambda: self.cloud(volumes=-1e-9)[0].body(), "positive")
+        self.assertRefuses(lambda: ps.Case("list", given_points=[[0.0, 0.0]]), "given_points")
         case, _ = self.cloud()
         case.lattice.spacing = 1e-3
         self.assertRefuses(case.body, "")
@@ -504,6 +505,23 @@ class TestSteps(InFolder):
             reached.append(step.displacement[:, 0].max())
             pull.turn_to(wanted[step.number], step, within=0.1)
         np.testing.assert_allclose(reached, [0.0, *wanted[:10]], rtol=1e-12)
+
+    def test_wrong_settings_of_a_dial_are_refused(self):
+        self.assertRefuses(lambda: ps.Dial().turn_to(1.0, within=0.0), "within")
+        self.assertRefuses(lambda: ps.Dial().turn_to(float("nan"), within=0.1), "finite")
+
+    def test_a_loop_that_stays_open_ends_with_python(self):
+        script = """
+import sys
+sys.path[:0] = sys.argv[1:3]
+from python_package_test import strip
+steps = strip().steps(quiet=True, output="open")
+next(steps)
+"""
+        done = subprocess.run([sys.executable, "-c", script, ROOT / "python", ROOT / "tests/acceptance"],
+                              capture_output=True, text=True, timeout=100)  # fmt: skip
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(ps.open_results("open").status, "interrupted")
 
     def test_bodies_may_be_made_in_a_loop(self):
         for _ in strip().steps(quiet=True):
