@@ -32,6 +32,9 @@ def sampled_law(
     Raises:
         InputError: force(elastic_until) is another one, or the values are no such array.
     """
+    for name, stretch in (("elastic_until", elastic_until), ("breaks_at", breaks_at)):
+        if not numpy.isfinite(stretch):
+            raise input_error(name, repr(stretch), "must be a finite stretch")
     stretches = numpy.linspace(float(elastic_until), float(breaks_at), int(samples))
     forces = numpy.asarray(force(stretches), dtype=float)
     if forces.shape != stretches.shape:

@@ -44,6 +44,25 @@ std::string peak_text(const Path& path, const LoadPoint& at, double fall) {
          number_text(100.0 * fall) + " %";
 }
 
+/// Text that warns of a relaxed step that goes far beyond the load at which damage begins; empty:
+/// it does not.
+/// @param onset   distance in the stage from the accepted state to the onset of damage
+/// @param relaxed length of the relaxed step, likewise
+std::string overrun_text(const Path& path, double onset, double relaxed) {
+  constexpr double far = 2.0;  // times the load at the onset: no peak can be seen in between
+  const double stage = path.state().accepted.stage;
+  const double ratio = (stage + relaxed) / (stage + onset);
+  if (path.is_preloading() || ratio <= far) return "";
+  const Conditions& conditions = path.setting().conditions;
+  return "; damage begins at about load factor " +
+         number_text(conditions.load_factor(LoadPoint(stage + onset))) +
+         ", but the next step goes to " +
+         number_text(conditions.load_factor(LoadPoint(stage + relaxed))) +
+         ": a peak of the force between them is passed over; give more steps (relaxation.steps) or "
+         "a "
+         "smaller load";
+}
+
 /// Largest change of a set's reactions, as a fraction of the largest reaction.
 double largest_jump(const std::map<std::string, Coordinates>& before,
                     const std::map<std::string, Coordinates>& after) {
@@ -82,12 +101,15 @@ Advance HandOver::approach_damage(const ImplicitStep& step) {
   PathState& state = path_.state();
   const double before = path_.damaged().growth(state.accepted).utilisation;
   const double share = (1.0 - before) / (step.growth.utilisation - before);
-  const double rest = share_to_onset * std::min(share, 1.0) * step.attempted;
+  const double onset = std::min(share, 1.0) * step.attempted;
+  const double rest = share_to_onset * onset;
   const std::string why = bonds_text(step.growth.degrading) +
                           " would be damaged, the most stretched to " +
                           std::to_string(step.growth.utilisation) + " of its limit";
   const bool near = rest < relaxed_.increment().value() || state.hand_over.is_near_onset;
-  if (near || !implicit_.increment().can_cut_to(rest)) return hand_over(step, why);
+  if (near || !implicit_.increment().can_cut_to(rest)) {
+    return hand_over(step, why + overrun_text(path_, onset, relaxed_.increment().value()));
+  }
   state.hand_over.is_near_onset = true;
   implicit_.increment().cut_to(rest);
   path_.tell(step.attempt.at, {.increment = step.attempted,

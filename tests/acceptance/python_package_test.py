@@ -499,6 +499,7 @@ class TestSteps(InFolder):
         case = strip()
         case.loading.steps = 10
         case.support[1].displacement = [pull, "0"]
+        self.assertEqual(case.check().warnings, [])  # that nothing moves is not known before the run
         wanted = [1e-6 * k**2 for k in range(1, 12)]
         reached = []
         for step in case.steps(quiet=True):
@@ -572,6 +573,7 @@ class TestLaw(InFolder):
     def test_what_is_no_law_is_refused(self):
         self.assertRefuses(lambda: ps.sampled_law(lambda s: 2 * s, 1e-3, 2e-3), "elastic part")
         self.assertRefuses(lambda: ps.sampled_law(lambda s: s[:2], 1e-3, 2e-3), "shape")
+        self.assertRefuses(lambda: ps.sampled_law(lambda s: s, 1e-3, float("inf")), "breaks_at")
         case = strip()
         case.material.damage = ps.sampled_law(lambda s: s + (s - 1e-3) ** 2, 1e-3, 2e-3)
         self.assertRefuses(case.body, "material.damage")

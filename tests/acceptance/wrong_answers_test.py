@@ -46,6 +46,14 @@ displacement = [0, 0]
 
 
 class Damage(Folder):
+    def test_a_relaxed_step_far_beyond_the_onset_of_damage_is_told(self):
+        # Its strength is at 1e-4 m; steps are a fiftieth of the load.
+        for load, is_far in (("5e-4", False), ("0.2", True)):
+            decisions = self.results(ROW, f"support[1].displacement[0]={load}*load", "solver.mode=adaptive",
+                                     "loading.stop_below=0.2").table("decisions")  # fmt: skip
+            told = any("passed over" in row["reason"] for row in decisions)
+            self.assertEqual(told, is_far, decisions)
+
     def test_a_jump_that_would_tear_every_bond_at_once_is_followed_step_by_step(self):
         # One step asks for 22 times the strength: the supports' jump alone breaks all bonds across
         # it, and the torn body has no residual. No energy may be dissipated that no work has done.

@@ -467,8 +467,6 @@ Exit run(const Case& from, const RunOptions& options, const Communicator& ranks,
     const Failure failure = current_failure();
     if (ranks.count() > 1) give_way_to_first(ranks);
     results->fail(summary, failure.message);
-    // What a given function throws is its program's, which knows what to do.
-    if (failure.code == Exit::bug && !from.givens->none()) throw;
     if (ranks.count() > 1) {
       say_last_words(fmt::format("peristat: {}\n{}\n", failure.message, results->what_is_left()));
       ranks.abort(static_cast<int>(failure.code));

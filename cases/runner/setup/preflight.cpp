@@ -446,6 +446,7 @@ Preflight preflight_of(const Case& from, const Body& body, const Communicator& r
   add_materials(from, body, of);
   of.is_quasi_static = !from.dynamics.is_asked_for;
   of.is_controlled = !from.controls.empty();
+  of.has_functions = !from.givens->functions.empty();
   of.steps = from.loading.steps_to_entry() * std::max(1, int(body.conditions->programme().end()));
   if (!of.is_quasi_static) of.steps = 1;
   of.begins_moving = !from.initial.empty();

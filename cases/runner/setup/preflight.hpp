@@ -84,7 +84,8 @@ struct Preflight {
   std::string cross_section_key;        ///< "lattice.thickness"
   bool cross_section_is_given = false, cross_section_counts = false;
   bool is_quasi_static = true, is_controlled = false, may_fail = false;
-  int steps = 1;  ///< in all stages of the programme together
+  bool has_functions = false;  ///< of a program, which may set their values while the run goes on
+  int steps = 1;               ///< in all stages of the programme together
   std::vector<Division> divisions;
   std::vector<FeatureLength> lengths;
   std::vector<Opening> openings;

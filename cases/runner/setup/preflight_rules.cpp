@@ -99,7 +99,7 @@ void add_constant_values(const Preflight& of, Warnings& warnings) {
 
 void add_nothing_applied(const Preflight& of, Warnings& warnings) {
   const bool is_any =
-      of.is_controlled || of.begins_moving ||
+      of.is_controlled || of.begins_moving || of.has_functions ||
       std::ranges::any_of(of.applied, [](const auto& value) { return value.largest > 0.0; });
   if (is_any) return;
   warnings.emplace_back(

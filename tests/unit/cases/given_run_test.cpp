@@ -125,8 +125,12 @@ TEST_F(GivenRun, IsRefusedWithoutWhatWasGiven) {
 }
 
 TEST_F(GivenRun, PassesOnWhatAFunctionThrows) {
-  EXPECT_THROW(static_cast<void>(run(read("failed", givens_with(1e-3, 0.6)), quiet_, SoleRank())),
-               std::out_of_range);
+  const RunCompany company;
+  RunOptions in_company = quiet_;
+  in_company.company = &company;
+  EXPECT_THROW(
+      static_cast<void>(run(read("failed", givens_with(1e-3, 0.6)), in_company, SoleRank())),
+      std::out_of_range);
 }
 
 }  // namespace
