@@ -4,6 +4,7 @@
 
 #include "cases/runner/commands/case_schema.hpp"
 #include "cases/runner/commands/run.hpp"
+#include "cases/runner/input/case_file.hpp"
 #include "python/core/case_binding.hpp"
 #include "python/core/errors.hpp"
 #include "python/core/run_binding.hpp"
@@ -23,6 +24,8 @@ PYBIND11_MODULE(_core, module) {
   python::bind_step(module);
   python::bind_runs(module);
   module.def("versions", versions);
+  module.def(
+      "case_text", [](const std::string& file) { return read_case_text(file); }, py::arg("file"));
   module.def("schema", case_schema);
   module.def("fields", [] {
     std::vector<std::tuple<std::string, std::string, std::string>> all;

@@ -248,15 +248,12 @@ def load_case(file: str | os.PathLike[str]) -> Case:
         InputError: there is no such file, or it is no TOML.
     """
     file = pathlib.Path(file)
-    try:
-        text = file.read_text(encoding="utf-8")
-        values = tomllib.loads(text)
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise input_error("file", os.fspath(file), f"the case file can't be read: {reason}") from None
-    except tomllib.TOMLDecodeError:
-        load_core().Case(str(file), text, [], {}, None)  # names line and column
-        raise
+    text = load_core().case_text(str(file))
+    with _places_of(file, text):
+        try:
+            values = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            raise input_error("", "", str(error), str(file)) from None
     case = Case.__new__(Case)
     case._start(file)
     with _places_of(file, text):
