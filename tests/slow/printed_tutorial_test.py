@@ -56,7 +56,7 @@ class Square(PrintedTest):
         self.prints("Peak reaction {} N ([ADAPT]", square.peak("top", "y"), within=PEAK)
         self.prints("{} broken bonds in", square.summary["broken_bonds"], within=COUNTS)
         self.prints("broken bonds in {} steps", square.summary["steps"])
-        self.assertLess(abs(square.reaction("top", "y")), 1e-6 * square.peak("top", "y"))  # "then nothing"
+        self.assertLess(abs(square.reaction("top", "y")), 1e-6 * square.peak("top", "y"))  # "afterwards the reaction is zero"
 
     def test_bonds_do_not_depend_on_threads(self):
         one, two = run(SQUARE), run(SQUARE, threads=2)

@@ -71,5 +71,5 @@ class Shapes(PrintedTest):
         numpy.testing.assert_array_equal(numpy.asarray(Image.open(copy.replace(".py", ".png"))), shipped)
         pixels = [numpy.mean(shipped > 200), numpy.mean(shipped < 50)]
         self.page = "cases/regions/aggregates.toml"
-        self.assertAlmostEqual(pixels[0], 0.582, delta=5e-4)  # "58.2 % of the square as of the pixels"
+        self.assertAlmostEqual(pixels[0], 0.582, delta=5e-4)  # "58.2 % of the square and of the pixels"
         self.prints("% ({} % of the pixels)", 100 * pixels[1])
