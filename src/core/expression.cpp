@@ -209,10 +209,8 @@ struct Expression::Parser {
       const std::size_t open = plain.find_first_not_of(' ', end);
       end = take_call(plain, known->first, known->second, open);
       std::string name;
-      do {
-        name = "_";
-        name += std::to_string(number++);  // GCC 12 warns of "_" + std::to_string(...)
-      } while (parser.GetVar().contains(name) || functions->contains(name));
+      do name.assign(1, '_').append(std::to_string(number++));  // GCC 12 warns of "_" + ...
+      while (parser.GetVar().contains(name) || functions->contains(name));
       if (name.size() > end - begin) refuse("has too many calls of given functions");
       parser.DefineVar(name, &calls.back().value);
       plain.replace(begin, end - begin, name + std::string(end - begin - name.size(), ' '));
