@@ -119,7 +119,7 @@ def extension_of(beam: Verdict, lattice: Lattice, resistance: float) -> float:
     return low
 
 
-HEADING = ["| entry | reference | quantity | ours over it, from the coarsest to the finest spacing | at spacing 0 "
+HEADING = ["| entry | reference | quantity | peristat over reference, from the coarsest to the finest spacing | at spacing 0 "
            "| corrected | over lattices | allowed | |",
            "|---|---|---|---|---|---|---|---|---|"]  # fmt: skip
 
