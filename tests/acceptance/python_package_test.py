@@ -591,14 +591,36 @@ class TestPages(InFolder):
             exec(compile("\n".join(self.blocks(text)), "docs/python.md", "exec"), {})
         self.assertIn("fracture_energ", said.getvalue())  # of the last block but one
 
-    def test_the_script_of_the_readme_tears_a_plate(self):
-        (script,) = self.blocks((ROOT / "README.md").read_text("utf-8"))
+    def run_script(self, page):
+        (script,) = self.blocks((ROOT / page).read_text("utf-8"))
         self.assertLessEqual(len(script.splitlines()), 25)
-        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True,
+        return subprocess.run([sys.executable, "-c", script], capture_output=True, text=True,
                               env={**os.environ, "PYTHONPATH": str(ROOT / "python"), "MPLBACKEND": "Agg"})  # fmt: skip
+
+    def test_the_script_of_the_readme_varies_the_hole(self):
+        text = (ROOT / "README.md").read_text("utf-8")
+        (case,) = re.findall(r"^```toml\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+        pathlib.Path("plate.toml").write_text(case)
+        done = self.run_script("README.md")
+        peaks = re.findall(r"^radius \d mm: (\S+) kN", done.stdout, re.MULTILINE)
+        self.assertEqual(len(peaks), 3, done.stderr)
+        self.assertIn(f"prints peaks of {peaks[0]}, {peaks[1]} and {peaks[2]} kN", text)
+        self.assertIn(f"The plate bears {peaks[1]} kN", text)
+        self.assertIn(f"The plate bears {peaks[1]} kN", (ROOT / "docs/start/own-plate.md").read_text("utf-8"))
+        for picture in ("damage.png", "curve.png"):
+            self.assertGreater(pathlib.Path(picture).stat().st_size, 10_000)
+
+    def test_the_script_of_the_start_tears_a_plate(self):
+        done = self.run_script("docs/start/own-plate.md")
         self.assertIn("peak 2.41 kN, status completed", done.stdout, done.stderr)
+        self.assertIn("the plate bears 2.41 kN", (ROOT / "docs/start/own-plate.md").read_text("utf-8"))
         for picture in ("torn_plate.png", "curve.png"):
             self.assertGreater(pathlib.Path(picture).stat().st_size, 10_000)
+
+    def test_the_script_for_users_of_peridynamics_jl_runs(self):
+        pathlib.Path("cases").symlink_to(ROOT / "cases")
+        done = self.run_script("docs/how-to/from-peridynamics-jl.md")
+        self.assertGreater(float(done.stdout.splitlines()[-1]), 0, done.stderr)
 
 
 class TestMemory(InFolder):

@@ -188,7 +188,7 @@ class Cantilever(PrintedTest):
         self.within_percent("within {} % of it, because", plain, classical)
         self.within_percent("within {} % with quadrature", corrected, classical)
         self.prints('Reaction on "clamped": {} N up', plain.reaction("clamped", "y"))
-        self.prints("A cantilever of {} points in 3D", plain.summary["points"], page="README.md")
+        self.prints("A cantilever of {} points in 3D", plain.summary["points"], page="docs/features.md")
         self.prints("(beam {} and", -corrected.summary["probes"]["tip"][1], page="docs/architecture.md")
 
     def within_percent(self, phrase, result, classical):
