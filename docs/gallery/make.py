@@ -200,7 +200,7 @@ def animate(source, target):
     with Image.open(source) as animation:
         frames = [frame.convert("RGB").resize((720, round(720 * frame.height / frame.width)), Image.Resampling.LANCZOS)
                   for frame in ImageSequence.Iterator(animation)]  # fmt: skip
-        colours = frames[-1].quantize(40)  # the same in all frames, of which only changes are stored
+        colours = frames[-1].quantize(64)  # the same in all frames, of which only changes are stored
         frames = [frame.quantize(palette=colours, dither=Image.Dither.NONE) for frame in frames]
         pauses = [250] * (len(frames) - 1) + [2000]
         frames[0].save(target, save_all=True, append_images=frames[1:], duration=pauses, loop=0, optimize=True)
