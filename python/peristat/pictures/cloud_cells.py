@@ -25,6 +25,10 @@ class CloudCells:
         key = np.rint((polygons.corners - points.min(axis=0)) / (SAME * size) + 0.3).astype(np.int64)
         self._knot = np.unique((key[:, :, 0] << 32) + key[:, :, 1], return_inverse=True)[1].reshape(key.shape[:2])
 
+    @property
+    def polygons(self) -> Polygons:
+        return self._polygons
+
     def part(self, cracks, broken: np.ndarray, piece: np.ndarray) -> None:
         """Parts neighbours whose bond is broken (`broken`, count x 2) or meets a crack, or that belong to different
         pieces."""

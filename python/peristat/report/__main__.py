@@ -1,0 +1,11 @@
+"""The command `./peristat report`; it runs as a file, without any installed package."""
+
+import sys
+from pathlib import Path
+
+if not __package__:
+    sys.path[0] = str(Path(__file__).resolve().parents[2])
+
+from peristat.report.command import guarded
+
+sys.exit(guarded(sys.argv[1:]))

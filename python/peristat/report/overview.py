@@ -1,0 +1,44 @@
+"""The top of a run's page: how it ended, its size, and what the program warned of."""
+
+from ..pictures.style import number
+from .markup import escaped, items, paragraph
+
+ENDINGS = {
+    "completed": "completed",
+    "not_converged": "did not converge",
+    "inconsistent": "stopped: a state violates a balance",
+    "interrupted": "was interrupted",
+    "failed": "failed: the machine failed the run",
+    "running": "is still going",
+}
+
+
+def head(results, status: str) -> str:
+    reason = str(results.summary.get("reason", ""))
+    kind = "completed" if status == "completed" else "other"
+    ending = f"The run {ENDINGS.get(status, status)}"
+    facts = "".join(f"<li>{escaped(fact)}</li>" for fact in _facts(results))
+    return (f'<h1>{escaped(results.title)}</h1>\n<p class="ending {kind}">{escaped(ending)}{escaped(": " + reason if reason else ".")}</p>\n'
+            f'<ul class="facts">{facts}</ul>')  # fmt: skip
+
+
+def _facts(results) -> list[str]:
+    summary = results.summary
+    steps = sum(1 for step in results.history.get("step", []) if step > 0) if not results.is_of_motion else summary.get("steps")
+    known = [f"{results.dimension}D", f"{number(len(results.volume))} points", f"{number(results.spacing * 1e3)} mm between points"]
+    known += [f"{number(steps)} accepted steps"] if steps is not None else []
+    for name, words in (("bonds", "bonds"), ("triangles", "triangles"), ("tetrahedra", "tetrahedra"), ("broken_bonds", "broken bonds")):
+        if isinstance(summary.get(name), (int, float)) and summary[name]:
+            known.append(f"{number(summary[name])} {words}")
+    seconds = summary.get("seconds", {})
+    if isinstance(seconds, dict) and isinstance(seconds.get("total"), (int, float)):
+        known.append(f"{number(seconds['total'], 3)} s")
+    return known
+
+
+def warnings(results) -> str:
+    """Warnings of the preflight, and what the folder lacks."""
+    told = results.summary.get("warnings", [])
+    told = [str(sentence) for sentence in told] if isinstance(told, list) else []
+    none = "" if told or not results.summary else paragraph("The program gave no warning.")
+    return none + items(told, "warnings")
