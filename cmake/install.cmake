@@ -66,6 +66,11 @@ if(TARGET peristat_python)
     INSTALL_RPATH_USE_LINK_PATH ON)
   install(TARGETS peristat_python LIBRARY DESTINATION ${python_folder} COMPONENT python)
 endif()
+# The program of the pages is built by the launcher, which needs npm: ./peristat report, ./peristat package.
+set(report_program ${PROJECT_SOURCE_DIR}/build/report)
+foreach(file IN ITEMS main.js loader.js main.css licences.txt)
+  install(FILES ${report_program}/${file} DESTINATION ${python_folder}/report/program OPTIONAL)
+endforeach()
 install(DIRECTORY cases DESTINATION ${tools_folder} PATTERN runner EXCLUDE)
 install(FILES docs/case.schema.json DESTINATION ${tools_folder}/docs)  # where the cases look for it
 install(DIRECTORY docs TYPE DOC)

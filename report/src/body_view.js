@@ -18,7 +18,6 @@ export class BodyView {
     this.onStep = onStep;
     this.quantities = quantitiesOf(this.body);
     this.chosen = null;
-    this.cut = 1;
     this.#build(place);
     this.#choose(this.quantities.find(({ id }) => id === "damage") ?? this.quantities[0]);
     this.scale = this.#firstScale();
@@ -51,9 +50,16 @@ export class BodyView {
       this.parts.note.textContent = `The body can't be drawn: this browser has no WebGL (${error.message}). Values of points are below.`;
       return;
     }
-    this.scene.frame(this.body.cells.positions(0, new Float64Array(3 * this.body.count), new Uint8Array(this.body.count), 0));
+    this.#frameBody();
     this.scene.onChoice((corner) => this.#pick(corner === null ? null : Math.floor(corner / this.body.cells.corners)));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.scene.draw());
+  }
+
+  /** Shows the whole body at rest and in its last state. */
+  #frameBody() {
+    const { body, scale } = this;
+    const last = body.frames.length - 1;
+    this.scene.frame(...[0, scale].map((by) => body.cells.positions(last, body.displacements(last), body.loose(last), by)));
   }
 
   #build(place) {
@@ -81,6 +87,7 @@ export class BodyView {
       named("displacements ×", p.scale, p.slider), ...this.#switches(named), named(this.body.points ? "point" : "cell", p.point));
     const reset = element("button", { type: "button", textContent: "Reset view" });
     const bar = element("div", { className: "colour-bar" }, p.low, p.bar, p.high);
+    for (const part of [p.play, p.step]) part.hidden = last === 0;
     place.append(
       element("div", { className: "stage" }, p.canvas, element("div", { className: "player" }, p.play, p.step, reset), p.stepWords, bar, p.note),
       element("div", { className: "side" }, controls, p.values),
@@ -92,7 +99,7 @@ export class BodyView {
     p.scale.addEventListener("change", () => this.#rescale(Math.max(Number(p.scale.value) || 0, 0)));
     p.slider.addEventListener("input", () => this.#rescale((this.#firstScale() * Number(p.slider.value)) / 25));
     p.point.addEventListener("change", () => this.#pick(p.point.value === "" ? null : this.body.cellOf(Number(p.point.value))));
-    reset.addEventListener("click", () => this.scene?.reset());
+    reset.addEventListener("click", () => this.scene && this.#frameBody());
   }
 
   /** Check boxes and the cut, where the body has bonds to draw or an inside. */

@@ -8,6 +8,15 @@ const HEIGHT = 300;
 const NEAR = 30; // farthest point of which the values are told [CSS pixel]
 const MOST_MARKS = 80; // more states are drawn as a line alone
 
+const DECADES = {
+  filter: (_, ticks) => {
+    const powers = ticks.map((tick) => Math.round(Math.log10(tick)));
+    const every = Math.ceil((Math.max(...powers) - Math.min(...powers)) / 8) || 1;
+    return ticks.map((tick, i) => (Math.abs(tick / 10 ** powers[i] - 1) < 1e-9 && powers[i] % every === 0 ? tick : null));
+  },
+  values: (_, ticks) => ticks.map((tick) => (tick === null ? "" : tick.toExponential(0))),
+};
+
 /** Draws a curve of the page: { x: label, y: label, log, series: [{label, x, y}] }; returns how to mark a step. */
 export function drawCurves(place, { title, x, y, log, series, steps }) {
   const told = element("p", { className: "note told", "aria-live": "polite" });
@@ -22,7 +31,7 @@ export function drawCurves(place, { title, x, y, log, series, steps }) {
     legend: { show: series.length > 1, live: false },
     cursor: { points: { show: false }, drag: { x: true, y: true }, dataIdx: () => null },
     scales: { x: { time: false, range: padded(data, 0) }, y: log ? { distr: 3 } : { range: padded(data, 1) } },
-    axes: [axis(x), { ...axis(y), size: 64, ...(log ? { values: (_, ticks) => ticks.map((tick) => (tick && Number.isInteger(Math.log10(tick) + 0) ? tick.toExponential(0) : "")) } : {}) }],
+    axes: [axis(x), { ...axis(y), size: 64, ...(log ? DECADES : {}) }],
     series: [{}, ...series.map((curve, i) => ({
       label: curve.label,
       stroke: () => styleColour(`--line-${(i % 6) + 1}`),

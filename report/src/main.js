@@ -18,4 +18,7 @@ async function begin() {
   document.documentElement.dataset.ready = "yes";
 }
 
-begin();
+begin().catch((error) => {
+  document.querySelector("main").prepend(`The curves and the body can't be shown: ${error.message}`);
+  throw error;
+});

@@ -9,6 +9,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { styleColour } from "./dom.js";
 
 const MOST_PIXELS = 2; // per CSS pixel
+const SIGNS = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-1, 1].map((z) => [x, y, z])));
 const CLICK = 4; // farthest way of a pointer that chooses a point [CSS pixel]
 
 export class BodyScene {
@@ -26,7 +27,7 @@ export class BodyScene {
     const shading = { vertexColors: true, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
     this.material = isSolid ? new MeshLambertMaterial({ ...shading, flatShading: true }) : new MeshBasicMaterial(shading);
     this.mesh = new Mesh(new BufferGeometry(), this.material);
-    this.bonds = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: styleColour("--ink") }));
+    this.bonds = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: styleColour("--ink"), transparent: true, opacity: 0.45 }));
     this.mark = new Points(new BufferGeometry(), new PointsMaterial({ size: 11, sizeAttenuation: false, depthTest: false, color: styleColour("--mark") }));
     this.mark.visible = false;
     this.scene.add(this.mesh, this.bonds, this.mark);
@@ -37,30 +38,32 @@ export class BodyScene {
     new ResizeObserver(() => this.#fit()).observe(canvas);
   }
 
-  /** Looks at a body of these places from the front, a solid from a corner. */
-  frame(places) {
+  /** Looks at all of these places (lists of x, y, z) from the front, or at a solid from a corner. */
+  frame(...lists) {
     const low = new Vector3(Infinity, Infinity, Infinity);
     const high = low.clone().negate();
-    for (let i = 0; i < places.length; i += 3) {
-      const place = new Vector3(places[i], places[i + 1], places[i + 2]);
-      low.min(place);
-      high.max(place);
+    for (const places of lists) {
+      for (let i = 0; i < places.length; i += 3) {
+        const place = new Vector3(places[i], places[i + 1], places[i + 2]);
+        low.min(place);
+        high.max(place);
+      }
     }
-    this.middle = low.clone().add(high).multiplyScalar(0.5);
-    const extent = high.clone().sub(low);
-    this.radius = 0.5 * extent.length() || 1;
-    this.extent = this.isSolid ? new Vector2(2 * this.radius, 1.7 * this.radius) : new Vector2(extent.x, extent.y);
-    this.reset();
-  }
-
-  reset() {
+    const middle = low.clone().add(high).multiplyScalar(0.5);
+    const half = high.clone().sub(middle);
+    this.radius = half.length() || 1;
     const from = this.isSolid ? new Vector3(1.1, 0.75, 1.6) : new Vector3(0, 0, 1);
-    this.camera.position.copy(from.normalize().multiplyScalar(4 * this.radius).add(this.middle));
-    this.camera.up.set(0, 1, 0);
+    this.camera.position.copy(from.normalize().multiplyScalar(4 * this.radius).add(middle));
     this.camera.zoom = 1;
-    this.controls.target.copy(this.middle);
-    this.#fit();
+    this.controls.target.copy(middle);
     this.controls.update();
+    this.camera.updateMatrixWorld();
+    this.extent = new Vector2();
+    for (const [x, y, z] of SIGNS) {
+      const corner = new Vector3(x, y, z).multiply(half).add(middle).applyMatrix4(this.camera.matrixWorldInverse);
+      this.extent.max(new Vector2(2 * Math.abs(corner.x), 2 * Math.abs(corner.y)));
+    }
+    this.#fit();
   }
 
   setCells(positions, colours, triangles) {
@@ -113,10 +116,10 @@ export class BodyScene {
   }
 
   #addLights() {
-    const light = new DirectionalLight(0xffffff, 2.2);
+    const light = new DirectionalLight(0xffffff, 1.6);
     light.position.set(0.4, 0.8, 1);
     this.camera.add(light);
-    this.scene.add(this.camera, new AmbientLight(0xffffff, 1.5));
+    this.scene.add(this.camera, new AmbientLight(0xffffff, 2));
   }
 
   /** The canvas has the size that the page gives it, and shows the whole body. */

@@ -29,6 +29,16 @@ class CloudCells:
     def polygons(self) -> Polygons:
         return self._polygons
 
+    @property
+    def knots(self) -> np.ndarray:
+        """A number per corner, which all cells share that meet there, count x most."""
+        return self._knot
+
+    @property
+    def parted(self) -> np.ndarray:
+        """Whether each cell has been parted from the one beyond each side, count x most."""
+        return self._parted
+
     def part(self, cracks, broken: np.ndarray, piece: np.ndarray) -> None:
         """Parts neighbours whose bond is broken (`broken`, count x 2) or meets a crack, or that belong to different
         pieces."""

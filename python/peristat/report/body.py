@@ -107,8 +107,9 @@ def _frame(results, number_of_step: int) -> dict:
 def _geometry(results, frames: Frames, pack: Pack) -> dict:
     """The cells: boxes of a lattice, polygons of a plane cloud or mesh, or else marks of a size."""
     cells, about = frames.cells, {"kind": "points", "mark": _mark(results, frames)}
-    if frames.is_lattice:
+    if frames.parted is not None:
         pack.add_fields("parted", *_on_grid(frames, *_whole_numbers(frames.parted[None].astype(float))))
+    if frames.is_lattice:
         origin = cells.centres(frames.reference)[0] - cells.index[0] @ cells.edges
         about |= {"kind": "lattice", "edges": cells.edges.tolist(), "origin": origin.tolist()}
         if cells.offsets.ndim == 3:  # fitted to the outline
@@ -116,6 +117,7 @@ def _geometry(results, frames: Frames, pack: Pack) -> dict:
     elif isinstance(cells, CloudCells):
         about |= {"kind": "polygons"}
         _add_shapes(frames, "corners", cells.polygons.corners - frames.reference[:, None], pack)
+        pack.add_numbers("knots", _renumbered(cells.knots[frames.order].ravel()))
     if not frames.stands_on_lattice:
         values = frames.reference[frames.order].T[None]
         pack.add_fields("position", *_on_grid(frames, *quantised(values, POSITION_BITS)))
@@ -125,6 +127,14 @@ def _geometry(results, frames: Frames, pack: Pack) -> dict:
 def _add_shapes(frames: Frames, name: str, corners: np.ndarray, pack: Pack) -> None:
     values = corners[frames.order].reshape(len(frames.order), -1).T[None]
     pack.add_fields(name, *_on_grid(frames, *quantised(values, SHAPE_BITS)))
+
+
+def _renumbered(knots: np.ndarray) -> np.ndarray:
+    """Numbers in the order of their first appearance, so that those of neighbours are near."""
+    _, first, which = np.unique(knots, return_index=True, return_inverse=True)
+    rank = np.empty_like(first)
+    rank[np.argsort(first)] = np.arange(len(first))
+    return rank[which]
 
 
 def _mark(results, frames: Frames) -> float:

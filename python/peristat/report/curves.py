@@ -6,11 +6,11 @@ from ..pictures.curve_pictures import abscissa_of, find_abscissa, has_reactions,
 from ..pictures.style import ENERGIES, FORCES, time_unit, unit_for
 
 ENERGY_COLUMNS = (
-    ("external_work", "external work"),
     ("stored_energy", "stored"),
     ("kinetic_energy", "kinetic"),
     ("dissipated_energy", "dissipated by damage"),
     ("drained_energy", "drained by relaxation, or released"),
+    ("external_work", "external work"),  # on top, dashed: where all of it is stored, one line would hide the other
 )
 MOST_VALUES = 2000  # of a curve; of a longer one every n-th, and its extremes
 LEAST_RESIDUAL = 1e-18
@@ -81,7 +81,7 @@ def _energies(results, kept) -> dict | None:
     unit, size = unit_for(max(np.abs(values).max() for _, values in known), ENERGIES, 1.0)
     if not results.is_of_motion and not (np.diff(over) >= 0.0).all():
         label, over = "step", results.numbers("step")
-    shown = [line(words, over[kept], values[kept] / size, dashed=not place) for place, (words, values) in enumerate(known)]
+    shown = [line(words, over[kept], values[kept] / size, dashed=words == ENERGY_COLUMNS[-1][1]) for words, values in known]
     return curve("energy-curve", "Energies", label, f"energy [{unit}]", shown, steps=_steps(results, kept))
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..pictures.cells import Cells
+from ..pictures.cloud_cells import CloudCells
 from ..pictures.separations import LOOSE_DAMAGE, LOST_DAMAGE, cells_of
 from .fields import FIELDS, Field, values_of
 
@@ -21,8 +22,8 @@ class Frames:
     places       of the cells in a grid of the shape `shape`
     displacement frames x dimension x cells [m]
     fields       frames x cells, by Field
-    parted       axes x cells: the first frame in which a cell is parted from the next one along each axis, or the
-                 number of frames
+    parted       the first frame in which a cell is parted from its neighbours, or the number of frames: axes x cells of
+                 a lattice for the next one along each axis, sides x cells of polygons; None for marks
     """
 
     numbers: list[int]
@@ -60,10 +61,8 @@ def read_frames(results, numbers: list[int], limit: int) -> Frames:
     places, shape = _grid(cells, reference)
     order = np.argsort(places, kind="stable")
     is_whole = len(reference) == len(results.reference)
-    parted = None
-    if isinstance(cells, Cells) and cells.is_lattice:
-        parted = np.stack([_first_parting([state.cells.parted(axis, 1) for state in states])
-                           for axis in range(cells.dimension)])[:, order]  # fmt: skip
+    partings = [_partings(state.cells) for state in states]
+    parted = None if partings[0] is None else _first_parting(partings)[:, order]
     fields = {field: np.stack([state.fields[field][order] for state in states]) for field in present}
     return Frames(
         numbers, cells, reference, order, is_whole, places[order], shape,
@@ -111,9 +110,16 @@ def _along_a_curve(reference: np.ndarray) -> np.ndarray:
     return np.argsort(key, kind="stable")
 
 
+def _partings(cells) -> np.ndarray | None:
+    """Whether cells are parted from their neighbours, axes or sides x cells."""
+    if isinstance(cells, CloudCells):
+        return cells.parted.T
+    return np.stack([cells.parted(axis, 1) for axis in range(cells.dimension)]) if cells.is_lattice else None
+
+
 def _first_parting(masks: list[np.ndarray]) -> np.ndarray:
     """The first frame in which each cell is parted; cracks never close again."""
-    first = np.full(len(masks[0]), len(masks))
+    first = np.full(masks[0].shape, len(masks))
     for frame in reversed(range(len(masks))):
         first[masks[frame]] = frame
     return first

@@ -1,6 +1,6 @@
 """The top of a run's page: how it ended, its size, and what the program warned of."""
 
-from ..pictures.style import number
+from ..pictures.style import LENGTHS, number, unit_for
 from .markup import escaped, items, paragraph
 
 ENDINGS = {
@@ -25,11 +25,12 @@ def head(results, status: str) -> str:
 def _facts(results) -> list[str]:
     summary = results.summary
     steps = sum(1 for step in results.history.get("step", []) if step > 0) if not results.is_of_motion else summary.get("steps")
-    known = [f"{results.dimension}D", f"{number(len(results.volume))} points", f"{number(results.spacing * 1e3)} mm between points"]
-    known += [f"{number(steps)} accepted steps"] if steps is not None else []
-    for name, words in (("bonds", "bonds"), ("triangles", "triangles"), ("tetrahedra", "tetrahedra"), ("broken_bonds", "broken bonds")):
+    unit, size = unit_for(results.spacing, LENGTHS)
+    known = [f"{results.dimension}D", f"{number(len(results.volume))} points", f"spacing {number(results.spacing / size)} {unit}"]
+    known += [f"{number(steps)} accepted step{'s' * (steps != 1)}"] if steps is not None else []
+    for name in ("bonds", "triangles", "tetrahedra", "broken_bonds"):
         if isinstance(summary.get(name), (int, float)) and summary[name]:
-            known.append(f"{number(summary[name])} {words}")
+            known.append(f"{name.replace('_', ' ')}: {number(summary[name])}")
     seconds = summary.get("seconds", {})
     if isinstance(seconds, dict) and isinstance(seconds.get("total"), (int, float)):
         known.append(f"{number(seconds['total'], 3)} s")

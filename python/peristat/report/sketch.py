@@ -3,6 +3,8 @@
 import numpy as np
 
 from ..pictures.cells import FACES, Cells, merged
+from ..pictures.mesh_cells import element_cells
+from ..pictures.voronoi import Polygons
 from .conditions import Condition, conditions
 from .markup import escaped
 
@@ -66,7 +68,7 @@ class _Drawing:
         return np.stack([0.5 * WIDTH + flat[:, 0] - 0.5 * (self._high - self._low)[0] * self._scale, self._height - MARGIN - flat[:, 1]], axis=1)
 
     def text(self) -> str:
-        parts = self._body() + self._outline() + self._cracks() + self._symbols()
+        parts = self._body() + self._outline() + self._sides() + self._cracks() + self._symbols()
         size = f"{WIDTH:.0f} {self._height:.0f}"
         return (f'<svg viewBox="0 0 {size}" role="img" aria-label="The body with its supports, loads and cracks">'
                 f"{''.join(parts)}</svg>")  # fmt: skip
@@ -74,6 +76,8 @@ class _Drawing:
     # ---- the body ----
 
     def _body(self) -> list[str]:
+        if self._results.elements is not None:
+            return self._mesh()
         if not self._cells.is_lattice:
             return self._marks()
         if self._cells.dimension == 3:
@@ -82,6 +86,16 @@ class _Drawing:
         for place, members in enumerate(self._members):
             if members.any():
                 parts.append(f'<path class="set" style="fill:{_colour(place)}" d="{self._rows(members)}"/>')
+        return parts
+
+    def _mesh(self) -> list[str]:
+        """The boundary of a mesh, filled, and the elements of sets."""
+        cells = element_cells(self._results.elements)
+        parts = [f'<path class="solid" style="stroke:var(--ink)" fill-rule="evenodd" d="{"".join(map(_closed, map(self._paper, loops(cells))))}"/>']
+        for place, condition in enumerate(self._acting):
+            members = condition.points[:MOST_MARKS]
+            shapes = "".join(_closed(self._paper(cells.corners[member])) for member in members)
+            parts += [f'<path class="set" style="fill:{_colour(place)}" d="{shapes}"/>'] if shapes else []
         return parts
 
     def _rows(self, members: np.ndarray) -> str:
@@ -132,8 +146,20 @@ class _Drawing:
         if self._results.outline is None:
             return []
         begin, end = (self._paper(side) for side in self._results.outline.pieces.transpose(1, 0, 2))
-        lines = "".join(f"M{a:.1f} {b:.1f}L{c:.1f} {d:.1f}" for (a, b), (c, d) in zip(begin, end))
+        lines = "".join(map(_line, np.stack([begin, end], axis=1)))
         return [f'<path class="outline" d="{lines}"/>']
+
+    def _sides(self) -> list[str]:
+        """Planes of symmetry and sides of periods."""
+        if self._results.dimension != 2:
+            return []
+        low, high = self._results.reference.min(axis=0), self._results.reference.max(axis=0)
+        margin, parts = 0.05 * (high - low).max(), []
+        for axis, at in self._results.sides:
+            ends = np.stack([low - margin, high + margin])
+            ends[:, axis] = at
+            parts.append(f'<path class="side" d="{_line(self._paper(ends))}"/>')
+        return parts
 
     def _cracks(self) -> list[str]:
         if self._results.dimension == 1:
@@ -174,9 +200,8 @@ class _Drawing:
     def _arrow(self, place, direction, colour: int) -> str:
         begin, along = self._on_paper(place), self._towards(direction / np.linalg.norm(direction))
         end, aside = begin + ARROW * along, np.array([-along[1], along[0]])
-        head = [end - 12 * along + 7 * aside, end, end - 12 * along - 7 * aside]
-        points = " ".join(f"L{x:.1f} {y:.1f}" for x, y in [head[0]]) + f"M{head[1][0]:.1f} {head[1][1]:.1f}L{head[2][0]:.1f} {head[2][1]:.1f}"
-        return f'<path class="arrow" style="stroke:{_colour(colour)}" d="M{begin[0]:.1f} {begin[1]:.1f}L{end[0]:.1f} {end[1]:.1f}{points}"/>'
+        lines = [begin, end], [end - 12 * along + 7 * aside, end, end - 12 * along - 7 * aside]
+        return f'<path class="arrow" style="stroke:{_colour(colour)}" d="{"".join(map(_line, lines))}"/>'
 
     def _triangle(self, place, axis: int, sign: float, colour: int) -> str:
         """A support that holds an axis: its tip points into the body."""
@@ -186,5 +211,28 @@ class _Drawing:
         return f'<path class="arrow" style="stroke:{_colour(colour)};fill:var(--card)" d="{_closed(corners)}"/>'
 
 
-def _closed(corners: np.ndarray) -> str:
-    return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in corners) + "Z"
+def loops(cells: Polygons) -> list[np.ndarray]:
+    """The boundary of cells that share corners, as closed lines: sides beyond which there is no cell, one after another."""
+    cell, side = np.nonzero(cells.beyond == -1)
+    most = cells.beyond.shape[1]
+    last = cells.is_side.sum(axis=1)
+    after = np.where(side + 1 < last[cell], side + 1, 0)
+    begins = [tuple(corner) for corner in cells.corners[cell, side % most]]
+    follows = dict(zip(begins, (tuple(corner) for corner in cells.corners[cell, after])))
+    found = []
+    while follows:
+        corner, end = follows.popitem()
+        loop = [corner]
+        while end in follows:
+            loop.append(end)
+            end = follows.pop(end)
+        found.append(np.array(loop))
+    return found
+
+
+def _line(corners) -> str:
+    return "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in corners)
+
+
+def _closed(corners) -> str:
+    return _line(corners) + "Z"

@@ -64,12 +64,12 @@ def timings(results) -> str:
             width = 100.0 * min(max(value / total, 0.0), 1.0)
             rows.append([words, number(value, 3), Raw(f'<span class="share" style="width:{width:.1f}px"></span>')])
     summary = results.summary
-    words = [f"{_shown(summary[name])} {what}" for name, what in (
+    words = [f"{what}: {_shown(summary[name])}" for name, what in (
         ("newton_iterations", "iterations of Newton's method"), ("relaxation_iterations", "of relaxation"),
         ("factorisations", "factorisations"), ("linear_iterations", "linear iterations"), ("threads", "threads"), ("ranks", "ranks"),
     ) if isinstance(summary.get(name), (int, float))]  # fmt: skip
     memory = summary.get("peak_memory_bytes")
-    words += [f"{number(memory / 2**20, 3)} MiB at most"] if isinstance(memory, (int, float)) else []
+    words += [f"largest memory: {number(memory / 2**20, 3)} MiB"] if isinstance(memory, (int, float)) else []
     remark = "Some of the parts overlap: linear systems of relaxed steps count in both." if seconds.get("relaxation") else ""
     return table(["", "s", ""], rows, [1]) + paragraph(" · ".join(words)) + paragraph(remark)
 
