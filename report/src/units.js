@@ -6,8 +6,8 @@ const SHOWN = { "J/m3": "J/m³", 1: "" };
 /** Prefix and size of the unit in which a value is at least 1. */
 export function unitFor(largest, unit) {
   const name = SHOWN[unit] ?? unit;
-  if (!name || !(largest > 0)) return { name, size: 1 };
-  const [prefix, size] = PREFIXES.find(([, size]) => largest >= size) ?? PREFIXES.at(-1);
+  if (!name || !(largest >= PREFIXES.at(-1)[1])) return { name, size: 1 };
+  const [prefix, size] = PREFIXES.find(([, size]) => largest >= size);
   return { name: prefix + name, size };
 }
 

@@ -185,8 +185,12 @@ class CaseRun {
     }
     count(*body_, study_->free(), options_, ranks_, summary_);
     tell_size();
-    summary_.warnings =
-        located_errors(from_, [&] { return warnings_of(preflight_of(from_, *body_, ranks_)); });
+    const Preflight preflight =
+        located_errors(from_, [&] { return preflight_of(from_, *body_, ranks_); });
+    for (const auto& [label, fact] : preflight_lines(preflight)) {
+      preflight_ += fmt::format("{}: {}\n", label, fact);
+    }
+    summary_.warnings = warnings_of(preflight);
     for (const std::string& warning : summary_.warnings) progress_.say("warning: " + warning);
     // Loads that can't be found are refused before results are touched.
     if (finds_loads(study_->options(), *body_->conditions)) study_->analyze();
@@ -264,8 +268,8 @@ class CaseRun {
   void open_results() {
     Assembler& assembler = study_->equations().assembler();
     const CaseText text{
-        from_.as_read,  from_.as_resolved,        from_.title, versions(), identity(from_.file),
-        from_.settings, checksums_of_files(from_)};
+        from_.as_read,  from_.as_resolved,         from_.title, versions(), identity(from_.file),
+        from_.settings, checksums_of_files(from_), preflight_};
     const Points points = only_recorded({body_->points, *body_->index_map});
     if (earlier_) {
       results_.emplace(*earlier_, earlier_results_, points, text, support_sets_, probes_, further_,
@@ -430,6 +434,7 @@ class CaseRun {
   std::optional<Results>& results_;
   const std::vector<std::string> support_sets_;
   std::vector<ProbeColumns> probes_;
+  std::string preflight_;
   FurtherOutput further_;
   const Clock::time_point start_ = Clock::now();
   EarlierResults earlier_results_;  // until results_ takes them over

@@ -288,6 +288,10 @@ void Results::Files::describe(const CaseText& text) {
          "checksum (FNV-1a) and path of each file that the case reads; names of what a program "
          "gave"});
   }
+  if (!text.preflight.empty()) {
+    master.write("/case/preflight", text.preflight,
+                 {"none", "facts about body, loads and law, as `check` prints them"});
+  }
   write_settings(master, text.settings);
   master.make_table("/history", history_header);
   master.make_table("/iterations", iteration_columns());

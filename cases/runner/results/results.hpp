@@ -27,6 +27,7 @@ struct CaseText {
   std::filesystem::path file{};  ///< absolute; a later run of the same file may replace this one
   Settings settings{};           ///< values given by `--set`
   std::string files{};  ///< that the case reads, and what a program gives, see checksums_of_files
+  std::string preflight{};  ///< what `check` says of the body, the loads and the law
 };
 
 /// Optional output of a run.

@@ -1,7 +1,8 @@
 """The top of a run's page: how it ended, its size, and what the program warned of."""
 
+from ..pictures.results_folder import ResultsFile
 from ..pictures.style import LENGTHS, number, unit_for
-from .markup import escaped, items, paragraph
+from .markup import escaped, items, paragraph, table
 
 ENDINGS = {
     "completed": "completed",
@@ -37,9 +38,16 @@ def _facts(results) -> list[str]:
     return known
 
 
-def warnings(results) -> str:
-    """Warnings of the preflight, and what the folder lacks."""
+def preflight(results) -> str:
+    """Facts and warnings of the preflight."""
     told = results.summary.get("warnings", [])
     told = [str(sentence) for sentence in told] if isinstance(told, list) else []
     none = "" if told or not results.summary else paragraph("The program gave no warning.")
-    return none + items(told, "warnings")
+    facts = [line.partition(": ")[::2] for line in _preflight_text(results).splitlines()]
+    return items(told, "warnings") + none + (table(["", ""], facts) if facts else "")
+
+
+def _preflight_text(results) -> str:
+    """Facts as `check` prints them; older folders have none."""
+    with ResultsFile(results.path) as file:
+        return file.text("case/preflight") if "case/preflight" in file else ""

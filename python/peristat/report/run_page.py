@@ -26,7 +26,7 @@ def run_page(directory: Path) -> Page:
     parts = [
         "" if status == "completed" else dossier,
         section("model", "Model", sketch(results)),
-        section("warnings", "Before the run", overview.warnings(results)),
+        section("preflight", "Before the run", overview.preflight(results)),
         section("body", "Body", '<div id="body-view"></div>' if results.step_numbers else paragraph("No step has fields.")),
         section("curves", "Load, displacement and energies", _places(curves, "two")),
         section("ledger", "Ledger of energies", tables.ledger(results)),

@@ -131,7 +131,19 @@ void require_no_foreign(const ResultsFolder& folder, const Leftovers& old,
   }
 }
 
+/// Removes the page of an earlier run, which would show other results than the folder holds.
+void remove_page(const ResultsFolder& folder) {
+  if (!fs::is_regular_file(fs::symlink_status(folder.page()))) return;
+  std::string head(200, '\0');
+  std::ifstream(folder.page()).read(head.data(), std::streamsize(head.size()));
+  std::error_code ignored;
+  if (head.find(ResultsFolder::sign_of_page) != std::string::npos) {
+    fs::remove(folder.page(), ignored);
+  }
+}
+
 void remove(const ResultsFolder& folder, const Leftovers& old) {
+  remove_page(folder);
   for (const std::string& name : old.files) {
     const fs::path file = folder.directory / name;
     fs::remove(file);
@@ -183,6 +195,7 @@ bool is_name_of_results(const fs::path& file, const fs::path& folder) {
 void go_on_in_results_folder(const ResultsFolder& folder, ResultsMarker& marker, RunIdentity run) {
   run.files.insert(run.files.end(), own_files.begin(), own_files.end());
   marker.write(run);
+  remove_page(folder);
   std::error_code ignored;  // files that can't be removed are overwritten at the end
   for (const fs::path& file : {folder.summary(), folder.dossier(), folder.convergence()}) {
     fs::remove(file, ignored);

@@ -39,6 +39,10 @@ struct ResultsFolder {
 
   /// In plots/: names of the pictures that the plot command has drawn there, one per line.
   static constexpr const char* picture_list = ".pictures";
+
+  /// What the report command writes, with a sign in its second line.
+  [[nodiscard]] std::filesystem::path page() const { return directory / "report.html"; }
+  static constexpr const char* sign_of_page = "<!-- made by peristat report -->";
 };
 
 /// Table of the values along a line, in the results folder.
@@ -62,7 +66,8 @@ struct ClaimedFolder {
 
 /// Makes the folder ready for a new run: creates it, or removes the files of an earlier run of the
 /// same case from it, and creates parts/. The marker lists the files of the earlier run,
-/// plots/.pictures its pictures; nothing else is removed, and no link is followed below the folder.
+/// plots/.pictures its pictures, a page has its sign; nothing else is removed, and no link is
+/// followed below the folder.
 /// @param run   its list of files holds additional ones, and is completed
 /// @param overwrite also removes an earlier run of another case, or of version 1, which left no
 ///        marker
@@ -74,7 +79,7 @@ struct ClaimedFolder {
                                                  RunIdentity run, bool overwrite);
 
 /// Prepares the folder of an earlier run for resuming: its tables, fields and pictures stay; files
-/// on how it ended are removed.
+/// on how it ended, and a page, are removed.
 /// @param marker of the folder
 /// @throws OutputError
 void go_on_in_results_folder(const ResultsFolder& folder, ResultsMarker& marker, RunIdentity run);
