@@ -16,7 +16,7 @@ MARGIN = 20_000  # bytes of what surrounds the numbers of the body
 MOST_DOSSIER = 4 << 20
 
 
-def run_page(directory: Path) -> Page:
+def run_page(directory: Path, _page_folder: Path) -> Page:
     """Everything that a results folder holds, as far as it can be read. Raises InputError if it is none, or damaged."""
     status = open_results(directory).status
     results = read_results_folder(directory)
