@@ -294,6 +294,16 @@ class Results:
             raise InputError(f"curve: y needs columns of one unit, not {told or 'none'}")
         return draw_columns(self._folder, abscissa, columns)
 
+    def report(self, path: str | os.PathLike | None = None) -> Path:
+        """Makes one page of the results, which needs no network (docs/report.md); returns its path.
+
+        path  of the page; without it report.html in the folder. Nothing but an earlier page is replaced.
+        """
+        from .report.make import make_page
+
+        self._require_same_run()
+        return make_page(self.path, None if path is None else Path(path))[0]
+
     def _field_picture(self, name: str | None, step: int, known: list[str]):
         fields = self.fields(step) if self.steps and self.dimension > 1 else []
         if name is None or name not in fields:

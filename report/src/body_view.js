@@ -227,7 +227,7 @@ export class BodyView {
     for (const [label, value, error, unit, id] of rows) {
       table.append(element("tr", {}, element("th", { scope: "row", textContent: label }),
         element("td", { textContent: withUnit(value, unit, error), "data-name": id, "data-value": value, "data-error": error }),
-        element("td", { className: "error", textContent: error > 0 ? `± ${withUnit(error, unit, error)}` : "" })));
+        element("td", { className: "error", textContent: error > 0 ? `± ${withUnit(error, unit)}` : "" })));
     }
     this.parts.values.replaceChildren(table);
   }

@@ -6,6 +6,7 @@ import { plain } from "./units.js";
 
 const HEIGHT = 300;
 const NEAR = 30; // farthest point of which the values are told [CSS pixel]
+const LINES = 6; // colours of the style; more curves take colours around the circle
 const MOST_MARKS = 80; // more states are drawn as a line alone
 
 const DECADES = {
@@ -34,7 +35,7 @@ export function drawCurves(place, { title, x, y, log, series, steps }) {
     axes: [axis(x), { ...axis(y), size: 64, ...(log ? DECADES : {}) }],
     series: [{}, ...series.map((curve, i) => ({
       label: curve.label,
-      stroke: () => styleColour(`--line-${(i % 6) + 1}`),
+      stroke: () => (series.length > LINES ? `hsl(${(360 * i) / series.length} 55% 50%)` : styleColour(`--line-${i + 1}`)),
       facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }],
       paths: (u, index) => draw(u, index, curve),
     }))],

@@ -11,20 +11,17 @@ export function unitFor(largest, unit) {
   return { name: prefix + name, size };
 }
 
-/** "1.234 mm"; more digits if an error is given that is smaller. */
+/** "1.234 mm", with the digits that an error leaves; a value below its error is 0. */
 export function withUnit(value, unit, error = 0) {
-  const { name, size } = unitFor(Math.abs(value), unit);
-  const digits = error > 0 && value !== 0 ? Math.ceil(Math.log10(Math.abs(value) / error)) + 1 : 4;
-  return `${plain(value / size, Math.min(Math.max(digits, 2), 8))}${name && ` ${name}`}`;
+  const { name, size } = unitFor(Math.max(Math.abs(value), error), unit);
+  const known = Math.abs(value) > error ? value : 0;
+  const digits = error > 0 && known ? Math.ceil(Math.log10(Math.abs(known) / error)) + 1 : 4;
+  return `${plain(known / size, Math.min(Math.max(digits, 2), 8))}${name && ` ${name}`}`;
 }
 
 /** A number of few digits: 0.00123, 1.2e-7. */
 export function plain(value, digits = 4) {
-  if (value === 0) return "0";
-  const text = value.toPrecision(digits);
-  return text.includes("e") || Math.abs(value) < 1e-4 ? value.toExponential(digits - 1).replace(/\.?0+e/, "e") : trimmed(text);
-}
-
-function trimmed(text) {
-  return text.includes(".") ? text.replace(/\.?0+$/, "") : text;
+  const rounded = Number(value.toPrecision(digits));
+  const size = Math.abs(rounded);
+  return rounded === 0 || (size >= 1e-4 && size < 1e7) ? String(rounded) : rounded.toExponential();
 }

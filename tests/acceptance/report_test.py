@@ -24,13 +24,14 @@ from tests.acceptance.folder import Folder
 from tests.acceptance.motions import BAR, SQUARE
 from tests.acceptance.resume_test import CELL, HALF, TORN
 from tests.acceptance.strip import PULLED
-from tests.reference.program import ROOT, Ended, execute
+from tests.reference.program import PROGRAM, ROOT, Ended, execute
 
 sys.path.insert(0, str(ROOT / "python"))
 
 from peristat.pictures.results_folder import read_results_folder  # noqa: E402
 from peristat.report.body import body_content  # noqa: E402
 from peristat.report.command import main  # noqa: E402
+from peristat.results import open_results  # noqa: E402
 from peristat.report.packing import Ranges, quantised  # noqa: E402
 
 MOST = 2_000_000  # bytes of a page
@@ -227,6 +228,13 @@ class Pages(Reports):
         self.assertEqual(other.read_text(), first)
         self.assert_refused(self.report(folder, "--output", self.folder / "nowhere/page.html", code=2), "there is no folder")
 
+    def test_python_makes_the_same_page(self):
+        folder = self.run_case(PULLED)
+        self.report(folder)
+        page = open_results(folder).report(self.folder / "page.html")
+        self.assertEqual(page, self.folder / "page.html")
+        self.assertEqual(page.read_text(), (folder / "report.html").read_text())
+
     def test_a_new_run_removes_the_page_of_the_earlier_one(self):
         folder = self.run_case(PULLED)
         self.report(folder)
@@ -235,6 +243,43 @@ class Pages(Reports):
         (folder / "report.html").write_text("mine")
         self.run_case(PULLED)
         self.assertEqual((folder / "report.html").read_text(), "mine")
+
+
+class Comparisons(Reports):
+    def tool(self, name, *words):
+        script = ROOT / f"cases/runner/{name}/{name}.py"
+        return self.execute(["/usr/bin/python3", "-BEs", script, *words], limited=False, environment={"PERISTAT_PROGRAM": PROGRAM})
+
+    def test_a_sweep(self):
+        sweep = self.folder / "a sweep"
+        self.assert_code(self.tool("sweep", self.case(TORN), "--vary", "loading.steps=2,4", "--output", sweep), 0)
+        first = next(sweep.glob("loading.steps=2*"))
+        self.report(first)
+        self.report(sweep)
+        text = (sweep / "report.html").read_text()
+        self.assertLess(len(text), MOST)
+        self.assert_has(text, "2 combinations: 2 completed.", f'href="{first.name.replace("=", "%3D")}/report.html">2</a>', "<td>4</td>")
+        curve = json.loads(CONTENT.search(text)[1])["curves"][0]
+        self.assertEqual([series["label"] for series in curve["series"]], ["loading.steps=2", "loading.steps=4"])
+        with h5py.File(first / "results.h5") as file:
+            peak = np.abs(file["history/reaction_x:right"][...]).max()
+        self.assertIn(curve["y"], ("largest reaction [kN]", "largest reaction [N]"))
+        self.assertAlmostEqual(max(curve["series"][0]["y"]) * (1e3 if "kN" in curve["y"] else 1.0), peak, delta=1e-9 * peak)
+        self.assertEqual(text.count('<img class="thumbnail"'), 2)
+
+    def test_a_trust_suite(self):
+        suite = self.folder / "suite"
+        self.assert_code(self.tool("trust", "--quick", "--jobs", "1", "--output", suite, "strength_uniaxial"), (0, 3))
+        self.report(suite)
+        text = (suite / "report.html").read_text()
+        self.assert_has(text, "<code>strength_uniaxial</code>", '<img class="thumbnail"', "1 quantities: ")
+        self.assertEqual([curve["title"] for curve in json.loads(CONTENT.search(text)[1])["curves"]], ["strength_uniaxial"])
+
+    def test_other_tables_are_refused(self):
+        self.write("one/sweep.csv", "a,b\n1,2\n")
+        self.assert_refused(self.report(self.folder / "one", code=2), "no table of a sweep")
+        self.write("two/table.md", "# Notes\n")
+        self.assert_refused(self.report(self.folder / "two", code=2), "no table of a trust suite")
 
 
 def body_words(folder):
@@ -423,7 +468,9 @@ class InABrowser(Reports):
         self.assertLess(reference[0], 0.01, "the click was left of the middle")
         self.element("#play").click()
         self.until(lambda: "step 1 " not in self.element(".step-words").text and "Play" in self.element("#play").text)
-        self.assertIn("step 10 ", self.element(".step-words").text)
+        with h5py.File(folder / "results.h5") as file:
+            last = max(group.attrs["step"] for group in file["steps"].values())
+        self.assertIn(f"step {last} ", self.element(".step-words").text)
 
     def test_a_plate_at_the_width_of_a_phone(self):
         folder = self.run_case(HALF, "loading.steps=4")
