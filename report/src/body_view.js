@@ -4,7 +4,7 @@ import { Body } from "./body.js";
 import { colour, gradient } from "./colours.js";
 import { element } from "./dom.js";
 import { BodyScene } from "./scene.js";
-import { plain, unitFor, withUnit } from "./units.js";
+import { plain, sizeOfError, unitFor, withUnit } from "./units.js";
 
 const AXES = "xyz";
 const SHOWN_SIZE = 0.08; // largest displacement over the size of the body, as it is drawn at first
@@ -227,7 +227,7 @@ export class BodyView {
     for (const [label, value, error, unit, id] of rows) {
       table.append(element("tr", {}, element("th", { scope: "row", textContent: label }),
         element("td", { textContent: withUnit(value, unit, error), "data-name": id, "data-value": value, "data-error": error }),
-        element("td", { className: "error", textContent: error > 0 ? `± ${withUnit(error, unit)}` : "" })));
+        element("td", { className: "error", textContent: error > 0 ? `± ${sizeOfError(error, unit)}` : "" })));
     }
     this.parts.values.replaceChildren(table);
   }

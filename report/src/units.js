@@ -11,6 +11,12 @@ export function unitFor(largest, unit) {
   return { name: prefix + name, size };
 }
 
+/** "2.5 nm" */
+export function sizeOfError(error, unit) {
+  const { name, size } = unitFor(error, unit);
+  return `${plain(error / size, 2)}${name && ` ${name}`}`;
+}
+
 /** "1.234 mm", with the digits that an error leaves; a value below its error is 0. */
 export function withUnit(value, unit, error = 0) {
   const { name, size } = unitFor(Math.max(Math.abs(value), error), unit);
