@@ -14,8 +14,9 @@ export class Body {
     this.displacement = numbers.field("displacement", this.places);
     this.fields = new Map(content.fields.map((field) => [field.name, numbers.field(field.name, this.places)]));
     this.position = numbers.has("position") ? numbers.field("position", this.places) : null;
-    this.centres = this.#centres();
-    this.cells = content.kind === "polygons" ? new PolygonCells(numbers, this.places, this.centres) : new BoxCells(content, numbers, this.places, this.centres);
+    this.centres = this.#centres(Boolean(this.position));
+    const ofCells = content.kind === "lattice" ? this.#centres(false) : this.centres; // those of a perturbed lattice stay
+    this.cells = content.kind === "polygons" ? new PolygonCells(numbers, this.places, ofCells) : new BoxCells(content, numbers, this.places, ofCells);
     this.points = numbers.has("number") ? numbers.list("number") : null;
     this.bonds = numbers.has("bond_first") ? this.#bonds() : null;
   }
@@ -63,13 +64,14 @@ export class Body {
     return Float32Array.from(ends);
   }
 
-  #centres() {
+  /** Where the points are, count x 3: as given, or on their lattice. */
+  #centres(isGiven) {
     const centres = new Float64Array(3 * this.count);
     const { shape, edges, origin } = this.content;
     for (let cell = 0; cell < this.count; cell++) {
       const index = this.content.kind === "lattice" ? gridIndex(this.places[cell], shape) : [];
       for (let c = 0; c < this.dimension; c++) {
-        centres[3 * cell + c] = this.position
+        centres[3 * cell + c] = isGiven
           ? this.position.value(0, c, cell)
           : index.reduce((sum, n, axis) => sum + n * edges[axis][c], origin[c]);
       }

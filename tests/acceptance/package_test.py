@@ -26,6 +26,7 @@ class Package(Folder):
     def setUpClass(cls):
         # Staged, as for packages: the staging folder and the prefix differ.
         stage = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="peristat package "))).resolve()
+        execute([ROOT / "peristat", "report", stage], limited=False, seconds=300)  # builds the program of the pages
         lines("cmake", "--install", BUILD, "--prefix", "/usr", environment={"DESTDIR": str(stage)})
         cls.prefix = stage / "usr"
         cls.launcher = cls.prefix / "bin/peristat"
@@ -45,11 +46,13 @@ class Package(Folder):
         run = self.launch("run", "strip.toml", "--output", "results/strip")
         self.assertEqual((run.code, run.errors), (0, ""))
         self.assert_completed(self.launch("plot", "results/strip"))
+        self.assert_completed(self.launch("report", "results/strip"))
         sweep = self.launch("sweep", "strip.toml", "--vary", "material.youngs_modulus=1e9,2e9", "--output", "moduli")
         self.assert_completed(sweep)
 
         self.assertTrue((self.folder / "results/strip/results.h5").is_file())
         self.assertGreater(len(list((self.folder / "results/strip/plots").glob("*.png"))), 1)
+        self.assertTrue((self.folder / "results/strip/report.html").is_file())
         self.assertTrue(list((self.folder / "moduli").glob("*.png")))
         self.assertEqual(self.installed(), before)
 
@@ -141,7 +144,7 @@ class Package(Folder):
         told = self.launch("help").output
         self.assertNotIn("./peristat", told)
         listed = set(re.findall(r"^  peristat ([a-z-]+)", told, re.MULTILINE))
-        self.assertLessEqual({"run", "resume", "check", "sweep", "trust", "plot", "python", "help"}, listed)
+        self.assertLessEqual({"run", "resume", "check", "sweep", "trust", "plot", "report", "python", "help"}, listed)
         self.assertTrue(listed.isdisjoint({"build", "test", "bench", "package"}))
         first = re.search(r"Start with: peristat run (.*)", told)[1]
         self.assert_completed(self.launch("check", first))

@@ -15,7 +15,8 @@ from .packing import Pack, Ranges, quantised
 BITS = ((16, 12), (16, 8), (14, 8), (12, 8))  # of displacements, of fields; a smaller page from row to row
 LEAST_STEPS = 12  # below which points become fewer, not steps
 MOST_STEPS = 400
-BYTES_PER_NUMBER = 0.05  # a page with less has not been seen; more numbers than fit with it are not even read
+BYTES_PER_NUMBER = 0.08  # a page with less has not been seen; more numbers than fit with it are not even read
+USUAL_FIELDS = 4
 MOST_BONDS = 40_000
 LEAST_CELLS = 100
 POSITION_BITS = 16
@@ -31,11 +32,9 @@ def body_content(results, room: int) -> tuple[dict, str] | None:
     steps, limit = _first_guess(results, room)
     while True:
         frames = read_frames(results, chosen(results, steps), limit)
-        for bits in BITS:
-            content, pack = _packed(results, frames, bits)
-            text = pack.text()
-            if len(text) <= room or limit <= LEAST_CELLS:
-                return content | {"told": _told(results, frames, content)}, text
+        text = _packed(results, frames, BITS[-1])[1].text()
+        if len(text) <= room or limit <= LEAST_CELLS:
+            return _best(results, frames, room)
         share = 0.92 * room / len(text)
         if len(frames.numbers) > LEAST_STEPS:
             steps = max(int(share * len(frames.numbers)), LEAST_STEPS)
@@ -43,10 +42,20 @@ def body_content(results, room: int) -> tuple[dict, str] | None:
             limit = max(int(share * len(frames.places)), LEAST_CELLS)
 
 
+def _best(results, frames: Frames, room: int) -> tuple[dict, str]:
+    """With as many bits as there is room for."""
+    for bits in BITS:
+        content, pack = _packed(results, frames, bits)
+        text = pack.text()
+        if len(text) <= room:
+            break
+    return content | {"told": _told(results, frames, content)}, text
+
+
 def _first_guess(results, room: int) -> tuple[int, int]:
     """Numbers of steps and of cells with which a page may have room: more are not even read."""
     count, steps = len(results.volume), min(len(results.step_numbers), MOST_STEPS)
-    most = int(room / BYTES_PER_NUMBER / (results.dimension + 1))
+    most = int(room / BYTES_PER_NUMBER / (results.dimension + USUAL_FIELDS))
     if count * steps <= most:
         return steps, count
     steps = max(min(steps, LEAST_STEPS), most // count)

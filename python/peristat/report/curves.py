@@ -39,7 +39,7 @@ def curves_of_run(results) -> list[dict]:
 
 
 def _kept_rows(results) -> np.ndarray:
-    """Rows of the history that are drawn: all, or every n-th with those of the shown steps."""
+    """Rows of the history that are drawn: all, or every n-th."""
     count = len(results.history.get("step", []))
     return np.unique(np.linspace(0, count - 1, min(count, MOST_VALUES)).astype(int)) if count else np.zeros(0, dtype=int)
 

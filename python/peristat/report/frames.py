@@ -55,7 +55,7 @@ class Frames:
 
 def read_frames(results, numbers: list[int], limit: int) -> Frames:
     """The given steps over at most `limit` cells."""
-    present = [field for field in FIELDS if values_of(results, numbers[-1], field) is not None]
+    present = _fields_of_all(results, numbers)
     states = [_state(results, number, limit, present) for number in numbers]
     cells, reference = states[-1].cells, states[-1].reference
     places, shape = _grid(cells, reference)
@@ -80,10 +80,21 @@ class _State:
     fields: dict[Field, np.ndarray]
 
 
+def _fields_of_all(results, numbers: list[int]) -> list[Field]:
+    """Fields that every step has: a step without one would seem to have zeros."""
+    present = []
+    for field in FIELDS:
+        lacking = [number for number in numbers if values_of(results, number, field) is None]
+        if not lacking:
+            present.append(field)
+        elif len(lacking) < len(numbers):
+            results.missing.append(f"{field.label} is left out: it is missing or not finite in step {lacking[0]}")
+    return present
+
+
 def _state(results, number: int, limit: int, present: list[Field]) -> _State:
     step = results.step(number)
     values = [values_of(results, number, field) for field in present]
-    values = [np.zeros(len(step.damage)) if own is None else own for own in values]
     cells, reference, displacement, _, _, *values = cells_of(results, step, limit, 1.0, *values)
     return _State(cells, reference, displacement, dict(zip(present, values)))
 
