@@ -181,6 +181,18 @@ class Pages(Reports):
         self.assert_has(text, "No step has fields.")
         self.assertIsNone(content["body"])
 
+    def test_a_field_that_some_steps_lack_is_no_zero(self):
+        folder = self.run_case(TORN)
+        with h5py.File(folder / "results.h5", "r+") as file:
+            del file["steps/000002/stretch"]
+            file["steps/000003/energy_density"][5] = np.nan
+        self.report(folder)
+        text = (folder / "report.html").read_text()
+        fields = [field["name"] for field in json.loads(CONTENT.search(text)[1])["body"]["fields"]]
+        self.assertEqual([name for name in ("damage", "stretch", "energy_density") if name in fields], ["damage"])
+        self.assert_has(text, "largest stretch of a bond is left out: it is missing or not finite in step 2",
+                        "energy density is left out: it is missing or not finite in step 3")  # fmt: skip
+
     def test_a_run_that_was_killed(self):
         steps = TORN.replace("steps = 10", "steps = 400")
         process = self.start(self.words_of_run(steps))
