@@ -1,8 +1,10 @@
 """`./peristat site`: every link leads somewhere, search and formulas work in pages that are opened as files."""
 
 import html.parser
+import http.server
 import pathlib
 import re
+import threading
 import time
 import unittest
 import urllib.parse
@@ -81,6 +83,14 @@ class Site(unittest.TestCase):
         self.assertIn("cpp/index.html", (SITE / "library.html").read_text())
 
 
+class Quiet(http.server.SimpleHTTPRequestHandler):
+    def __init__(self, *arguments):
+        super().__init__(*arguments, directory=SITE)
+
+    def log_message(self, *_):
+        pass
+
+
 class InABrowser(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -119,12 +129,18 @@ class InABrowser(unittest.TestCase):
         return self.script("return [...document.querySelectorAll('.md-search-result__link')].map(a => [a.href, a.textContent])")
 
     def test_search_finds_a_key_from_any_page(self):
-        for name in ("index.html", "how-to/restart.html"):
-            self.open(name)
+        """Pages that are opened as files, and a page of a server."""
+        server = http.server.ThreadingHTTPServer(("localhost", 0), Quiet)
+        self.addCleanup(server.server_close)
+        self.addCleanup(server.shutdown)
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        served = f"http://localhost:{server.server_port}/index.html"
+        for address in ((SITE / "index.html").as_uri(), (SITE / "how-to/restart.html").as_uri(), served):
+            self.browser.get(address)
             found = self.find("horizon_ratio")
             self.assertTrue(any("case-file.html" in address for address, _ in found), found)
-            address = next(address for address, _ in found)
-            self.assertTrue(pathlib.Path(urllib.parse.unquote(urllib.parse.urlparse(address).path)).is_file())
+            path = urllib.parse.unquote(urllib.parse.urlparse(found[0][0]).path)
+            self.assertTrue(pathlib.Path(path if address != served else f"{SITE}{path}").is_file())
 
     def test_formulas_are_rendered(self):
         sources = {name: len(re.findall(r'class="arithmatex"', (SITE / name).read_text())) for name in pages()}
