@@ -32,6 +32,7 @@ ELSEWHERE = {
     "srun": "needs Slurm",
     "paraview": "needs ParaView; viewers_test.py reads its files",
     "/usr/bin/python3": "torture_test.py, fuzz_test.py and reference_test.py run these scripts",
+    "PERISTAT_PROGRAM=build/release/peristat nice /usr/bin/python3 -B docs/gallery/make.py": "runs all cases; gallery_test.py",
     "PERISTAT_PROGRAM=build/sanitize/peristat": "the same under the sanitizers",
 }
 PROGRAM = "run", "resume", "check", "check-tangent", "calibrate", "sweep", "keys", "schema", "points", "plot", "help"
