@@ -29,7 +29,7 @@ def loaded(page: str) -> tuple[int, int]:
     """Bytes of a page, and of it with its scripts, styles and pictures (without fonts of formulas, and without the index of the search)."""
     text = (SITE / page).read_text("utf-8")
     found = set(re.findall(r'<(?:img|script)[^>]* src="([^"]+)"|<link[^>]* rel="stylesheet"[^>]* href="([^"]+)"', text))
-    paths = {(SITE / page).parent.joinpath(urllib.parse.unquote(a or b)).resolve() for a, b in found if not (a or b).startswith("data:")}
+    paths = {(SITE / page).parent.joinpath(urllib.parse.unquote(a or b)).resolve() for a, b in found if not (a or b).startswith(("data:", "$"))}
     return len(text.encode()), len(text.encode()) + sum(path.stat().st_size for path in paths)
 
 

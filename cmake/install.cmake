@@ -73,7 +73,7 @@ foreach(file IN ITEMS main.js loader.js main.css licences.txt)
 endforeach()
 install(DIRECTORY cases DESTINATION ${tools_folder} PATTERN runner EXCLUDE)
 install(FILES docs/case.schema.json DESTINATION ${tools_folder}/docs)  # where the cases look for it
-install(DIRECTORY docs TYPE DOC)
+install(DIRECTORY docs TYPE DOC PATTERN site EXCLUDE)
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE TYPE DOC)
 install(FILES benchmarks/RESULTS.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/benchmarks)
 

@@ -107,7 +107,8 @@ SHOWS = {
 }
 # The first of these that a run draws is its picture, unless CHOSEN has another one.
 PREFERRED = "sequence", "damage", "crack_surface", "fields", "deformed", "path", "column"
-CHOSEN = {}
+CHOSEN = dict.fromkeys(("buckling/arch", "buckling/column", "cantilever/plate", "cantilever/vibration", "cpd/poisson_2d", "cpd/square",
+                        "cpd/square_hole", "thermal/bimetal"), "deformed")  # fmt: skip
 
 
 def names():

@@ -145,7 +145,7 @@ class Package(Folder):
         self.assertNotIn("./peristat", told)
         listed = set(re.findall(r"^  peristat ([a-z-]+)", told, re.MULTILINE))
         self.assertLessEqual({"run", "resume", "check", "sweep", "trust", "plot", "report", "python", "help"}, listed)
-        self.assertTrue(listed.isdisjoint({"build", "test", "bench", "package"}))
+        self.assertTrue(listed.isdisjoint({"build", "test", "bench", "package", "site"}))
         first = re.search(r"Start with: peristat run (.*)", told)[1]
         self.assert_completed(self.launch("check", first))
         self.assert_completed(self.launch("trust", "--help"))
@@ -153,7 +153,7 @@ class Package(Folder):
         self.assertEqual(self.launch("version").output, f"peristat {version}\n")
 
     def test_what_needs_the_sources_is_refused(self):
-        for command in ("build", "test", "bench", "package"):
+        for command in ("build", "test", "bench", "package", "site"):
             refused = self.launch(command)
             self.assert_refused(refused, f"{command} needs peristat's sources")
             self.assertEqual(refused.output, "")
