@@ -440,7 +440,7 @@ def _require_results(path: Path) -> None:
         return
     what = "no results folder (it has no results.h5)" if path.is_dir() else "no such folder"
     if path.is_file():
-        what = "is a file; name the results folder that it is in"
+        what = "no such folder but a file; name the folder that it is in"
     place = path if path.is_dir() else path.parent
     near = sorted(file.parent.name for file in place.glob("*/results.h5")) if place.is_dir() else []
     there = f"; the results in {place} are {', '.join(near[:20])}{', …' * (len(near) > 20)}" if near else ""
