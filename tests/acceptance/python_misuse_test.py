@@ -86,17 +86,15 @@ class TestProcesses(InFolder):
             case.solver.mode = "relaxation"
             case.relaxation.steps = 1
             def interrupt():
-                global signalled
-                time.sleep(2.0)
-                signalled = time.monotonic()
+                time.sleep(1.0)
                 os.kill(os.getpid(), signal.SIGINT)
             try:
                 for step in case.steps(quiet=True, output="left"):
                     threading.Thread(target=interrupt).start()
             except KeyboardInterrupt:
-                print("steps", step.number, ps.open_results("left").status, time.monotonic() - signalled < 20)
+                print(step.number, ps.open_results("left").status, ps.open_results("left").steps)
             """)
-        self.assertEqual(done.stdout.strip(), "steps 0 interrupted True", done.stderr)
+        self.assertEqual(done.stdout.strip(), "0 interrupted []", done.stderr)
 
     def test_a_title_that_the_terminal_has_no_letters_for_ends_no_run(self):
         with mock.patch("sys.stdout", io.TextIOWrapper(io.BytesIO(), encoding="ascii")):
