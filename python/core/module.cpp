@@ -9,6 +9,7 @@
 #include "python/core/errors.hpp"
 #include "python/core/run_binding.hpp"
 #include "python/core/step.hpp"
+#include "python/core/working.hpp"
 #include "solvers/observe/point_fields.hpp"
 
 namespace py = pybind11;
@@ -19,6 +20,7 @@ PYBIND11_MODULE(_core, module) {
   // Memory of large vectors goes back to the system when they are freed, as in the program.
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
   python::translate_errors(module);
+  python::let_python_wait();
   python::bind_case(module);
   python::bind_body(module);
   python::bind_step(module);

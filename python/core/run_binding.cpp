@@ -31,14 +31,18 @@ struct RunEnd {
 /// `settle`.
 class PythonCompany {
  public:
-  PythonCompany(std::shared_ptr<const Body> body, py::object on_step, py::object on_line)
-      : on_step_(std::move(on_step)), on_line_(std::move(on_line)) {
+  /// @param is_left None, or a function that is true once the run shall end
+  PythonCompany(std::shared_ptr<const Body> body, py::object on_step, py::object on_line,
+                py::object is_left)
+      : on_step_(std::move(on_step)), on_line_(std::move(on_line)), is_left_(std::move(is_left)) {
     company_.body = std::move(body);
     company_.line = [this](const std::string& line, bool is_problem) { tell(line, is_problem); };
     if (!on_step_.is_none()) {
       company_.accepted = [this](const AcceptedStep& step) { tell(step); };
     }
-    company_.interrupted = [this] { return stops_ || failure_ || is_interrupted(); };
+    company_.interrupted = [this] {
+      return stops_ || failure_ || is_python_ending() || is_interrupted();
+    };
     company_.ended = [this](std::shared_ptr<const Body> of, LoadSteppingResult&& result) {
       end_.body = std::move(of);
       end_.displacement = std::move(result.state.displacement);
@@ -85,19 +89,21 @@ class PythonCompany {
     });
   }
 
-  /// Lets Python handle signals, now and then: getting its lock takes time.
+  /// Lets Python handle signals, and asks whether it wants the run to go on, now and then: getting
+  /// its lock takes time.
   bool is_interrupted() {
     using namespace std::chrono_literals;
     const auto now = std::chrono::steady_clock::now();
     if (now - asked_ < 50ms) return false;
     asked_ = now;
-    call([] {
+    call([this] {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      stops_ = !is_left_.is_none() && is_left_().cast<bool>();
     });
-    return failure_ != nullptr;
+    return stops_ || failure_;
   }
 
-  const py::object on_step_, on_line_;
+  const py::object on_step_, on_line_, is_left_;
   RunCompany company_;
   RunEnd end_;
   std::exception_ptr failure_;
@@ -116,8 +122,10 @@ RunOptions options_of(int threads, const std::string& log, bool overwrite,
 }
 
 RunEnd run_case(const SharedCase& of, const std::optional<BoundBody>& body, py::object on_step,
-                py::object on_line, int threads, const std::string& log, bool overwrite) {
-  PythonCompany company(body ? body->body : nullptr, std::move(on_step), std::move(on_line));
+                py::object on_line, py::object is_left, int threads, const std::string& log,
+                bool overwrite) {
+  PythonCompany company(body ? body->body : nullptr, std::move(on_step), std::move(on_line),
+                        std::move(is_left));
   {
     const Working working;
     static_cast<void>(run(*of, options_of(threads, log, overwrite, company), sole_rank()));
@@ -126,9 +134,9 @@ RunEnd run_case(const SharedCase& of, const std::optional<BoundBody>& body, py::
 }
 
 RunEnd resume_run(const std::string& directory, const Settings& settings, const py::dict& functions,
-                  const py::object& points, py::object on_step, py::object on_line, int threads,
-                  const std::string& log) {
-  PythonCompany company(nullptr, std::move(on_step), std::move(on_line));
+                  const py::object& points, py::object on_step, py::object on_line,
+                  py::object is_left, int threads, const std::string& log) {
+  PythonCompany company(nullptr, std::move(on_step), std::move(on_line), std::move(is_left));
   const std::shared_ptr<const Givens> givens = givens_of(functions, points);
   {
     const Working working;
@@ -152,10 +160,11 @@ void bind_runs(py::module_& module) {
       .def_property_readonly("displacement", displacement)
       .def_readonly("reason", &RunEnd::reason);
   module.def("run", run_case, py::arg("case"), py::arg("body"), py::arg("on_step"),
-             py::arg("on_line"), py::arg("threads"), py::arg("log"), py::arg("overwrite"));
+             py::arg("on_line"), py::arg("is_left"), py::arg("threads"), py::arg("log"),
+             py::arg("overwrite"));
   module.def("resume", resume_run, py::arg("directory"), py::arg("settings"), py::arg("functions"),
-             py::arg("points"), py::arg("on_step"), py::arg("on_line"), py::arg("threads"),
-             py::arg("log"));
+             py::arg("points"), py::arg("on_step"), py::arg("on_line"), py::arg("is_left"),
+             py::arg("threads"), py::arg("log"));
 }
 
 }  // namespace peristat::python

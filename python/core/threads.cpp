@@ -5,6 +5,7 @@
 #include <thread>
 
 #include <omp.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include "cases/runner/process/blas_memory.hpp"
@@ -31,6 +32,12 @@ void shorten_waiting() {
   begun.get_future().wait();
 }
 
+/// Lets processes that Python forks work, too: they would wait for ever for threads of OpenMP,
+/// which stay behind. Without threads before the fork, both processes start theirs anew.
+void end_threads_before_forks() {
+  pthread_atfork([] { omp_pause_resource_all(omp_pause_soft); }, nullptr, nullptr);
+}
+
 }  // namespace
 
 int prepare_threads(int asked_for) {
@@ -39,7 +46,8 @@ int prepare_threads(int asked_for) {
     const int threads = choose_threads(asked_for);
     require_threads(threads);
     claim_blas_memory(threads);
-    [[maybe_unused]] static const bool is_short = (shorten_waiting(), true);
+    [[maybe_unused]] static const bool is_prepared =
+        (shorten_waiting(), end_threads_before_forks(), true);
     return threads;
   } catch (const InputError& error) {
     throw InputError("threads", error.value(), error.allowed());

@@ -7,7 +7,7 @@ namespace peristat::python {
 /// The turn of a thread to work in peristat, without Python's global lock. One thread works at a
 /// time: the threads of OpenMP would compete for the cores, and expressions are not thread-safe.
 ///
-/// @throws std::runtime_error if another thread is at work
+/// @throws std::runtime_error if another thread is at work, or if Python is about to end
 class Working {
  public:
   Working();
@@ -16,8 +16,22 @@ class Working {
   Working& operator=(const Working&) = delete;
 
  private:
+  /// Counts a piece of work until it has Python's global lock again.
+  struct Counted {
+    Counted();
+    ~Counted();
+  };
+  const Counted counted_{};
   pybind11::gil_scoped_release released_;
 };
+
+/// True once Python is about to end: runs end after their present iteration.
+[[nodiscard]] bool is_python_ending();
+
+/// Before Python ends it waits for the end of what other threads do here, for a minute at most. A
+/// thread that asks for Python's global lock afterwards would end in the midst of C++, and the
+/// process with an error.
+void let_python_wait();
 
 /// Holds Python's global lock for a call from C++ into Python. The turn is given up meanwhile, so
 /// that the called function may use peristat.

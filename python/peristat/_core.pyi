@@ -117,6 +117,7 @@ def run(
     body: Body | None,
     on_step: Callable[[Step], Any] | None,
     on_line: Callable[[str, bool], Any],
+    is_left: Callable[[], bool] | None,
     threads: int,
     log: str,
     overwrite: bool,
@@ -128,6 +129,7 @@ def resume(
     points: Any,
     on_step: Callable[[Step], Any] | None,
     on_line: Callable[[str, bool], Any],
+    is_left: Callable[[], bool] | None,
     threads: int,
     log: str,
 ) -> RunEnd: ...

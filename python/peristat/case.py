@@ -74,20 +74,28 @@ class Case(CaseTable):
             InputError: there is no such key.
         """
         was_file = self._is_file()
-        head, _, number = key.rpartition("[") if key.endswith("]") else (key, "", "")
+        head, number = tables.parted(key)
         table, last = tables.find(self, head)
-        if number:
-            value_of_all = _with_element(table, last, number, key, value)
-            table[last] = value_of_all
-        else:
+        if number is None:
             table[last] = value
+        else:
+            changed = list(_elements(table, last, number, key))
+            changed[number] = value
+            table[last] = changed
         if was_file:
             self._settings.append((key, self._value_text(value, key)))
             object.__setattr__(self, "_unchanged", self.plain())
 
     def get(self, key: str, default: Any = None) -> Any:
-        """Value of a dotted key as it was given; `default` where it was not."""
-        table, last = tables.find(self, key)
+        """Value of a dotted key as it was given; `default` where it was not.
+
+        Raises:
+            InputError: there is no such key or element.
+        """
+        head, number = tables.parted(key)
+        table, last = tables.find(self, head)
+        if number is not None:
+            return _elements(table, last, number, key)[number]
         return table._values.get(table._key(last)[0], default)
 
     def copy(self) -> "Case":
@@ -219,11 +227,16 @@ class Case(CaseTable):
             return [self._without_functions(item, f"{key}[{k}]") for k, item in enumerate(value)]
         return self._functions.call_text(value, key) if callable(value) else value
 
-    def __setattr__(self, name, value):
-        if name in _PRIVATE:
-            object.__setattr__(self, name, value)
-        else:
-            super().__setattr__(name, value)
+    def __copy__(self):
+        return self.copy()
+
+    if not TYPE_CHECKING:  # for type checkers only the keys are there
+
+        def __setattr__(self, name, value):
+            if name in _PRIVATE:
+                object.__setattr__(self, name, value)
+            else:
+                super().__setattr__(name, value)
 
     def __repr__(self):
         return f"<Case {self.name}>"
@@ -290,10 +303,10 @@ def _with_mode(case, mode):
     return changed
 
 
-def _with_element(table, name, number, key, value):
-    values = table._values.get(name)
-    if not isinstance(values, (list, tuple)) or not number[:-1].isdigit() or int(number[:-1]) >= len(values):
+def _elements(table, name, number, key):
+    values = table._values.get(table._key(name)[0])
+    if isinstance(values, tables.TableList):
+        raise input_error(key, "", "is a table; name a key in it")
+    if not isinstance(values, list) or number >= len(values):
         raise input_error(key, "", "there is no such element")
-    changed = list(values)
-    changed[int(number[:-1])] = value
-    return changed
+    return values

@@ -41,7 +41,7 @@ class GivenFunctions:
         for name, known in self._functions.items():
             if known is function:
                 return name
-        own = re.sub(r"\W", "", getattr(function, "__name__", type(function).__name__)) or "function"
+        own = re.sub(r"\W", "", getattr(function, "__name__", type(function).__name__), flags=re.ASCII)[:60] or "function"
         name, count = f"{PREFIX}{own}", 1
         while name in self._functions:
             count += 1
@@ -56,19 +56,15 @@ def _parameters(function, key):
     except (TypeError, ValueError):
         raise input_error(key, repr(function)[:80], "has no parameters that could be read") from None
     kinds = {inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD}
-    names = [
-        parameter.name
-        for parameter in parameters
-        if parameter.default is inspect.Parameter.empty or parameter.kind not in kinds
-    ]
-    if not names or any(parameter.kind not in kinds for parameter in parameters):
+    free = [each for each in parameters if each.default is inspect.Parameter.empty]
+    if not free or any(parameter.kind not in kinds for parameter in free):
         raise input_error(
             key,
             repr(function)[:80],
             "must have parameters by name, such as x, y, z, load or t, and no others; those with a "
             "default keep it",
         )
-    return names
+    return [parameter.name for parameter in free]
 
 
 def _filler(name, function):
@@ -80,7 +76,9 @@ def _filler(name, function):
             float(argument[0]) if is_number else argument
             for argument, is_number in zip(arguments, are_numbers, strict=True)
         ]
-        values = numpy.asarray(function(*given))
+        values = numpy.asanyarray(function(*given))
+        if numpy.ma.is_masked(values):
+            raise ValueError(f"{name} returned masked values, which are no numbers")
         if values.dtype.kind not in "bifu":
             raise TypeError(f"{name} returned {values.dtype} in place of numbers")
         if values.shape not in {(), (1,), (count,)}:

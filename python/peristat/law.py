@@ -6,6 +6,7 @@ from typing import Any
 import numpy
 from numpy.typing import ArrayLike
 
+from ._numbers import real_number, real_numbers
 from .errors import input_error
 
 
@@ -32,11 +33,15 @@ def sampled_law(
     Raises:
         InputError: force(elastic_until) is another one, or the values are no such array.
     """
-    for name, stretch in (("elastic_until", elastic_until), ("breaks_at", breaks_at)):
-        if not numpy.isfinite(stretch):
-            raise input_error(name, repr(stretch), "must be a finite stretch")
-    stretches = numpy.linspace(float(elastic_until), float(breaks_at), int(samples))
-    forces = numpy.asarray(force(stretches), dtype=float)
+    first, last = real_number("elastic_until", elastic_until), real_number("breaks_at", breaks_at)
+    if not 0.0 < first < last:
+        raise input_error("breaks_at", repr(last), f"must be a larger stretch than elastic_until, {first!r}, and both positive")
+    if not isinstance(samples, (int, numpy.integer)) or not 2 <= samples <= 1000:
+        raise input_error("samples", repr(samples)[:80], "must be a whole number from 2 to 1000")
+    if not callable(force):
+        raise input_error("force", repr(force)[:80], "must be a function of an array of stretches")
+    stretches = numpy.linspace(first, last, samples)
+    forces = real_numbers("force", force(stretches.copy()))
     if forces.shape != stretches.shape:
         raise input_error("force", str(forces.shape), f"must have the shape {stretches.shape} of the stretches")
     if not numpy.isclose(forces[0], stretches[0], rtol=1e-6, atol=0.0):

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy
 from numpy.typing import ArrayLike
 
+from ._numbers import real_numbers
 from .errors import input_error
 
 
@@ -29,23 +30,23 @@ class Points:
         sets: Mapping[str, ArrayLike] | None = None,
         columns: Mapping[str, ArrayLike] | None = None,
     ) -> None:
-        self.positions = _numbers("positions", positions)
+        self.positions = real_numbers("positions", positions)
         if self.positions.ndim != 2 or self.positions.shape[1] not in (1, 2, 3):
             raise input_error(
                 "positions", str(self.positions.shape), "must have the shape points x dimension"
             )
         self.volumes = self._of_points("volumes", volumes)
-        self.sets = {name: self._members(name, members) for name, members in (sets or {}).items()}
+        self.sets = {name: self._members(name, members) for name, members in _named("sets", sets)}
         self.columns = {
             name: self._of_points(f"columns[{name!r}]", values)
-            for name, values in (columns or {}).items()
+            for name, values in _named("columns", columns)
         }
 
     def __len__(self) -> int:
         return len(self.positions)
 
     def _of_points(self, key, values):
-        values = _numbers(key, values)
+        values = real_numbers(key, values)
         if values.shape not in {(), (len(self),)}:
             raise input_error(
                 key, str(values.shape), f"must have a number for each of the {len(self)} points"
@@ -66,8 +67,8 @@ class Points:
         return members.astype(numpy.int32)
 
 
-def _numbers(key, values):
-    try:
-        return numpy.array(values, dtype=float)
-    except (TypeError, ValueError):
-        raise input_error(key, repr(values)[:60], "must be numbers") from None
+def _named(key, given):
+    given = {} if given is None else given
+    if not isinstance(given, Mapping) or not all(isinstance(name, str) for name in given):
+        raise input_error(key, repr(given)[:60], "must be a dict of arrays by their names")
+    return given.items()

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MARKER = "peristat.json"  # locked by the run that writes the folder
+WITH_STRESS = ("deformation_gradient", "green_lagrange_strain", "first_piola_stress", "cauchy_stress", "strain", "stress",
+               "von_mises", "principal_stress", "principal_direction", "missing_neighbourhood")  # fmt: skip
 VECTORS = ("displacement", "force", "velocity")  # fields that are drawn by their magnitude
 
 
@@ -80,6 +82,20 @@ class Columns(Mapping):
             raise unknown(self._kind, name, self.units, self._results.path)
 
 
+class ByName(dict):
+    """A dict that refuses a name which it has not with the nearest one and the list."""
+
+    def __init__(self, kind: str, where: Path, found: Mapping):
+        super().__init__(found)
+        self._kind, self._where = kind, where
+
+    def __missing__(self, name: object):
+        raise unknown(self._kind, name, self, self._where)
+
+    def __reduce__(self):
+        return ByName, (self._kind, self._where, dict(self))
+
+
 class Results:
     """A results folder. What has been read stays as it was then, until `reload()`.
 
@@ -89,7 +105,7 @@ class Results:
     """
 
     def __init__(self, folder: str | os.PathLike):
-        self.path = Path(folder)
+        self.path = Path(folder).absolute()
         _require_results(self.path)
         self._session = _session(self.path)
         with self._file() as file:
@@ -104,16 +120,25 @@ class Results:
         """How the run ended (docs/results.md, summary.json); empty before it has."""
         path = self.path / "summary.json"
         try:
-            return json.loads(path.read_text("utf-8"))
+            summary = json.loads(path.read_text("utf-8"))
         except FileNotFoundError:
+            self._require_same_run()
             return {}
         except (OSError, ValueError) as error:
             raise InputError(f"{path}: can't be read ({error})") from error
+        if not isinstance(summary, dict):
+            raise InputError(f"{path}: holds no table")
+        return summary
 
     @property
     def status(self) -> str:
         """`completed`, `not_converged`, `inconsistent`, `interrupted` or `failed`; `running` while a program writes."""
         return self.summary.get("status") or ("running" if _is_locked(self.path / MARKER) else "interrupted")
+
+    @property
+    def converged(self) -> bool:
+        """True if the run reached the end of its load."""
+        return self.status == "completed"
 
     @property
     def reason(self) -> str:
@@ -170,7 +195,8 @@ class Results:
     def point_sets(self) -> dict[str, np.ndarray]:
         """Numbers of the points of each set, ascending."""
         with self._file() as file:
-            return {name: _constant(numbers) for name, numbers in point_sets(file, len(self.positions)).items()}
+            found = {name: _constant(numbers) for name, numbers in point_sets(file, len(self.positions)).items()}
+        return ByName("set", self.path, found)
 
     # ---- fields ----
 
@@ -190,7 +216,10 @@ class Results:
         """A field of a step, count or count x components [its unit: docs/results.md, results.h5]."""
         names = self.fields(step)
         if name not in names:
-            raise unknown("field", name, names, f"{self.path}, step {self._number(step)}")
+            error = unknown("field", name, names, f"{self.path}, step {self._number(step)}")
+            if name in WITH_STRESS:
+                error = InputError(f"{error} A run writes strains and stresses with output.stress = true.")
+            raise error
         with self._file() as file:
             return file.numbers(f"{self._group(step)}/{name}")
 
@@ -235,20 +264,22 @@ class Results:
                 found[name] = self.history[name]
             elif columns:
                 found[name] = _constant(np.stack([self.history[column] for column in columns], axis=1))
-        return found
+        return ByName("probe of a set or a point", self.path, found)
 
     @cached_property
     def lines(self) -> dict[str, Columns]:
         """Values along lines, by the name of the probe: one row per point and step (docs/results.md, line_NAME.csv)."""
         with self._file() as file:
             names = file.names("lines")
-        return {name: Columns(self, f"lines/{name}", "column of the line") for name in names}
+        found = {name: Columns(self, f"lines/{name}", "column of the line") for name in names}
+        return ByName("line", self.path, found)
 
     def reload(self) -> "Results":
         """Forgets what has been read, so that a run that is going, or has gone on, shows its present state."""
         for name in [name for kind in type(self).__mro__ for name, member in vars(kind).items()
                      if isinstance(member, cached_property)]:  # fmt: skip
             self.__dict__.pop(name, None)
+        _require_results(self.path)
         self._session = _session(self.path)
         return self
 
@@ -354,6 +385,7 @@ class Results:
     def _require_same_run(self) -> None:
         """What is kept of one run is never mixed with what another one has written."""
         if _session(self.path) != self._session:
+            _require_results(self.path)
             raise InputError(f"{self.path}: another run, or a continuation, has written here since these results were opened; "
                              "call reload()")  # fmt: skip
 
@@ -407,6 +439,8 @@ def _require_results(path: Path) -> None:
     if (path / "results.h5").exists():
         return
     what = "no results folder (it has no results.h5)" if path.is_dir() else "no such folder"
+    if path.is_file():
+        what = "no such folder but a file; name the folder that it is in"
     place = path if path.is_dir() else path.parent
     near = sorted(file.parent.name for file in place.glob("*/results.h5")) if place.is_dir() else []
     there = f"; the results in {place} are {', '.join(near[:20])}{', …' * (len(near) > 20)}" if near else ""

@@ -1,9 +1,10 @@
 """Runs, and their results."""
 
+import inspect
 import os
 import pathlib
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -12,7 +13,7 @@ from . import toml_text
 from ._package import load_core, thread_count
 from .case import Case
 from .errors import input_error
-from .results import Results
+from .results import Results, open_results
 
 if TYPE_CHECKING:
     from ._core import Step
@@ -32,11 +33,6 @@ class Run(Results):
         self._case = case
 
     @property
-    def converged(self) -> bool:
-        """True if the run reached the end of its load."""
-        return self.status == "completed"
-
-    @property
     def reason(self) -> str:
         """Why the run ended before its load did, a sentence; empty if it did not."""
         return ": ".join(part for part in (super().reason, self._end.reason) if part)
@@ -54,25 +50,29 @@ class Run(Results):
         """Goes on from the last accepted step, see `peristat.resume`."""
         return resume(self.path, settings, case=self._case, **options)
 
+    def __reduce__(self):
+        """In another process, or copied, it is the results in its folder."""
+        return open_results, (self.path,)
 
-def run_case(case, body, *, output=None, on_step=None, threads=0, quiet=False, log="", overwrite=False):
+
+def run_case(case, body, *, output=None, on_step=None, threads=0, quiet=False, log=None, overwrite=False):
     """Runs a case; its body may have been made before. See `Body.solve`."""
-    if on_step is not None and not callable(on_step):
-        raise input_error("on_step", repr(on_step)[:80], "must be a function of a step")
+    _require_callback(on_step)
     threads = thread_count(threads)
     core = load_core()
     placed = _with_output(case, output)
     read = placed._read()
-    folder = pathlib.Path(read.directory)
+    folder = os.path.abspath(read.directory)  # a callback may change the working folder
     with placed._located_errors():
         end = core.run(
             read,
             body._core if body is not None else None,
             on_step,
             _no_line if quiet else _print_line,
+            getattr(on_step, "is_left", None),
             threads,
-            os.fspath(log),
-            overwrite,
+            os.fspath(log or ""),
+            bool(overwrite),
         )
     return Run(folder, end, placed)
 
@@ -85,7 +85,7 @@ def resume(
     on_step: Callable[["Step"], Any] | None = None,
     threads: int = 0,
     quiet: bool = False,
-    log: str | os.PathLike[str] = "",
+    log: str | os.PathLike[str] | None = None,
 ) -> Run:
     """Goes on with an interrupted or failed run from its last accepted step.
 
@@ -100,13 +100,32 @@ def resume(
     Raises:
         InputError: there is nothing to resume, or a setting would make it another case.
     """
+    _require_callback(on_step)
     threads = thread_count(threads)
-    texts = [(key, toml_text.value_text(value, key)) for key, value in (settings or {}).items()]
+    settings = {} if settings is None else settings
+    if not isinstance(settings, Mapping) or not all(isinstance(key, str) for key in settings):
+        raise input_error("settings", repr(settings)[:80], "must be a dict of values by dotted keys")
+    texts = [(key, toml_text.value_text(value, key)) for key, value in settings.items()]
     functions, points = ({}, None) if case is None else case._givens()
+    place = os.path.abspath(folder)
     end = load_core().resume(
-        os.fspath(folder), texts, functions, points, on_step, _no_line if quiet else _print_line, threads, os.fspath(log)
+        os.fspath(folder),
+        texts,
+        functions,
+        points,
+        on_step,
+        _no_line if quiet else _print_line,
+        None,
+        threads,
+        os.fspath(log or ""),
     )
-    return Run(folder, end, case)
+    return Run(place, end, case)
+
+
+def _require_callback(on_step):
+    returns_at_once = inspect.iscoroutinefunction(on_step) or inspect.isgeneratorfunction(on_step)
+    if on_step is not None and (not callable(on_step) or returns_at_once):
+        raise input_error("on_step", repr(on_step)[:80], "must be a function of a step, neither async nor a generator")
 
 
 def _with_output(case, output):
@@ -129,9 +148,16 @@ def _with_output(case, output):
 
 
 def _print_line(line, is_problem):
-    print(f"peristat: {line}" if is_problem else line, file=sys.stderr if is_problem else sys.stdout)
+    _print(f"peristat: {line}" if is_problem else line, sys.stderr if is_problem else sys.stdout)
 
 
 def _no_line(line, is_problem):
     if is_problem:
-        print(f"peristat: {line}", file=sys.stderr)
+        _print_line(line, is_problem)
+
+
+def _print(text, stream):
+    try:
+        print(text, file=stream)
+    except UnicodeEncodeError:  # a title, on a stream of ASCII
+        print(text.encode("ascii", "backslashreplace").decode(), file=stream)

@@ -1,5 +1,6 @@
 """A run as a sequence of steps."""
 
+import atexit
 import queue
 import threading
 import weakref
@@ -8,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ._package import load_core
 
 if TYPE_CHECKING:
-    from ._core import Step
+    from ._core import Step as Step
     from .run import Run
 else:
     Step = load_core().Step
@@ -34,8 +35,14 @@ class Steps:
 
     @property
     def run(self) -> "Run":
-        """The `Run`, whose results are closed first if it is still going on."""
+        """The `Run`, whose results are closed first if it is still going on.
+
+        Raises:
+            RuntimeError: there is none: no step has been asked for, or the run has ended by an exception.
+        """
         self.close()
+        if self._run is None:
+            raise RuntimeError("there is no run: no step has been asked for, or an exception has ended it")
         return self._run
 
     def __iter__(self) -> "Steps":
@@ -97,13 +104,17 @@ class _Exchange:
     def __init__(self, told):
         self._told, self._may_go, self._stops = told, threading.Semaphore(0), False
 
-    def tell(self, step):
-        """Called by the run: waits until the loop asks for the next step."""
+    def __call__(self, step):
+        """The run tells a step: it waits until the loop asks for the next one."""
         if not self._stops:
             self._told.put(step)
             self._may_go.acquire()
         if self._stops:
             step.stop("the loop over its steps was left")
+
+    def is_left(self):
+        """The run asks now and then, also in the midst of a step."""
+        return self._stops
 
     def go_on(self):
         self._may_go.release()
@@ -116,11 +127,17 @@ class _Exchange:
         self._told.put(end)
 
 
+_open = {}  # threads of runs, and their exchanges
+
+
 def _work(start, exchange):
+    _open[threading.current_thread()] = exchange
     try:
-        exchange.end(_End(run=start(exchange.tell)))
+        exchange.end(_End(run=start(exchange)))
     except BaseException as error:
         exchange.end(_End(error=error))
+    finally:
+        del _open[threading.current_thread()]
 
 
 def _end(exchange, thread):
@@ -129,3 +146,7 @@ def _end(exchange, thread):
         thread.join()
 
 
+@atexit.register  # after the compiled part, and so called before it: it waits for all runs
+def _end_all():
+    for thread, exchange in list(_open.items()):
+        _end(exchange, thread)

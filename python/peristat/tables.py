@@ -1,6 +1,7 @@
 """Tables of a case, whose keys are those of case files."""
 
 import collections.abc
+import re
 
 import numpy
 
@@ -8,7 +9,17 @@ from . import _schema
 from .errors import input_error
 
 
-class Table(collections.abc.MutableMapping):
+class Copied:
+    """Copies of a table are of their own; functions and dials in them are the same."""
+
+    def __copy__(self):
+        return type(self)(self._schema, self._path, self.plain())
+
+    def __deepcopy__(self, _):
+        return self.__copy__()
+
+
+class Table(Copied, collections.abc.MutableMapping):
     """A table of keys, as mapping and by attributes: `case.material.youngs_modulus = "192 GPa"`.
 
     The keys are those of case files (`peristat keys`, docs/case-file.md); an unknown one is refused.
@@ -48,7 +59,7 @@ class Table(collections.abc.MutableMapping):
             value = TableList(schema["items"], path, value)
         elif value is None:
             raise input_error(path, "None", "is no value; `del` drops a key")
-        self._values[name] = value
+        self._values[name] = value if isinstance(value, (Table, TableList)) else _plain(value)
 
     def __delitem__(self, name):
         del self._values[self._key(name)[0]]
@@ -93,7 +104,7 @@ class Table(collections.abc.MutableMapping):
         }
 
 
-class TableList(collections.abc.MutableSequence):
+class TableList(Copied, collections.abc.MutableSequence):
     """An array of tables, such as the supports of a case."""
 
     def __init__(self, schema, path, tables=()):
@@ -133,6 +144,18 @@ class TableList(collections.abc.MutableSequence):
         return [table.plain() for table in self._tables]
 
 
+def parted(key):
+    """Key and number of an element, such as "support[0].displacement" and 1, or None.
+
+    Raises:
+        InputError: the key is no text.
+    """
+    if not isinstance(key, str):
+        raise input_error("key", repr(key)[:80], 'must be text, such as "loading.steps"')
+    match = re.fullmatch(r"(.*)\[([0-9]+)\]", key)
+    return (match[1], int(match[2])) if match else (key, None)
+
+
 def find(table, key):
     """Table and last name of a dotted key such as "support[0].displacement".
 
@@ -158,7 +181,7 @@ def find(table, key):
 
 def _element(tables, number, key):
     count = len(tables) if isinstance(tables, TableList) else 0
-    if not number.endswith("]") or not number[:-1].isdigit() or int(number[:-1]) >= count:
+    if not re.fullmatch(r"[0-9]+\]", number) or int(number[:-1]) >= count:
         raise input_error(key, "", f"[{number} is none of the {count} tables, which count from 0")
     return tables[int(number[:-1])]
 

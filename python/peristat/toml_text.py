@@ -25,7 +25,7 @@ def value_text(value, key=""):
     if isinstance(value, (bool, numpy.bool_)):
         return "true" if value else "false"
     if isinstance(value, str):
-        return _string(value)
+        return _string(value, key)
     if isinstance(value, (int, numpy.integer)):
         return str(int(value))
     if isinstance(value, (float, numpy.floating)):
@@ -38,7 +38,7 @@ def value_text(value, key=""):
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(value_text(item, f"{key}[{k}]") for k, item in enumerate(value)) + "]"
     if hasattr(value, "__fspath__"):
-        return _string(value.__fspath__())
+        return _string(value.__fspath__(), key)
     raise input_error(
         key,
         repr(value)[:80],
@@ -77,10 +77,16 @@ def _number(value, key):
 
 
 def _name(name):
-    return name if BARE.match(name) else _string(name)
+    return name if BARE.match(name) else _string(name, name)
 
 
-def _string(text):
+def _string(text, key):
+    try:
+        text.encode("utf-8")
+    except UnicodeEncodeError:  # such as the name of a file that is no text
+        raise input_error(key, repr(text)[:80], "must be text of Unicode") from None
+    if "\0" in text:
+        raise input_error(key, repr(text)[:80], "must have no zero character")
     escaped = text.replace("\\", "\\\\").replace('"', '\\"')
     controls = {"\n": "\\n", "\t": "\\t", "\r": "\\r"}
     return '"' + "".join(

@@ -39,6 +39,7 @@ print(results.history["load_factor"], ps.resume("results/strip", {"loading.steps
 """
 WRONG = {
     "case.latice.spacing = 1": 'has no attribute "latice"',
+    "case.latice = {}": 'has no attribute "latice"',
     "case.material.youngs_modulus = [1]": "Incompatible types in assignment",
     "case.lattice = 3": "Incompatible types in assignment",
     "case.add_support(sett='left')": 'Unexpected keyword argument "sett"',

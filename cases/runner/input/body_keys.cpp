@@ -15,6 +15,7 @@
 #include "cases/runner/input/unit_system.hpp"
 #include "cases/runner/input/value_schema.hpp"
 #include "solvers/formulations/formulations.hpp"
+#include "src/core/expression.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/point_file.hpp"
 #include "src/neighbourhood/optimised_weights.hpp"
@@ -291,7 +292,11 @@ Table<Case> points_keys() {
           at.refuse("the points that the program gives have dimension " +
                     std::to_string(given->dimension) + ", the case has " +
                     std::to_string(result.dimension));
-        for (const auto& [name, values] : given->columns) result.columns[name];
+        for (const auto& [name, values] : given->columns) {
+          const std::string why_not = why_no_column(name);
+          if (!why_not.empty()) at.refuse("the column \"" + name + "\" " + why_not);
+          result.columns[name];
+        }
       }};
 }
 
