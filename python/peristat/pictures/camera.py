@@ -80,7 +80,7 @@ def stage(low, high, words, bar: str | None, room: float = 1.1, foot: float = 0.
 
     words  of the heading; bar  label of the colour bar; room  width of its ticks' labels; foot  height of a legend
     """
-    figure, box, place, _ = placed(low, high, words, bar, 0.5, TRIPOD + foot, room)
+    figure, box, place, _ = placed(low, high, words, bar, 0.5, TRIPOD, room, foot)
     total_width, total_height = figure.get_size_inches()
     scale = min(box[2] * total_width / (high - low)[0], box[3] * total_height / (high - low)[1])
     axes = figure.add_axes([0.0, 0.0, 1.0, 1.0], zorder=0)

@@ -48,21 +48,19 @@ def settle(figure: Figure, results, words: list[str], handles=(), labels=()) -> 
     heading(figure, results, words)
     place = partial(figure.tight_layout, rect=(0.0, foot / height, 1.0, 1.0 - above / height), pad=0.6, w_pad=2.0, h_pad=1.5)
     place()
-    if any([wrap_labels(axes) for axes in figure.axes]):
-        place()
+    for axes in figure.axes:
+        wrap_labels(axes)
+    place()  # with the ticks and labels that the first placing has given
 
 
-def wrap_labels(axes) -> bool:
-    """Breaks labels into lines that are no longer than their axes; returns whether any was."""
-    has_wrapped = False
+def wrap_labels(axes) -> None:
+    """Breaks labels into lines that are no longer than their axes."""
     width, height = axes.get_position().size * size_of(axes.figure)
     for label, room in ((axes.xaxis.label, width), (axes.yaxis.label, height)):
         text = label.get_text()
         share = text_width(text.replace("\n", " ")) / max(room, 0.5)
         if share > 1.0 and "\n" not in text:
             label.set_text("\n".join(textwrap.wrap(text, max(int(len(text) / np.ceil(share)) + 4, 10))))
-            has_wrapped = True
-    return has_wrapped
 
 
 def legend_below(figure: Figure, handles, labels) -> float:

@@ -2,14 +2,12 @@
 
 import numpy as np
 
-from .style import (
-    is_narrow, new_figure, page_height, page_width, present_style, room_above, text_width,
-)  # fmt: skip
+from .style import new_figure, page_height, page_width, present_style, room_above, size_of, text_width
 
 LEAST = 0.6  # height and width of a body [inch of the code]
 
 
-def placed(low, high, words, bar: str | None, left: float, bottom: float, room: float = 1.1):
+def placed(low, high, words, bar: str | None, left: float, bottom: float, room: float = 1.1, foot: float = 0.0):
     """A figure for a box: figure, rectangle of the box, rectangle of the colour bar (fractions), inches per unit.
 
     The bar stands on the right, or lies below where it would take too much of the width or is too short for its label.
@@ -18,7 +16,9 @@ def placed(low, high, words, bar: str | None, left: float, bottom: float, room: 
     bar           label of the colour bar; None: there is none
     left, bottom  margins for labels [inch of the code]
     room          width of the ticks' labels of an upright bar
+    foot          height below everything for a legend
     """
+    bottom += foot
     size = np.maximum(high - low, 1e-300)
     page, most, above = page_width(), page_height(), room_above(words, page_width())
     upright = _fit(size, page - left - (0.3 if bar is None else 0.75 + room), most - bottom - above)
@@ -38,7 +38,7 @@ def placed(low, high, words, bar: str | None, left: float, bottom: float, room: 
     if is_upright:
         place = [(x + width + 0.25) / total, (under + 0.02 * height) / tall, 0.2 / total, 0.96 * height / tall]
     else:
-        place = [max(x, 0.5) / total, 0.65 / tall, min(width, total - 1.0) / total, 0.18 / tall]
+        place = [max(x, 0.5) / total, (0.65 + foot) / tall, min(width, total - 1.0) / total, 0.18 / tall]
     return figure, box, place, scale
 
 
@@ -51,12 +51,18 @@ def framed(low, high, words, bar: str | None, foot: float = 0.0, room: float = 1
 
     foot  height below for a legend [inch of the code]
     """
-    figure, box, place, _ = placed(low, high, words, bar, 0.95, 0.7 + foot, room)
+    figure, box, place, _ = placed(low, high, words, bar, 0.95, 0.7, room, foot)
     axes = figure.add_axes(box)
     axes.set_aspect("equal")
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     axes.grid(False)
-    if is_narrow():
-        axes.locator_params(nbins=6)
+    few_ticks(axes)
     return figure, axes, place
+
+
+def few_ticks(axes) -> None:
+    """As many ticks as their labels have room for."""
+    width, height = axes.get_position().size * size_of(axes.figure)
+    axes.locator_params(axis="x", nbins=int(np.clip(width / 0.75, 1, 9)))
+    axes.locator_params(axis="y", nbins=int(np.clip(height / 0.4, 1, 9)))

@@ -3,12 +3,14 @@
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
 
+from .framing import few_ticks
 from .plane import MOST_CELLS, SEAM, crack_lines, rims
 from .ranges import Shades, beyond, held_values, shades, span
 from .separations import cells_of
 from .state_words import piece_words, step_words
 from .style import (
     FAINT, INK, PIECE, colour_bar, heading, is_narrow, new_figure, page_height, page_width, piece_legend, points, room_above,
+    size_of, text_width,
 )  # fmt: skip
 from .units import ENERGY_DENSITIES, LENGTHS, unit_for
 
@@ -61,8 +63,11 @@ def draw_plane_fields(results, step):
         axes.set_ylim(low[1], high[1])
         axes.set_aspect("equal")
         axes.grid(False)
-        axes.locator_params(nbins=5)
-        axes.set_title(f"{title}{f', {colours.words[-1]}' if colours.words else ''}", loc="left", fontsize="small")
+        few_ticks(axes)
+        note = f", {colours.words[-1]}" if colours.words else ""
+        if text_width(title + note, "small") > place[2] * size_of(figure)[0] + 0.3:
+            note = note.replace(", ", "\n")
+        axes.set_title(title + note, loc="left", fontsize="small")
         if number_of_panel % columns == 0:
             axes.set_ylabel(f"y [{unit}]")
         if number_of_panel + columns >= len(panels):
@@ -75,28 +80,30 @@ def draw_plane_fields(results, step):
 
 
 def _small_multiples(count: int, aspect: float, words, has_legend: bool):
-    """A figure, the places of `count` panels with a lying colour bar below each, and the number of columns.
+    """A figure, the places of `count` panels with their colour bars, and the number of columns.
 
-    Panels stand side by side if the body is tall, else below each other with the bars beside them.
+    Panels stand side by side, with the bars below, if the body is tall or the page low; else below each other, with the
+    bars on the right.
     """
     page, above, foot = page_width(), room_above(words, page_width()), 0.35 * has_legend
-    columns = count if aspect > 0.8 and not is_narrow() else 1
-    lies = columns > 1
-    left, right, bottom, top = 0.9, (0.25 if lies else 1.5), (1.35 if lies else 0.35), 0.35
-    width = page / columns - left - right
-    height = width * aspect
-    rows = count // columns
-    most = (page_height() - above - foot - 0.4) / rows - bottom - top
-    if height > most:
-        width, height = width * most / height, most
-    height = max(height, 0.8)
+    room = page_height() - above - foot - 0.35
+
+    def sizes(columns: int, left: float, right: float, bottom: float, top: float):
+        width = page / columns - left - right
+        width = min(width, ((room / (count // columns)) - bottom - top) / aspect)
+        return columns, width, width * aspect, left, right, bottom, top
+
+    stacked, beside = sizes(1, 0.9, 1.5, 0.35, 0.5), sizes(count, 0.9, 0.25, 1.35, 0.5)
+    is_stacked = is_narrow() or (aspect <= 0.8 and stacked[2] >= 0.75)
+    columns, width, height, left, right, bottom, top = stacked if is_stacked else beside
+    height = max(height, 0.5)
     across, up = page / columns, bottom + height + top
-    tall = above + rows * up + foot + 0.35
+    tall = above + (count // columns) * up + foot + 0.35
     figure, places = new_figure(page, tall), []
     for panel in range(count):
         x = (panel % columns) * across + left + 0.5 * (across - left - right - width)
         y = tall - above - (panel // columns + 1) * up + bottom
-        bar = [x, y - 0.85, width, 0.16] if lies else [x + width + 0.2, y, 0.18, height]
+        bar = [x + width + 0.2, y, 0.18, height] if is_stacked else [x, y - 0.85, width, 0.16]
         places.append(([x / page, y / tall, width / page, height / tall],
                        [bar[0] / page, bar[1] / tall, bar[2] / page, bar[3] / tall]))  # fmt: skip
     return figure, places, columns

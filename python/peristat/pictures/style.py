@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Patch
 from matplotlib.textpath import TextToPath
+from matplotlib.ticker import MaxNLocator
 
 INK = "#22282e"  # text and axes
 FACTS = "#5b656e"
@@ -247,6 +248,9 @@ def colour_bar(figure: Figure, place, mappable, label: str, **options):
     """A slim colour bar in the rectangle `place` (figure fractions), upright or lying as the rectangle is."""
     axes = figure.add_axes(place)
     width, height = np.array(place[2:]) * size_of(figure)
+    if "ticks" not in options:
+        room = width / 0.8 if width > height else height / 0.35  # of a tick's label
+        options["ticks"] = MaxNLocator(nbins=int(np.clip(room, 1, 8)), steps=[1, 2, 2.5, 5, 10])
     bar = figure.colorbar(mappable, cax=axes, orientation="horizontal" if width > height else "vertical", **options)
     bar.outline.set_visible(False)
     bar.set_label(label, labelpad=points(6))
