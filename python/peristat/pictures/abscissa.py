@@ -34,8 +34,7 @@ class Abscissa:
             label, size = load_axis(self.values)
             return replace(self, label=label, values=self.values / size)
         unit, size = time_unit(largest) if self.kind == "time" else unit_for(largest, LENGTHS)
-        label = f"{self.label} [{unit}]".replace("$", r"\$")
-        return replace(self, label=label, values=self.values / size, unit=unit)
+        return replace(self, label=f"{self.label} [{unit}]", values=self.values / size, unit=unit)
 
     def words(self, value: float) -> str:
         """A value as words: "at 0.25 mm"."""

@@ -58,6 +58,9 @@ def wrap_labels(axes) -> None:
     width, height = axes.get_position().size * size_of(axes.figure)
     for label, room in ((axes.xaxis.label, width), (axes.yaxis.label, height)):
         text = label.get_text()
+        if "$10^{" not in text:  # a name may have the mark of formulas
+            text = text.replace(r"\$", "$").replace("$", r"\$")
+            label.set_text(text)
         share = text_width(text.replace("\n", " ")) / max(room, 0.5)
         if share > 1.0 and "\n" not in text:
             label.set_text("\n".join(textwrap.wrap(text, max(int(len(text) / np.ceil(share)) + 4, 10))))
