@@ -20,6 +20,7 @@ from ._names import unknown
 from .errors import InputError
 from .pictures.hdf5_reader import as_text
 from .pictures.results_folder import ResultsFile, ResultsFolder, point_sets, read_results_folder
+from .pictures.steps_by_name import ranges, steps_named
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 MARKER = "peristat.json"  # locked by the run that writes the folder
 WITH_STRESS = ("deformation_gradient", "green_lagrange_strain", "first_piola_stress", "cauchy_stress", "strain", "stress",
                "von_mises", "principal_stress", "principal_direction", "missing_neighbourhood")  # fmt: skip
-VECTORS = ("displacement", "force", "velocity")  # fields that are drawn by their magnitude
 
 
 def open_results(folder: str | os.PathLike) -> "Results":
@@ -285,16 +285,29 @@ class Results:
 
     # ---- pictures ----
 
-    def plot(self, name: str | None = None, step: int = -1) -> "Figure":
+    def plot(self, name: str | None = None, step: int | str = -1, *, component: str | None = None,
+             zoom: Sequence[float] | None = None, deform: float | str | None = "auto", style: str = "screen",
+             column: str | None = None) -> "Figure":  # fmt: skip
         """A picture as the program draws it (docs/results.md, Pictures), as a matplotlib figure.
 
-        name  of a picture ("deformed", "energies"), or of a field, which colours the deformed body: "stretch". Without a
-              name the first picture that the program draws.
-        step  shown by pictures of one step; other pictures show the whole run and take no step
+        name       of a picture ("deformed", "energies"), or of a field, which colours the deformed body: "stretch". Without
+                   a name the first picture that the program draws.
+        step       shown by pictures of one step: a number, "last", "first" or "peak" (of the largest reaction); other
+                   pictures show the whole run and take no step
+        component  of a field: "x", "xy", "magnitude", "1" (docs/results.md)
+        zoom       what is shown of a field: xmin, xmax, ymin, ymax [m]; six numbers for a solid
+        deform     factor of the displacements in the picture of a field; None: the undeformed body
+        style      "screen", "paper" or "talk"; a paper has a column, "single" or "double"
         """
         from .pictures.figures import drawings
 
         self._require_same_run()
+        drawn_in = _style(style, column)
+        view = self._view(component, zoom, deform)
+        if view is not None:
+            if name is None:
+                raise InputError("plot: component, zoom and deform are of a field: give its name")
+            return self._field_picture(name, step, view, drawn_in, [])
         known = []
         for drawing in drawings(self._folder, self._number(step) if self.steps else None):
             if name not in (None, drawing.name):
@@ -302,8 +315,8 @@ class Results:
                 continue
             if step != -1 and not drawing.of_step:
                 raise InputError(f"the picture {drawing.name!r} shows the whole run: leave out step")
-            return drawing.figure()
-        return self._field_picture(name, step, known)
+            return drawing.figure(drawn_in)
+        return self._field_picture(name, step, None, drawn_in, known)
 
     def curve(self, x: str | None = None, y: str | Sequence[str] | None = None) -> "Figure":
         """The load-displacement picture of the run, or columns y of the history over its column x, as a figure.
@@ -335,25 +348,29 @@ class Results:
         self._require_same_run()
         return make_page(self.path, None if path is None else Path(path))[0]
 
-    def _field_picture(self, name: str | None, step: int, known: list[str]):
-        fields = self.fields(step) if self.steps and self.dimension > 1 else []
-        if name is None or name not in fields:
-            raise unknown("picture", name, dict.fromkeys([*known, *fields]), self.path)
+    def _field_picture(self, name: str | None, step: int | str, view, style, known: list[str]):
         from .pictures.drawing import Drawing
-        from .pictures.style import units_of
-        from .pictures.value_pictures import draw_values
+        from .pictures.field_picture import View, draw_field
 
-        values, meaning = self.field(name, step), name
-        if name in VECTORS:
-            values, meaning = np.linalg.norm(values, axis=1), f"magnitude of {name}"
-        if values.ndim != 1:
-            raise InputError(f"the field {name!r} has the shape {values.shape}: only numbers and vectors are drawn")
-        if not np.isfinite(values).all():
-            raise InputError(f"the field {name!r} of step {self._number(step)} has values that are not finite")
-        with self._file() as file:
-            unit = as_text(file.attribute(f"{self._group(step)}/{name}", "unit", ""))
+        fields = self.fields(step) if self.steps else []
+        if name is None or name not in fields:
+            raise unknown("picture" if view is None else "field", name, dict.fromkeys([*known, *fields]), self.path)
         drawn = self._folder.step(self._number(step))
-        return Drawing(name, lambda: draw_values(self._folder, drawn, values, meaning, units_of(unit))).figure()
+        return Drawing(name, lambda: draw_field(self._folder, drawn, name, view or View())).figure(style)
+
+    @staticmethod
+    def _view(component: str | None, zoom: Sequence[float] | None, deform: float | str | None):
+        """What is shown of a field; None if nothing is chosen."""
+        from .pictures.field_picture import View
+
+        if component is None and zoom is None and deform == "auto":
+            return None
+        if isinstance(deform, str) and deform not in ("auto", "none"):
+            raise InputError(f"deform is a factor from 0 on, None or 'auto', not {deform!r}")
+        factor = {"auto": None, "none": 0.0, None: 0.0}[deform] if deform is None or isinstance(deform, str) else float(deform)
+        if factor is not None and not 0.0 <= factor < 1e30:
+            raise InputError(f"deform is a factor from 0 on, None or 'auto', not {deform!r}")
+        return View(component, None if zoom is None else tuple(zoom), factor)
 
     @cached_property
     def _folder(self) -> ResultsFolder:
@@ -393,18 +410,22 @@ class Results:
         self._require_same_run()
         return ResultsFile(self.path)
 
-    def _number(self, step: int) -> int:
+    def _number(self, step: int | str) -> int:
+        if isinstance(step, str):
+            if step == "all":
+                raise InputError("step='all' would be many pictures: draw each step of `steps`")
+            return steps_named(self._folder, step)[0]
         try:
             step = operator.index(step)
         except TypeError:
-            raise InputError(f"a step is a whole number, not {step!r}") from None
+            raise InputError(f"a step is a whole number or a name such as 'last', not {step!r}") from None
         if not self.steps:
             raise InputError(f"{self.path}: no step has fields")
         if step in self.steps:
             return step
         if -len(self.steps) <= step < 0:
             return self.steps[step]
-        raise InputError(f"{self.path}: step {step} has no fields. There are {_ranges(self.steps)}.")
+        raise InputError(f"{self.path}: step {step} has no fields. There are {ranges(self.steps)}.")
 
     def _group(self, step: int) -> str:
         return f"steps/{self._number(step):06d}"
@@ -422,16 +443,14 @@ def _constant(array: np.ndarray) -> np.ndarray:
     return array
 
 
-def _ranges(numbers: list[int]) -> str:
-    """1 to 4, 6, 8: whole numbers, ascending, in short."""
-    parts: list[list[int]] = []
-    for number in numbers:
-        if parts and number == parts[-1][-1] + 1:
-            parts[-1].append(number)
-        else:
-            parts.append([number])
-    words = [str(part[0]) if len(part) == 1 else f"{part[0]} to {part[-1]}" for part in parts]
-    return ", ".join(words if len(words) <= 20 else [*words[:10], "…", *words[-9:]])
+def _style(name: str, column: str | None):
+    from .pictures.style import COLUMNS, STYLES, style_named
+
+    if name not in STYLES:
+        raise unknown("style", name, STYLES, "plot")
+    if column is not None and (name != "paper" or column not in COLUMNS):
+        raise InputError(f"plot: column={column!r}: style='paper' has the columns {' and '.join(COLUMNS)}, other styles none")
+    return style_named(name, column)
 
 
 def _require_results(path: Path) -> None:

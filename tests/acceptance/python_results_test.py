@@ -145,8 +145,9 @@ class ResultsFolders(Folder):
         self.judge(results)
         self.assertEqual(results.displacement().shape, (len(results.positions), 1))
         self.assert_pictures_are_the_programs(results)
-        with self.assertRaisesRegex(ps.InputError, "'stretch'.*There are deformed, load_displacement"):
-            results.plot("stretch")
+        with self.assertRaisesRegex(ps.InputError, "'strech'.*Did you mean 'stretch'.*There are deformed, load_displacement"):
+            results.plot("strech")
+        self.assertEqual([axes.get_xlabel() for axes in results.plot("stretch", zoom=(0.0, 0.01)).axes][-1], "x [mm]")
 
     def test_a_solid(self):
         results = self.opened(CUBE)
@@ -177,6 +178,7 @@ class ResultsFolders(Folder):
             self.assertGreater(len(np.unique(pixels(results.plot(name)._repr_png_()))), 30, name)
         with self.assertRaisesRegex(ps.InputError, "'energies' shows the whole run"):
             results.plot("energies", results.steps[0])
+        np.testing.assert_array_equal(pixels(results.plot("deformed", "last")._repr_png_()), last)
         with self.assertRaisesRegex(ps.InputError, "'damge'.*Did you mean 'damage'.*deformed.*energies.*stretch"):
             results.plot("damge")
 

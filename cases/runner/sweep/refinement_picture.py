@@ -5,10 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from peristat.pictures.style import (
-    ENERGIES, FORCES, GHOST, LENGTHS, LINES, STRESSES, WARNING,
-    heading, new_figure, number, own_settings, unit_for,
-)  # fmt: skip
+from peristat.pictures.style import GHOST, LINES, WARNING, WIDE, heading, new_figure, own_settings
+from peristat.pictures.units import ENERGIES, FORCES, LENGTHS, STRESSES, number, unit_for
 from refinement import Refinement
 from table import FIELD_UNITS
 
@@ -17,7 +15,7 @@ COLUMNS = 3
 UNITS = {"m": LENGTHS, "N": FORCES, "J": ENERGIES, "Pa": STRESSES}  # units with prefixes
 
 
-@own_settings()
+@own_settings(WIDE)
 def draw_refinements(case: Path, rows: list[tuple[tuple[str, ...], Refinement]]):
     """One panel per quantity, with a line for each combination of the other keys; probes come first."""
     text = tomllib.loads(case.read_text("utf-8"))

@@ -8,10 +8,8 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.ticker import MaxNLocator
 from peristat.pictures.results_folder import NotAResultsFolder, ResultsFolder, read_results_folder
-from peristat.pictures.style import (
-    ENERGY_DENSITIES, FORCES, GHOST, LENGTHS, LINES, STRESSES, WARNING,
-    heading, new_figure, number, own_settings, unit_for,
-)  # fmt: skip
+from peristat.pictures.style import GHOST, LINES, WARNING, WIDE, heading, new_figure, own_settings
+from peristat.pictures.units import ENERGY_DENSITIES, FORCES, LENGTHS, STRESSES, number, unit_for
 from table import FIELD_UNITS
 
 DASHES = ["-", (0, (5, 2)), (0, (1.2, 1.5)), (0, (7, 2, 1.5, 2))]
@@ -50,7 +48,7 @@ class _Heading:
     status: str = "completed"
 
 
-@own_settings()
+@own_settings(WIDE)
 def draw_sweep(keys: list[str], values: list[tuple[str, ...]], folders: list[Path], statuses: list[str]):
     """Figure of all combinations that have an accepted step; None if there is none."""
     shown = []

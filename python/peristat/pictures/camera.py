@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from .style import INK, new_figure
+from .framing import placed
+from .style import INK, points, size_of
 
 AXES = "xyz"
-MARGIN = 1.95  # right margin for the colour bar [inch]
+TRIPOD = 1.1  # size of the directions' drawing [inch of the code]
 
 
 class Camera:
@@ -74,37 +75,34 @@ def darker(colours: np.ndarray, factor: float) -> np.ndarray:
     return darker
 
 
-def stage(low, high, right: float = MARGIN):
-    """A figure in the proportions of the projected body: figure, axes, place of the colour bar, inches per metre."""
-    left, bottom, top = 0.9, 0.95, 1.5
-    size = np.maximum(high - low, 1e-300)
-    scale = min((16.0 - left - right) / size[0], 8.6 / size[1])
-    width, height = left + scale * size[0] + right, bottom + max(scale * size[1], 2.2) + top
-    total_width = max(width, 10.0)
-    figure = new_figure(total_width, height)
+def stage(low, high, words, bar: str | None, room: float = 1.1, foot: float = 0.0):
+    """A figure in the proportions of the projected body: figure, axes, place of the colour bar, inches per metre.
+
+    words  of the heading; bar  label of the colour bar; room  width of its ticks' labels; foot  height of a legend
+    """
+    figure, box, place, _ = placed(low, high, words, bar, 0.5, TRIPOD, room, foot)
+    total_width, total_height = figure.get_size_inches()
+    scale = min(box[2] * total_width / (high - low)[0], box[3] * total_height / (high - low)[1])
     axes = figure.add_axes([0.0, 0.0, 1.0, 1.0], zorder=0)
     axes.axis("off")
-    # The axes cover the figure, one unit per metre, so that lengths and labels may use the margins.
-    free_left = left + 0.5 * (total_width - width)
-    free_bottom = bottom + 0.5 * (height - bottom - top - scale * size[1])
-    axes.set_xlim(low[0] - free_left / scale, low[0] + (total_width - free_left) / scale)
-    axes.set_ylim(low[1] - free_bottom / scale, low[1] + (height - free_bottom) / scale)
-    bar_height = min(height - bottom - top, 4.5)
-    bar_bottom = bottom + 0.5 * (height - bottom - top - bar_height)
-    bar = [(total_width - right + 0.65) / total_width, bar_bottom / height, 0.22 / total_width, bar_height / height]
-    return figure, axes, bar, scale
+    # The axes cover the figure, one unit per metre, so that the body may leave its box when it deforms.
+    middle = 0.5 * (low + high)
+    x, y = (box[0] + 0.5 * box[2]) * total_width, (box[1] + 0.5 * box[3]) * total_height
+    axes.set_xlim(middle[0] - x / scale, middle[0] + (total_width - x) / scale)
+    axes.set_ylim(middle[1] - y / scale, middle[1] + (total_height - y) / scale)
+    return figure, axes, place, scale
 
 
-def draw_directions(figure, camera) -> None:
-    """A small tripod of the coordinate axes in the lower left corner."""
-    width, height = figure.get_size_inches()
-    side = 1.25
-    tripod = figure.add_axes([0.2 / width, 0.15 / height, side / width, side / height], zorder=3)
+def draw_directions(figure, camera, under: float = 0.0) -> None:
+    """A small tripod of the coordinate axes in the lower left corner, a height above the edge."""
+    width, height = size_of(figure)
+    tripod = figure.add_axes([0.1 / width, (0.05 + under) / height, TRIPOD / width, TRIPOD / height], zorder=3)
     tripod.axis("off")
     arrows = camera.project(np.eye(3))
     middle = 0.5 * (np.minimum(arrows.min(axis=0), 0) + np.maximum(arrows.max(axis=0), 0))
     for name, arrow in zip(AXES, arrows):
-        tripod.annotate("", arrow, (0, 0), arrowprops={"arrowstyle": "-|>", "color": INK, "lw": 1.3})
-        tripod.text(*(1.28 * arrow), name, ha="center", va="center", fontsize=12, color=INK)
+        tripod.annotate("", arrow, (0, 0), arrowprops={"arrowstyle": "-|>", "color": INK, "lw": points(1.3),
+                                                       "mutation_scale": points(10)})  # fmt: skip
+        tripod.text(*(1.28 * arrow), name, ha="center", va="center", fontsize="small", color=INK)
     tripod.set_xlim(middle[0] - 1.0, middle[0] + 1.0)
     tripod.set_ylim(middle[1] - 1.0, middle[1] + 1.0)

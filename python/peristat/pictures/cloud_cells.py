@@ -5,6 +5,7 @@ import numpy as np
 from .crossings import crosses
 from .voronoi import Polygons
 
+MOST_STRAIN = 0.5  # drawn of a cell at a crack
 SAME = 1e-3  # share of a cell's size; corners that are closer count as one
 
 
@@ -86,4 +87,8 @@ class CloudCells:
         apart, change = self._points[other] - self._points[cell], displacement[other] - displacement[cell]
         products = np.stack([a * b for a in apart.T for b in (*apart.T, *change.T)])
         sums = np.stack([np.bincount(cell, row, minlength=len(loose)) for row in products], axis=1).reshape(-1, 2, 4)
-        return np.linalg.pinv(sums[:, :, :2], rcond=1e-2) @ sums[:, :, 2:]
+        gradient = np.linalg.pinv(sums[:, :, :2], rcond=1e-2) @ sums[:, :, 2:]
+        # A cell at a crack has few neighbours left, whose differences would draw it out to a needle.
+        strain = np.linalg.norm(gradient, axis=(1, 2))
+        most = np.where(self._parted.any(axis=1), MOST_STRAIN, np.inf)
+        return gradient * np.minimum(1.0, most / np.maximum(strain, 1e-300))[:, None, None]

@@ -1,24 +1,33 @@
-"""Draws the pictures of a results folder: ./peristat plot DIR -> DIR/plots/*.png, crack.gif
+"""Draws the pictures of a results folder: ./peristat plot DIR -> DIR/plots/*.png, crack.gif; or one field of a step.
 
 Exit codes: 0 if every possible picture is drawn (missing data is reported), 2 if DIR is no results folder, is
-damaged, or its plots are a link or hold an unlisted picture, 5 if the pictures can't be written, 1 for a fault of
-the program. Needs numpy, h5py and matplotlib, and no display.
+damaged, or its plots are a link or hold an unlisted picture, or for a field or step that is not there, 5 if the pictures
+can't be written, 1 for a fault of the program. Needs numpy, h5py and matplotlib, and no display.
 """
 
 import argparse
 import io
 import os
+import re
 import sys
 import traceback
+from functools import partial
 from pathlib import Path
 
+from ..errors import InputError
+from .drawing import Drawing
+from .field_picture import View, draw_field, in_common
 from .figures import animate, drawings
 from .gallery import SCRIPT, Gallery, NoPlace
+from .named_values import named_values
 from .results_folder import NotAResultsFolder, read_results_folder
+from .steps_by_name import NAMES, steps_named
+from .style import COLUMNS, SCREEN, STYLES, Style, style_named
 
 DONE, BUG, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 1, 2, 5, 130
 FORMATS = ("png", "pdf", "svg")
-DOTS_PER_INCH = {"png": 100, "pdf": 200, "svg": 200}  # resolution of images within vector pictures
+DOTS_PER_INCH = 300  # of images within vector pictures
+LENGTH_UNITS = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "km": 1e3}
 MOST_VECTORS = 3000  # number of shapes of one kind above which a vector picture stores them as an image
 
 
@@ -30,11 +39,12 @@ def encoded(figure, ending: str) -> bytes:
                 heap.set_rasterized(len(heap.get_paths()) > MOST_VECTORS)
     file = io.BytesIO()
     options = {"pil_kwargs": {"compress_level": 4}} if ending == "png" else {}
-    figure.savefig(file, format=ending, dpi=DOTS_PER_INCH[ending], **options)
+    dots = figure.style.dots if ending == "png" else DOTS_PER_INCH
+    figure.savefig(file, format=ending, dpi=dots, **options)
     return file.getvalue()
 
 
-def draw(directory: Path, ending: str) -> None:
+def draw(directory: Path, ending: str, style: Style = SCREEN) -> None:
     """Draws everything and prints what was drawn."""
     results = read_results_folder(directory)
     gallery = Gallery(directory)
@@ -42,7 +52,7 @@ def draw(directory: Path, ending: str) -> None:
     drawn = []
     for drawing in drawings(results):
         drawn.append(f"{drawing.name}.{ending}")
-        gallery.add(drawn[-1], encoded(drawing.figure(), ending))
+        gallery.add(drawn[-1], encoded(drawing.figure(style), ending))
     animation = animate(results)
     if animation:
         drawn.append("crack.gif")
@@ -50,6 +60,26 @@ def draw(directory: Path, ending: str) -> None:
     for sentence in results.missing:
         print(f"plot: {sentence}")
     print(f"plot: {gallery.path}: {', '.join(drawn) if drawn else 'nothing could be drawn'}")
+
+
+def draw_one_field(directory: Path, ending: str, field: str, step: str, view: View, style: Style, column: str | None) -> None:
+    """Draws a field at one or all steps, in pictures of their own, and prints what each shows."""
+    results = read_results_folder(directory)
+    numbers = steps_named(results, step)
+    common, whole = view, None
+    if len(numbers) > 1:
+        common, whole = in_common(results, numbers, field, view)
+    gallery = None
+    for number in numbers:
+        shown = named_values(results, number, field, view.component)
+        name = "_".join([shown.file_name, f"step_{number:06d}", *view.name_parts(),
+                         *([] if style is SCREEN else [style.name]), *([column] if column else [])])  # fmt: skip
+        figure = Drawing(name, partial(draw_field, results, results.step(number), field, common, whole)).figure(style)
+        gallery = gallery or Gallery(directory)  # nothing is written if there is nothing to draw
+        gallery.add(f"{name}.{ending}", encoded(figure, ending))
+        print(f"plot: {gallery.path / name}.{ending}: {figure.caption}")
+    for sentence in results.missing:
+        print(f"plot: {sentence}")
 
 
 def add_script(directory: Path) -> None:
@@ -68,37 +98,99 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="peristat plot", allow_abbrev=False,
         description="Draws the pictures of a results folder into DIR/plots (docs/results.md, Pictures); "
-        "pictures of the same format that were drawn before are replaced.",
-        epilog="Exit codes: 0 drawn (what is missing is said), 2 no results folder, or a damaged one, "
-        "5 the pictures can't be written, 1 a bug.",
+        "pictures of the same format that were drawn before are replaced. With --field one field, in a picture of its "
+        "own: DIR/plots/FIELD_step_NNNNNN.png; the other pictures stay.",
+        epilog="Exit codes: 0 drawn (what is missing is said), 2 no results folder, a damaged one, or a field or step "
+        "that it does not have, 5 the pictures can't be written, 1 a bug.",
     )  # fmt: skip
     parser.add_argument("directory", metavar="DIR", type=Path, help="results folder of a run")
     parser.add_argument("--format", choices=FORMATS, default="png",
                         help="of the pictures (default: png; pdf and svg are vector graphics)")  # fmt: skip
+    parser.add_argument("--style", choices=STYLES, default="screen",
+                        help="paper: the width of a column of a journal, letters of at least 6 points; talk: a slide")  # fmt: skip
+    parser.add_argument("--column", choices=COLUMNS,
+                        help="with --style paper: 84 mm (single, the default) or 174 mm wide (double)")  # fmt: skip
+    one = parser.add_argument_group("one field")
+    one.add_argument("--field", metavar="F", help="name of a field of the step: damage, displacement, von_mises, …")
+    one.add_argument("--step", metavar="N", help=f"number of a step, or {', '.join(NAMES)} (default: last; peak: of the "
+                     "largest reaction; all: one picture each, with the same colours)")  # fmt: skip
+    one.add_argument("--component", metavar="C", help="x, y, z or magnitude of a vector, xx, xy, … of a tensor, "
+                     "1, 2, 3 of principal_stress")  # fmt: skip
+    one.add_argument("--zoom", metavar="XMIN,XMAX,YMIN,YMAX", type=_lengths,
+                     help="what is shown of a plate as it is drawn [m, or with a unit: 2mm]; for a solid six numbers, a box "
+                     "of the undeformed body")  # fmt: skip
+    one.add_argument("--deform", metavar="S", type=_factor,
+                     help="factor of the displacements; none: the undeformed body; auto: chosen from their size (default)")  # fmt: skip
     parser.add_argument("--paraview", action="store_true",
                         help=f"instead of pictures, write DIR/plots/{SCRIPT}, which shows damage and cracks in ParaView")  # fmt: skip
     return parser
 
 
-def main(words: list[str]) -> int:
+def _lengths(text: str) -> tuple[float, ...]:
+    """Lengths between commas, each with a unit or in metres."""
+    found = []
+    for word in text.split(","):
+        match = re.fullmatch(r"\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*([a-zµ]*)\s*", word)
+        if not match or match[2] not in LENGTH_UNITS:
+            raise argparse.ArgumentTypeError(f"{word!r} is no length: a number [m], or one with {', '.join(filter(None, LENGTH_UNITS))}")
+        found.append(_number(match[1]) * LENGTH_UNITS[match[2]])
+    return tuple(found)
+
+
+def _factor(text: str) -> float | None:
+    if text in ("auto", "none"):
+        return {"auto": None, "none": 0.0}[text]
+    factor = _number(text)
+    if not 0.0 <= factor < 1e30:
+        raise argparse.ArgumentTypeError(f"{text!r}: a factor from 0 on, none or auto")
+    return factor
+
+
+def _number(text: str) -> float:
     try:
-        arguments = _parser().parse_args(words)
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number") from None
+
+
+def _check(parser: argparse.ArgumentParser, given: argparse.Namespace) -> None:
+    """Refuses options that would have no effect."""
+    if given.column and given.style != "paper":
+        parser.error("--column needs --style paper")
+    alone = [name for name in ("step", "component", "zoom", "deform") if getattr(given, name) is not None]
+    if alone and given.field is None:
+        parser.error(f"--{alone[0]} needs --field, the name of a field")
+    if given.paraview and (given.field is not None or given.style != "screen" or given.format != "png"):
+        parser.error("--paraview writes a script and no picture: leave out the other options")
+
+
+def main(words: list[str]) -> int:
+    parser = _parser()
+    for place in [place for place, word in enumerate(words[:-1]) if word == "--zoom"]:  # a number below 0 is no option
+        words = [*words[:place], f"--zoom={words[place + 1]}", *words[place + 2 :]]
+    try:
+        given = parser.parse_args(words)
+        _check(parser, given)
     except SystemExit as ending:
         return DONE if ending.code in (0, None) else WRONG_INPUT
     try:
-        if arguments.paraview:
-            add_script(arguments.directory)
+        style = style_named(given.style, given.column)
+        if given.paraview:
+            add_script(given.directory)
+        elif given.field is not None:
+            view = View(given.component, given.zoom, given.deform)
+            draw_one_field(given.directory, given.format, given.field, given.step or "last", view, style, given.column)
         else:
-            draw(arguments.directory, arguments.format)
-    except (NotAResultsFolder, NoPlace) as error:
+            draw(given.directory, given.format, style)
+    except (InputError, NoPlace) as error:
         return _told(str(error), WRONG_INPUT)
     except OSError as error:
-        return _told(f"{arguments.directory}: {error}", MACHINE_FAILED)
+        return _told(f"{given.directory}: {error}", MACHINE_FAILED)
     except NameError:  # a fault of the program: no folder's content causes it
         traceback.print_exc()
-        return _told(f"{arguments.directory}: a fault of the program, which is worth a report", BUG)
+        return _told(f"{given.directory}: a fault of the program, which is worth a report", BUG)
     except Exception as error:  # an unforeseen change in a folder that somebody has edited
-        return _told(f"{arguments.directory}: can't be drawn ({type(error).__name__}: {error})", WRONG_INPUT)
+        return _told(f"{given.directory}: can't be drawn ({type(error).__name__}: {error})", WRONG_INPUT)
     return DONE
 
 

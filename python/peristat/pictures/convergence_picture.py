@@ -4,7 +4,9 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
-from .style import FAINT, WARNING, heading, new_figure, number
+from .curve_page import curve_page, settle
+from .style import FAINT, WARNING, points
+from .units import number
 
 # Relative residuals below this value are round-off and show no order of convergence. In slender bodies single
 # bonds carry forces that are orders of magnitude larger than the residual's scale, and so is their round-off.
@@ -47,12 +49,9 @@ def draw_convergence(results):
     if len(chosen) > MOST_STEPS:
         chosen = [chosen[i] for i in np.unique(np.linspace(0, len(chosen) - 1, MOST_STEPS).round().astype(int))]
     failed = [] if not accepted else failed[-2:]
-    loads = dict(zip(map(int, results.history.get("step", [])), results.history.get("load_factor", [])))
     shades = colormaps["viridis"](np.linspace(0.05, 0.82, max(len(chosen), 2)))
 
-    figure = new_figure(16.0, 7.4)
-    left = figure.add_axes([0.07, 0.115, 0.37, 0.71])
-    right = figure.add_axes([0.675, 0.115, 0.305, 0.71])
+    figure, (left, right) = curve_page(2)
     for axes in (left, right):
         axes.set_yscale("log")
     right.set_xscale("log")
@@ -61,16 +60,15 @@ def draw_convergence(results):
     floor = 0.1 * min(positive.min(initial=1.0), 1e-15)
     for colour, (step, _, residuals) in zip(shades, chosen):
         order = results.orders.get(step)
-        where = f"load {number(loads[step])}" if step in loads else f"step {step}"
-        text = "" if order is None else f",  p = {order:.2f}"
-        _draw_search(left, right, residuals, floor, color=colour, label=where + text)
+        text = "" if order is None else f", order {order:.2f}"
+        _draw_search(left, right, residuals, floor, color=colour, label=f"step {step}{text}")
     for place, (step, _, residuals) in enumerate(failed):
         label = "search that failed" if place == 0 else None
         _draw_search(left, right, residuals, floor, color=WARNING, linestyle="--", label=label)
     zeros = [np.argmax(residuals == 0.0) for _, _, residuals in chosen if (residuals == 0.0).any()]
     if zeros:
-        left.annotate("exactly zero", (min(zeros), floor), xytext=(-10, 0), textcoords="offset points",
-                      fontsize=11, ha="right", va="center", color=FAINT)  # fmt: skip
+        left.annotate("exactly zero", (min(zeros), floor), xytext=(-points(10), 0), textcoords="offset points",
+                      fontsize="small", ha="right", va="center", color=FAINT)  # fmt: skip
     _draw_tolerance(left, results)
     _draw_slopes(right, chosen, floor)
     for axes in (left, right):
@@ -80,23 +78,21 @@ def draw_convergence(results):
             axes.axhspan(low, ROUND_OFF, color="#f3f4f6", zorder=0)
             is_left = axes is left
             axes.annotate("round-off", (1.0 - is_left, ROUND_OFF), xycoords=("axes fraction", "data"),
-                          xytext=(6 if is_left else -6, -4), textcoords="offset points",
-                          ha="left" if is_left else "right", va="top", fontsize=11, color=FAINT)  # fmt: skip
+                          xytext=(points(6 if is_left else -6), -points(4)), textcoords="offset points",
+                          ha="left" if is_left else "right", va="top", fontsize="small", color=FAINT)  # fmt: skip
             axes.set_ylim(low, high)
 
     left.set_xlabel("iteration")
     left.set_ylabel("relative residual")
-    left.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=12))
-    # The legend goes between the panels, where no curve runs.
-    left.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=11.5, alignment="left", title_fontsize=11.5,
-                title="p: observed order" if results.orders else None, borderaxespad=0.0)  # fmt: skip
+    left.xaxis.set_major_locator(MaxNLocator(integer=True, nbins="auto"))
     right.set_xlabel("relative residual of one iteration")
     right.set_ylabel("… of the next iteration")
     words = ["convergence of the search for equilibrium"]
     words += order_words(results.orders, len(accepted))
     if len(chosen) < len(accepted):
         words.append(f"{len(chosen)} of them drawn" if results.orders else f"{len(chosen)} of {number(len(accepted))} increments drawn")
-    heading(figure, results, words)
+    told = [axes.get_legend_handles_labels() for axes in (left, right)]
+    settle(figure, results, words, *(sum(parts, []) for parts in zip(*told)))
     return figure
 
 
@@ -122,24 +118,24 @@ def _draw_search(left, right, residuals, floor, **looks):
     """Draws one search in both panels; a residual of exactly zero is an open mark at the floor."""
     shown = np.where(residuals == 0.0, floor, residuals)
     many = len(residuals) > 60
-    marks = {} if many else {"marker": "o", "markersize": 6, "markeredgecolor": "white", "markeredgewidth": 0.7}
-    left.plot(shown, linewidth=1.2 if many else 1.7, zorder=3, **marks, **looks)
-    right.plot(shown[:-1], shown[1:], linewidth=1.2, zorder=3, **marks, **{**looks, "label": None})
+    marks = {} if many else {"marker": "o", "markersize": points(6), "markeredgecolor": "white", "markeredgewidth": points(0.7)}
+    left.plot(shown, linewidth=points(1.2 if many else 1.7), zorder=3, **marks, **looks)
+    right.plot(shown[:-1], shown[1:], linewidth=points(1.2), zorder=3, **marks, **{**looks, "label": None})
     zeros = np.flatnonzero(residuals == 0.0)
     if len(zeros):
-        left.plot(zeros, shown[zeros], "o", markersize=8, markerfacecolor="white",
+        left.plot(zeros, shown[zeros], "o", markersize=points(8), markerfacecolor="white",
                   markeredgecolor=looks["color"], zorder=4)  # fmt: skip
 
 
 def _draw_tolerance(axes, results):
     tolerance = results.case.get("solver", {}).get("relative_tolerance")
     if isinstance(tolerance, float) and tolerance > 0.0:
-        axes.axhline(tolerance, color=FAINT, linewidth=1.2, linestyle=(0, (2, 3)), zorder=2)
+        axes.axhline(tolerance, color=FAINT, linewidth=points(1.2), linestyle=(0, (2, 3)), zorder=2)
         # The label is below its line, because "round-off" may be right above it.
         # It is at the left, where residuals are large.
         axes.annotate(f"tolerance {tolerance:.0e}", (0.0, tolerance), xycoords=("axes fraction", "data"),
-                      xytext=(4, -4), textcoords="offset points", ha="left", va="top",
-                      fontsize=11, color=FAINT)  # fmt: skip
+                      xytext=(points(4), -points(4)), textcoords="offset points", ha="left", va="top",
+                      fontsize="small", color=FAINT)  # fmt: skip
 
 
 def _draw_slopes(axes, chosen, floor):
@@ -155,8 +151,6 @@ def _draw_slopes(axes, chosen, floor):
     for slope, name in ((2.0, "slope 2: quadratic"), (1.0, "slope 1: linear")):
         y = reached * (x / start) ** slope
         seen = (y >= bottom) & (y <= 30 * max(b for _, b in pairs))
-        axes.plot(x[seen], y[seen], color=FAINT, linewidth=1.2, linestyle="--" if slope > 1 else ":", zorder=2,
+        axes.plot(x[seen], y[seen], color=FAINT, linewidth=points(1.2), linestyle="--" if slope > 1 else ":", zorder=2,
                   label=name)  # fmt: skip
-    # The guides' names go in a strip above the curves; no curve rises above the ends of the guides.
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=2, fontsize=11, borderaxespad=0.2)
     _log_axis(axes.xaxis, low, high)

@@ -10,13 +10,15 @@ from matplotlib.colors import Normalize
 from matplotlib.path import Path as Outline
 from PIL import Image
 
-from .curve_pictures import abscissa_of, find_abscissa, has_reactions, reactions
-from .field_pictures import DAMAGE_COLOURS, crack_lines, deformed_plate, exaggeration, exaggeration_words, rims
+from .abscissa import abscissas
+from .curve_page import wrap_labels
 from .fracture_pictures import OPENING
-from .style import (
-    FORCES, GHOST, INK, LINES, PIECE,
-    bond_words, colour_bar, heading, new_figure, piece_words, step_words, unit_for,
-)  # fmt: skip
+from .plane import crack_lines, deformed_plate, rims
+from .ranges import DAMAGE_COLOURS, exaggeration, exaggeration_words
+from .reactions import has_reactions, reactions
+from .state_words import bond_words, piece_words, step_words
+from .style import FACTS, GHOST, INK, LINES, PIECE, colour_bar, heading, new_figure
+from .units import FORCES, unit_for
 
 MOST_FRAMES = 60
 MOST_INTACT_FRAMES = 12  # frames before the first damage
@@ -125,7 +127,7 @@ class _Stage:
         bar_width = min(width, 3.6)
         bar = [(left + 0.5 * (width - bar_width)) / total_width, 0.68 / total_height, bar_width / total_width,
                0.14 / total_height]  # fmt: skip
-        colour_bar(self.figure, bar, ScalarMappable(norm, DAMAGE_COLOURS), "damage", orientation="horizontal")
+        colour_bar(self.figure, bar, ScalarMappable(norm, DAMAGE_COLOURS), "damage")
 
         self.cells = PathCollection([], facecolors=DAMAGE_COLOURS(LEVELS), linewidths=0.0, antialiased=False,
                                     animated=True)  # fmt: skip
@@ -137,10 +139,10 @@ class _Stage:
         if has_curve:
             x = (left + width + 1.25) / total_width
             self._set_the_curve([x, 1.05 / total_height, 3.4 / total_width, max(height, 2.6) / total_height])
-        heading(self.figure, results, [""])
-        self.facts = self.figure.text(0.35 / total_width, 1 - 0.74 / total_height, "", fontsize=13, color="#5b656e",
+        heading(self.figure, results, [])
+        self.facts = self.figure.text(0.3 / total_width, 1 - 0.65 / total_height, "", fontsize="small", color=FACTS,
                                       va="top", animated=True)  # fmt: skip
-        self.remark = self.figure.text(0.35 / total_width, 1 - 1.03 / total_height, "", fontsize=11, color=PIECE,
+        self.remark = self.figure.text(0.3 / total_width, 1 - 0.92 / total_height, "", fontsize="small", color=PIECE,
                                        va="top", animated=True)  # fmt: skip
         self.figure.canvas.draw()
         self.scenery = self.figure.canvas.copy_from_bbox(self.figure.bbox)
@@ -152,18 +154,16 @@ class _Stage:
     def _set_the_curve(self, place) -> None:
         """Draws the whole curve faintly and creates the artists for the part up to the current step."""
         axes = self.figure.add_axes(place)
-        load = self.results.numbers("load_factor")
-        curves = reactions(self.results)
-        abscissa = find_abscissa(self.results, curves)
-        label, places, shown = "time [s]" if self.results.is_of_motion else "load factor", load, curves
-        if abscissa:
-            label, places, shown, _ = abscissa_of(abscissa, curves)
-        curve = max(shown, key=lambda curve: curve.values.max())
+        everything = reactions(self.results)
+        over = abscissas(self.results, everything)[0]
+        curve = max(over.curves(everything), key=lambda curve: curve.values.max())
         unit, size = unit_for(np.abs(curve.values).max(), FORCES, 1.0)
-        self.x, self.y = np.concatenate([[0.0], places]), np.concatenate([[0.0], curve.values / size])
+        self.x, self.y = np.concatenate([[0.0], over.values]), np.concatenate([[0.0], curve.values / size])
         axes.plot(self.x, self.y, color=GHOST, linewidth=1.4, zorder=2)
-        axes.set_xlabel(label.replace("mean displacement of", "").replace("displacement of", ""), fontsize=12)
-        axes.set_ylabel(f"reaction of “{curve.name}” in {'−' * (curve.sign < 0)}{'xyz'[curve.axis]} [{unit}]", fontsize=12)
+        axes.set_xlabel(over.label, fontsize="small")
+        axes.set_ylabel(f"reaction of {curve.own_label} [{unit}]".replace("$", r"\$"), fontsize="small")
+        axes.locator_params(nbins=5)
+        wrap_labels(axes)
         (self.line,) = axes.plot([], [], color=LINES[0], linewidth=2.2, animated=True, zorder=3)
         (self.point,) = axes.plot([], [], "o", color=LINES[1], markersize=8, markeredgecolor="white",
                                   markeredgewidth=1.0, animated=True, zorder=4)  # fmt: skip
@@ -181,7 +181,7 @@ class _Stage:
             self.line.set_data(self.x[:reached], self.y[:reached])
             self.point.set_data(self.x[reached - 1 : reached], self.y[reached - 1 : reached])
         mode = {"newton": "Newton's method", "relaxation": "relaxation"}.get(step.mode)
-        words = [exaggeration_words(self.factor), step_words(step)[0], *bond_words(self.results, step)]
+        words = [exaggeration_words(self.factor), step_words(self.results, step)[0], *bond_words(self.results, step)]
         self.facts.set_text("  ·  ".join(words + ([mode] if mode else [])))
         self.remark.set_text(piece_words(step) if step.floating.any() else "")
         canvas = self.figure.canvas

@@ -7,10 +7,11 @@ from matplotlib.colors import Normalize, to_rgba
 
 from .camera import Camera, darker, draw_directions, lit, normals, stage
 from .crack_surface import crack_surface
-from .field_pictures import DAMAGE_COLOURS
 from .panels import step_panels
+from .ranges import DAMAGE_COLOURS
+from .state_words import bond_words, step_words
 from .step_colours import STEP_COLOURS, ranks_of_steps, step_bar
-from .style import PIECE, bond_words, colour_bar, heading, step_words
+from .style import PIECE, colour_bar, heading, points
 
 GLASS = 0.5  # strength of the shades of a transparent white body
 AZIMUTH = 52.0  # degrees; most cracks run across the body
@@ -20,20 +21,22 @@ def draw_crack_surface(results, step, surface):
     """Crack surface of a step (crack_surface.CrackSurface), coloured by the steps in which it grew or, if these are
     unknown, by damage."""
     camera = Camera(results.reference, step.displacement, AZIMUTH)
-    figure, axes, bar_place, _ = stage(*_frame(camera, surface), right=2.35)
     grown, colours = surface.steps > 0, _by_damage(surface)
-    if grown.any():
-        words = ["crack faces in the reference configuration", *_pre_crack_words([surface])]
-        distinct, rank, norm = ranks_of_steps(surface.steps[grown])
+    distinct, rank, norm = ranks_of_steps(surface.steps[grown])
+    kind = "crack faces" if grown.any() else "damaged cells"
+    words = [f"{kind} in the reference configuration", *_pre_crack_words([surface]), *step_words(results, step),
+             *bond_words(results, step)]  # fmt: skip
+    bar = "damage" if not grown.any() else "step at which it broke" if len(distinct) > 1 else None
+    figure, axes, bar_place, _ = stage(*_frame(camera, surface), words, bar, 1.5)
+    if not grown.any():
+        colour_bar(figure, bar_place, ScalarMappable(Normalize(0.0, 1.0), DAMAGE_COLOURS), "damage")
+    else:
         colours[grown] = STEP_COLOURS(norm(rank))
         if len(distinct) > 1:
             step_bar(figure, bar_place, results, distinct, norm)
-    else:
-        words = ["damaged cells in the reference configuration"]
-        colour_bar(figure, bar_place, ScalarMappable(Normalize(0.0, 1.0), DAMAGE_COLOURS), "damage")
     _draw(axes, camera, surface, colours)
     draw_directions(figure, camera)
-    heading(figure, results, [*words, *step_words(step), *bond_words(results, step)])
+    heading(figure, results, words)
     return figure
 
 
@@ -81,6 +84,6 @@ def _draw(axes, camera, surface, colours) -> None:
 
 def _add(axes, camera, faces, colours, edges, zorder) -> None:
     axes.add_collection(
-        PolyCollection(camera.project(faces), facecolors=colours, edgecolors=edges, linewidths=0.4, joinstyle="round",
+        PolyCollection(camera.project(faces), facecolors=colours, edgecolors=edges, linewidths=points(0.4), joinstyle="round",
                        zorder=zorder), autolim=False,
     )  # fmt: skip

@@ -2,12 +2,16 @@
 
 import numpy as np
 
-from .style import INK, LINES, heading, new_figure, number, scaled, unit_for
+from .abscissa import Abscissa, abscissas
+from .curve_page import curve_page, settle
+from .reactions import has_reactions, reactions
+from .style import INK, LINES, points
+from .units import number, scaled, unit_for
 
 RELEASES, INTENSITIES = scaled("J/m²"), scaled("Pa√m")
 RATES = (("J", "J", "o", "-"), ("G_displacement", "G by a cut, at fixed displacement", "v", "none"),
          ("G_load", "G by a cut, at fixed load", "^", "none"))  # fmt: skip
-FACTORS = (("K1", "K_I", "o"), ("K2", "K_II", "s"), ("K3", "K_III", "D"))
+FACTORS = (("K1", "K₁", "o"), ("K2", "K₂", "s"), ("K3", "K₃", "D"))
 
 
 def _column(results, name: str) -> np.ndarray:
@@ -22,28 +26,25 @@ def crack_tips(results) -> list[str]:
 
 
 def draw_crack_tips(results):
-    """J with its spread over the ring and G above, stress intensity factors below; over the load factor, or over the
-    steps if the load factor turns back."""
-    load = _column(results, "load_factor")
-    grows = (np.diff(load) >= 0.0).all()
-    place = load if grows else np.arange(1.0, len(load) + 1)
+    """J with its spread over the ring and G above, stress intensity factors below; over what drives the run, or over the
+    steps if that turns back."""
+    over = next((one for one in abscissas(results, reactions(results) if has_reactions(results) else []) if one.grows),
+                Abscissa("step", _column(results, "step"), kind="step"))  # fmt: skip
     names = crack_tips(results)
     rates = {(name, part): _column(results, f"{name}_{part}") for name in names for part, *_ in RATES}
     factors = {(name, part): _column(results, f"{name}_{part}") for name in names for part, *_ in FACTORS}
     has_factors = any(len(values) for values in factors.values())
-
-    figure = new_figure(15.0, 9.0 if has_factors else 6.0)
-    height = 0.36 if has_factors else 0.7
-    above = figure.add_axes([0.08, 0.9 - height - 0.04, 0.62, height])
-    _draw(above, place, rates, RATES, names, RELEASES, "energy release rate")
+    figure, panels = curve_page(1 + has_factors, sharex=True)
+    _draw(panels[0], over.values, rates, RATES, names, RELEASES, "energy release rate")
     spread = max(np.abs(_column(results, f"{name}_J_spread")).max() for name in names)
-    last = above
     if has_factors:
-        last = figure.add_axes([0.08, 0.08, 0.62, height])
-        _draw(last, place, factors, tuple((part, words, mark, "-") for part, words, mark in FACTORS), names, INTENSITIES,
-              "stress intensity factor")  # fmt: skip
-    last.set_xlabel("load factor" if grows else "step")
-    heading(figure, results, ["what loads the tips of cracks", f"J differs by at most {number(100 * spread, 2)} % within its ring"])
+        _draw(panels[1], over.values, factors, tuple((part, words, mark, "-") for part, words, mark in FACTORS), names,
+              INTENSITIES, "stress intensity factor")  # fmt: skip
+    for axes in panels:
+        axes.set_xlabel(over.label)
+    told = [axes.get_legend_handles_labels() for axes in panels]
+    words = ["what loads the tips of cracks", f"J differs by at most {number(100 * spread, 2)} % within its ring"]
+    settle(figure, results, words, *(sum(parts, []) for parts in zip(*told)))
     return figure
 
 
@@ -56,7 +57,6 @@ def _draw(axes, place, columns, parts, names, units, words):
             if values is None:
                 continue
             colour = LINES[(number_of_tip * len(parts) + [p for p, *_ in parts].index(part)) % len(LINES)]
-            axes.plot(place, values / size, marker=mark, markersize=6, linestyle=line, color=colour, markeredgecolor=INK,
-                      markeredgewidth=0.5, label=f"{name}: {label}")  # fmt: skip
+            axes.plot(place, values / size, marker=mark, markersize=points(6), linestyle=line, color=colour, markeredgecolor=INK,
+                      markeredgewidth=points(0.5), label=f"{name}: {label}")  # fmt: skip
     axes.set_ylabel(f"{words} [{unit}]")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=12)

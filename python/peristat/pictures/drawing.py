@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from .style import Picture, own_settings
+from .style import SCREEN, Picture, Style, own_settings
 
 
 @dataclass(frozen=True)
@@ -14,6 +14,6 @@ class Drawing:
     make: Callable[[], Picture]
     of_step: bool = False  # it shows one step, rather than the whole run
 
-    def figure(self) -> Picture:
-        with own_settings():
+    def figure(self, style: Style = SCREEN) -> Picture:
+        with own_settings(style):
             return self.make()

@@ -1,17 +1,23 @@
 """Picture of the energy balance: where the external work went."""
 
 import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from .style import ENERGIES, INK, heading, load_axis, new_figure, number, time_unit, unit_for
+from .abscissa import Abscissa, abscissas
+from .curve_page import PANEL, curve_page, settle
+from .reactions import has_reactions, reactions
+from .style import INK, page_width, points
+from .units import ENERGIES, number, unit_for
 
 PARTS = (  # columns of the history, labels and colours, from below
     ("stored_energy", "stored", "#8fb8d4"),
     ("dissipated_energy", "dissipated by damage", "#d98a68"),
     ("drained_energy", "drained by relaxation, or released", "#c9b26a"),
 )
-MOST_BARS = 40  # more steps are drawn as areas, because their states lie close together
 KINETIC = ("kinetic_energy", "kinetic", "#a9c58f")  # of a motion
+MOST_STEMS = 250  # more states lie so close together that the stems are an area
 
 
 def _column(results, name: str) -> np.ndarray:
@@ -30,60 +36,57 @@ def has_lost_energy(results) -> bool:
     return len(lengths) == 1 and lengths != {0} and any(column.any() for column in columns[3:])
 
 
-def _marks(count: int, edge: str = INK) -> dict:
-    """Style of the marks at the accepted steps, the only states whose energies are known."""
-    return {"marker": "o", "markersize": float(np.clip(260 / count, 2.0, 6.0)), "markerfacecolor": INK,
-            "markeredgecolor": edge, "markeredgewidth": 0.5}  # fmt: skip
+def _abscissa(results) -> Abscissa:
+    """What the run is drawn over if it only grows, else the step."""
+    found = abscissas(results, reactions(results) if has_reactions(results) else [])
+    steps = Abscissa("step", _column(results, "step"), kind="step")
+    return next((one for one in found if one.grows), steps)
 
 
 def draw_energies(results):
-    """Stored, kinetic, dissipated and drained energy stacked, and the external work that they add up to.
+    """Stored, kinetic, dissipated and drained energy on top of each other, and the external work that they add up to.
 
-    The abscissa is the load factor if it only grows, the time for a motion, else the step.
+    Energies are known at the accepted steps only. Each has a stem; nothing is drawn in between.
     """
-    load, work = _column(results, "load_factor"), _column(results, "external_work")
-    parts = [_column(results, name) for name, _, _ in _parts(results)]
-    grows = (np.diff(load) >= 0.0).all() and load[0] >= 0.0
-    label, of_load = ("", 1.0) if results.is_of_motion else load_axis(load)
-    place = load / of_load if grows else _column(results, "step")
-    unit, size = unit_for(max(np.abs(work).max(), sum(parts).max()), ENERGIES, 1.0)
-    start = [0.0] if place[0] > 0.0 else []
-    place, work = np.concatenate([start, place]), np.concatenate([start, work]) / size
-    parts = [np.concatenate([start, values]) / size for values in parts]
-
-    figure = new_figure(15.0, 7.2)
-    axes = figure.add_axes([0.07, 0.115, 0.67, 0.71])
-    time, second = time_unit(load.max()) if results.is_of_motion else ("", 1.0)
-    place = place / second
-    shown = [(values, *looks) for values, (_, *looks) in zip(parts, _parts(results)) if values.any()]
-    below = np.zeros_like(work)
-    # Few steps get one bar each: lines between them would show values that are not known.
-    fill, line = ({"step": "mid"}, {"drawstyle": "steps-mid"}) if len(place) <= MOST_BARS else ({}, {})
-    for values, words, colour in shown:
-        axes.fill_between(place, below, below + values, color=colour, linewidth=0.0, label=words, zorder=2, **fill)
-        below = below + values
-        axes.plot(place, below, color="white", linewidth=1.0, zorder=3, **line, **_marks(len(place), "white"))
-    axes.plot(place, work, color=INK, linewidth=1.4, zorder=4, label="external work",
-              linestyle="none" if fill else "-", **_marks(len(place)))  # fmt: skip
+    work, over = _column(results, "external_work"), _abscissa(results)
+    parts = [(_column(results, name), words, colour) for name, words, colour in _parts(results)]
+    parts = [part for part in parts if part[0].any()]
+    unit, size = unit_for(max(np.abs(work).max(), sum(values for values, *_ in parts).max()), ENERGIES, 1.0)
+    figure, [axes] = curve_page(heights=PANEL)
+    work, below = work / size, np.zeros_like(work)
+    width = np.clip(0.7 * 72.0 * page_width() / len(work), 1.5, 5.0)
+    handles = []
+    for values, words, colour in parts:
+        above = below + values / size
+        _draw_stems(axes, over.values, below, above, colour, points(width))
+        handles.append(Patch(color=colour, label=words))
+        below = above
+    mark = {"linestyle": "none", "marker": "o", "markersize": points(np.clip(260 / len(work), 2.0, 6.0)), "zorder": 4}
+    axes.plot(over.values, work, color=INK, label="external work", **mark)
     numerical = _column(results, "numerical_work")
-    if len(numerical) == len(load) and np.abs(numerical).max() > 1e-3 * np.abs(work).max() * size:
-        both = work + np.concatenate([start, numerical]) / size
-        axes.plot(place, both, color=INK, linewidth=1.2, linestyle=(0, (4, 2)), zorder=4,
-                  label="with the numerical work of relaxation")  # fmt: skip
-        below = np.maximum(below, both)
-    axes.set_xlabel(f"time [{time}]" if results.is_of_motion else label if grows else "step")
-    if not grows:
-        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    if len(numerical) == len(work) and np.abs(numerical).max() > 1e-3 * np.abs(work).max() * size:
+        below = np.maximum(below, work + numerical / size)
+        axes.plot(over.values, work + numerical / size, markerfacecolor="white", markeredgecolor=INK,
+                  label="with the numerical work of relaxation", **(mark | {"zorder": 3.5}))  # fmt: skip
+    axes.set_xlabel(over.label)
     axes.set_ylabel(f"energy [{unit}]")
-    axes.set_xlim(place.min(), place.max() if place.max() > place.min() else place.min() + 1.0)
-    axes.set_ylim(min(0.0, work.min()), 1.06 * max(work.max(), below.max()))
-    handles, labels = axes.get_legend_handles_labels()
-    # The legend lists the parts in their stacking order, beside the axes.
-    axes.legend(handles[::-1], labels[::-1], loc="upper left", bbox_to_anchor=(1.01, 1.0), fontsize=12)
-    words = ["where the external work went", "known at the marked steps"]
+    axes.margins(x=0.02)
+    if over.kind == "step":
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set_ylim(min(0.0, work.min()), 1.06 * max(work.max(), below.max()) or 1.0)
+    words = ["where the external work went", "a stem per accepted step" if len(work) <= MOST_STEMS else "at accepted steps"]
     error = _column(results, "balance_error")
     if len(error) and np.abs(work).max() > 0.0:
         share = np.abs(error).max() / (np.abs(work).max() * size)
         words.append(f"balance error at most {number(100.0 * share, 2)} % of the largest external work")
-    heading(figure, results, words)
+    handles += axes.get_legend_handles_labels()[0]
+    settle(figure, results, words, handles, [handle.get_label() for handle in handles])
     return figure
+
+
+def _draw_stems(axes, places, below, above, colour, width) -> None:
+    """A piece of the stem of every state."""
+    ends = np.stack([np.stack([places, below], axis=1), np.stack([places, above], axis=1)], axis=1)
+    axes.add_collection(LineCollection(ends, colors=colour, linewidths=width, capstyle="butt", zorder=2,
+                                       antialiaseds=len(places) <= MOST_STEMS))  # fmt: skip
+    axes.update_datalim(ends.reshape(-1, 2))

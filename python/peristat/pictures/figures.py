@@ -5,16 +5,18 @@ from functools import partial
 
 from .drawing import Drawing
 from .results_folder import ResultsFolder
-from .style import own_settings
+from .style import Style, own_settings
 
 MOST_FRAMES = 6
+MOVIE = Style("movie", 10.5, 6.5, 13.0, 100, has_title=True)  # small: crack.gif is below a megabyte
 
 
 def drawings(results: ResultsFolder, number: int | None = None) -> Iterator[Drawing]:
     """Every picture that the results allow; those of one step show step `number`, or else the last with fields."""
     if results.step_numbers:
         yield from _of_step(results, results.step_numbers[-1] if number is None else number)
-    from .curve_pictures import draw_load_displacement, has_reactions
+    from .load_displacement_picture import draw_load_displacement
+    from .reactions import has_reactions
 
     if has_reactions(results):
         yield Drawing("load_displacement", partial(draw_load_displacement, results))
@@ -53,26 +55,23 @@ def drawings(results: ResultsFolder, number: int | None = None) -> Iterator[Draw
 
 
 def _of_step(results: ResultsFolder, number: int) -> Iterator[Drawing]:
-    from . import field_pictures
+    from .field_picture import draw_displacement
 
     step = results.step(number)
-    if results.dimension == 1:
-        yield Drawing("deformed", partial(field_pictures.draw_deformed_bar, results, step), True)
-    elif results.dimension == 2:
-        yield Drawing("deformed", partial(field_pictures.draw_deformed_plane, results, step), True)
-        yield Drawing("fields", partial(field_pictures.draw_plane_fields, results, step), True)
+    yield Drawing("deformed", partial(draw_displacement, results, step), True)
+    if results.dimension == 2:
+        from .plane_fields_picture import draw_plane_fields
+
+        yield Drawing("fields", partial(draw_plane_fields, results, step), True)
         yield from _of_fracture(results, step)
         if results.is_of_motion:
             from . import motion_pictures
 
             yield from motion_pictures.draw_motion(results, step)
-    else:
-        from . import solid_pictures
+    elif results.dimension == 3:
+        from . import section_pictures, solid_pictures
 
-        yield Drawing("deformed", partial(solid_pictures.draw_deformed_solid, results, step), True)
         yield Drawing("cut", partial(solid_pictures.draw_cut_solid, results, step), True)
-        from . import section_pictures
-
         if section_pictures.moves_visibly(results, step):
             yield Drawing("lateral", partial(section_pictures.draw_lateral_solid, results, step), True)
             yield Drawing("middle_plane", partial(section_pictures.draw_middle_plane, results, step), True)
@@ -157,5 +156,5 @@ def animate(results: ResultsFolder) -> bytes | None:
     except ImportError as error:
         results.missing.append(f"no crack.gif: it needs Python's PIL (Debian: python3-pil): {error}")
         return None
-    with own_settings():
+    with own_settings(MOVIE):
         return crack_animation(results)

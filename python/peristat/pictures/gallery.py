@@ -12,7 +12,8 @@ from pathlib import Path
 LIST = ".pictures"
 SCRIPT = "show_in_paraview.py"
 PICTURE_NAME = re.compile(rf"[A-Za-z0-9_]+\.(png|pdf|svg|gif)|{re.escape(SCRIPT)}")
-MOST_BYTES = 100_000  # size limit of the list
+OF_ONE_FIELD = re.compile(r"_step_\d{6}")
+MOST_BYTES = 1_000_000  # size limit of the list
 
 
 class NoPlace(Exception):
@@ -55,10 +56,11 @@ class Gallery:
         return list(dict.fromkeys(name for name in names if PICTURE_NAME.fullmatch(name)))
 
     def remove_earlier(self, endings: tuple[str, ...]) -> None:
-        """Removes the listed pictures whose names end like this, except those that have become links."""
+        """Removes the listed pictures whose names end like this, except those that have become links, and pictures of one
+        field, which somebody has asked for by name."""
         kept = []
         for name in self.names:
-            if not name.endswith(endings):
+            if not name.endswith(endings) or OF_ONE_FIELD.search(name):
                 kept.append(name)
                 continue
             try:

@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from .style import GHOST, INK, LENGTHS, LINES, heading, new_figure, number, scaled, unit_for
+from .curve_page import curve_page, settle
+from .style import GHOST, INK, LINES, points
+from .units import LENGTHS, number, scaled, unit_for
 
 RELEASES = scaled("J/m²")
 PLACES = {"crack_length": "crack length", "crack_area": "crack area"}  # probes that an R-curve may be drawn over
@@ -37,8 +39,7 @@ def resistances(results) -> list[tuple[dict, dict]]:
 def draw_resistances(results, pairs):
     """Resistance over crack length or area, with a mark per step in which the crack grew, beside the material's
     fracture energy."""
-    figure = new_figure(12.0, 7.0)
-    axes = figure.add_axes([0.1, 0.12, 0.85, 0.72])
+    figure, [axes] = curve_page()
     curves = [(results.numbers(str(probe["name"])), results.numbers(str(place["name"]))) for probe, place in pairs]
     asked = fracture_energy(results)
     unit, size = unit_for(max(max(values.max() for values, _ in curves), asked), RELEASES, 1.0)
@@ -48,16 +49,16 @@ def draw_resistances(results, pairs):
     length_unit, length = unit_for(max(places.max() for *_, places in shown), AREAS if field == "crack_area" else LENGTHS)
     for k, (probe, values, places) in enumerate(shown):
         grew = values > 0.0
-        axes.plot(places[grew] / length, values[grew] / size, marker="o", markersize=6, color=LINES[k % len(LINES)],
-                  markeredgecolor=INK, markeredgewidth=0.5, label=str(probe["name"]).replace("$", r"\$"))  # fmt: skip
+        axes.plot(places[grew] / length, values[grew] / size, marker="o", markersize=points(6), color=LINES[k % len(LINES)],
+                  markeredgecolor=INK, markeredgewidth=points(0.5), label=str(probe["name"]))  # fmt: skip
     if asked > 0.0:
-        axes.axhline(asked / size, color=GHOST, linewidth=1.5, linestyle="--", zorder=1, label="fracture energy of the material")
+        axes.axhline(asked / size, color=GHOST, linewidth=points(1.5), linestyle="--", zorder=1, label="fracture energy of the material")
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel(f"{PLACES[field]} [{length_unit}]")
     axes.set_ylabel(f"dissipated energy per area grown [{unit}]")
-    axes.legend(loc="best", fontsize=12)
     steps = sum(int((values > 0.0).sum()) for _, values, _ in shown)
-    heading(figure, results, ["resistance to the crack (R-curve)", f"{number(steps)} step{'s' * (steps != 1)} in which it grew"])
+    words = ["resistance to the crack (R-curve)", f"{number(steps)} step{'s' * (steps != 1)} in which it grew"]
+    settle(figure, results, words, *axes.get_legend_handles_labels())
     return figure
 
 

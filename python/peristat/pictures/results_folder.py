@@ -101,6 +101,12 @@ class ResultsFolder:
         horizon = _finite(horizon)
         return int(max(ratio or (horizon or 0.0) / self.spacing, 1.0))
 
+    @property
+    def listed_reach(self) -> int:
+        """Reach of the broken bonds that are listed; with convolutions only those to next neighbours are."""
+        solver = self.case.get("solver")
+        return 1 if isinstance(solver, dict) and solver.get("operator") == "fft" else self.reach
+
     @cached_property
     def outline(self) -> Outline | None:
         """Outline of a plane body whose case has shapes; None in other dimensions, which have other shapes."""

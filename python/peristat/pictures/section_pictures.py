@@ -5,8 +5,12 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from .camera import AXES, Camera
+from .framing import framed
+from .ranges import Shades, exaggeration
 from .solid_pictures import draw_solid
-from .style import GHOST, LENGTHS, colour_bar, heading, new_figure, number, step_words, unit_for
+from .state_words import step_words
+from .style import GHOST, colour_bar, heading, points
+from .units import LENGTHS, number, unit_for
 
 VISIBLE = 0.1  # smallest displacement over the body's size for which lateral pictures are drawn
 COLOURS = "coolwarm"
@@ -36,8 +40,8 @@ def draw_lateral_solid(results, step):
     _, up, _ = _axes_of(results, step)
     values = step.displacement[:, up]
     unit, size = unit_for(np.abs(values).max(), LENGTHS)
-    return draw_solid(results, step, values / size, _range(values / size),
-                      f"displacement {AXES[up]} [{unit}]", COLOURS)  # fmt: skip
+    shades = Shades(values / size, f"displacement in {AXES[up]} [{unit}]", *_range(values / size), COLOURS)
+    return draw_solid(results, step, exaggeration(results.reference, step), shades)
 
 
 def draw_middle_plane(results, step):
@@ -59,22 +63,19 @@ def draw_middle_plane(results, step):
     reference, moved, spacing = reference / place_size, moved / place_size, results.spacing / place_size
     both = np.concatenate([reference, moved])
     low, high = both.min(axis=0) - spacing, both.max(axis=0) + spacing
-    scale = min(13.2 / (high - low)[0], 8.0 / (high - low)[1])
-    width, height = scale * (high - low)
-    figure = new_figure(width + 2.6, height + 2.0)
-    axes = figure.add_axes([0.8 / (width + 2.6), 0.7 / (height + 2.0), width / (width + 2.6), height / (height + 2.0)])
-    dot = min(0.55 * scale * spacing * 72.0, 12.0) ** 2
+    where = number(float(depth[plane].mean()) / place_size)
+    words = [f"points of the middle plane, {AXES[across]} = {where} {place_unit}", *step_words(results, step),
+             f"{number(int(plane.sum()))} points"]  # fmt: skip
+    label = f"displacement in {AXES[up]} [{unit}]"
+    figure, axes, bar = framed(low, high, words, label)
+    scale = axes.get_position().width * figure.get_size_inches()[0] / (high - low)[0]
+    dot = min(0.55 * scale * spacing * 72.0, points(12.0)) ** 2
     axes.scatter(*reference.T, s=0.5 * dot, color=GHOST, linewidths=0, zorder=2)
     norm = Normalize(*_range(values / size))
     axes.scatter(*moved.T, s=dot, c=values / size, cmap=COLOURS, norm=norm, edgecolors="#5b656e",
-                 linewidths=0.3, zorder=3)  # fmt: skip
-    axes.set_xlim(low[0], high[0])
-    axes.set_ylim(low[1], high[1])
+                 linewidths=points(0.3), zorder=3)  # fmt: skip
     axes.set_xlabel(f"{AXES[along]} [{place_unit}]")
     axes.set_ylabel(f"{AXES[up]} [{place_unit}]")
-    bar = [(width + 1.2) / (width + 2.6), 0.9 / (height + 2.0), 0.22 / (width + 2.6), (height - 0.4) / (height + 2.0)]
-    colour_bar(figure, bar, ScalarMappable(norm, COLOURS), f"displacement {AXES[up]} [{unit}]")
-    where = number(float(depth[plane].mean()) / place_size)
-    heading(figure, results, [f"points of the middle plane, {AXES[across]} = {where} {place_unit}",
-                              *step_words(step), f"{number(int(plane.sum()))} points"])  # fmt: skip
+    colour_bar(figure, bar, ScalarMappable(norm, COLOURS), label)
+    heading(figure, results, words)
     return figure

@@ -80,7 +80,7 @@ def cells_of(results, step, limit: int, size: float, *fields: np.ndarray):
 
 def _separate_lattice(results, step, cells, reference, broken) -> None:
     """Parts cells of a lattice by cracks and, if these are known, by broken bonds."""
-    separate(cells, reference, results.cracks, broken.inner() if broken else None, results.reach)
+    separate(cells, reference, results.cracks, broken.inner() if broken else None, results.listed_reach)
     if broken and results.image_kinds and cells.is_lattice:
         separate_from_images(results, cells, broken)
     if broken:

@@ -8,94 +8,88 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import LinearSegmentedColormap, Normalize, PowerNorm, to_rgba
+from matplotlib.colors import LinearSegmentedColormap, to_rgba
 
 from .camera import AXES, Camera, darker, draw_directions, lit, normals, stage
 from .cells import FACES, Cells, corner_signs
-from .field_pictures import (
-    CLIPPED_SHARE, DAMAGE_COLOURS, beyond, displacement_magnitude, exaggeration, exaggeration_words, held_values,
-)  # fmt: skip
+from .ranges import DAMAGE_COLOURS, Shades, beyond, exaggeration, exaggeration_words, held_values, shades, span
 from .separations import cells_of
-from .style import (
-    DOTS_PER_INCH, ENERGY_DENSITIES, GHOST, LENGTHS, PIECE,
-    bond_words, colour_bar, heading, number, piece_legend, piece_words, step_words, unit_for,
-)  # fmt: skip
+from .state_words import bond_words, piece_words, step_words
+from .style import GHOST, PIECE, colour_bar, heading, piece_legend, points
+from .units import ENERGY_DENSITIES, LENGTHS, number, unit_for
 
 PALE = LinearSegmentedColormap.from_list("pale", ["#e3e7eb", "#f5d48a", "#ee8a3c", "#c23a5b", "#5b1f86"])
 MOST_CELLS = 250_000  # more points are averaged over blocks
 
 
-def draw_deformed_solid(results, step):
-    """Deformed body coloured by the magnitude of the displacement."""
-    values, value_range, label = displacement_magnitude(step)
-    return draw_solid(results, step, values, value_range, label, "viridis", mark_pieces=True)
-
-
 def draw_cut_solid(results, step):
-    """The half of the deformed body behind its mid-plane, coloured by energy density, to show the inside.
+    """The half of the deformed body behind its mid-plane, to show the inside: coloured by damage if there is any, else by
+    energy density.
 
-    Colours follow the square root and begin pale: most of the body stores little compared with the regions at its
-    supports.
+    Colours of the energy follow the square root and begin pale: most of the body stores little compared with the regions
+    at its supports.
     """
-    held = held_values(step.energy_density, step.floating)
-    low, high, peak = min(float(held.min()), 0.0), float(held.max()), float(np.percentile(held, CLIPPED_SHARE))
-    end = peak if 0.0 < peak < 0.7 * high else high
-    unit, size = unit_for(end, ENERGY_DENSITIES)
-    words = [f"up to {number(high / size)} {unit}"] if end < high else []
-    return draw_solid(results, step, step.energy_density / size, (low / size, end / size or 1.0),
-                      f"energy density [{unit}]", PALE, is_cut=True, words=words)  # fmt: skip
+    if step.damage.max() > 0.0:
+        colours, words = Shades(step.damage, "damage", 0.0, 1.0, DAMAGE_COLOURS), bond_words(results, step)
+    else:
+        whole = span(held_values(step.energy_density, step.floating))
+        colours, words = shades(step.energy_density, whole, "energy density", ENERGY_DENSITIES, PALE, 0.5), []
+    return draw_solid(results, step, exaggeration(results.reference, step), colours, words, is_cut=True)
 
 
 def draw_damaged_solid(results, step):
     """Deformed body coloured by damage; edges of floating pieces are marked."""
-    return draw_solid(results, step, step.damage, (0.0, 1.0), "damage", DAMAGE_COLOURS, mark_pieces=True,
-                      words=bond_words(results, step))  # fmt: skip
+    colours = Shades(step.damage, "damage", 0.0, 1.0, DAMAGE_COLOURS)
+    return draw_solid(results, step, exaggeration(results.reference, step), colours, bond_words(results, step))
 
 
-def draw_solid(results, step, values, value_range, label, colours, mark_pieces=False, is_cut=False, words=()):
+def draw_solid(results, step, factor: float, colours: Shades, words=(), is_cut=False, window=None):
     """Deformed body coloured by a value per point, with extra words in the heading.
 
-    Pieces are marked on request; for a cut, the half towards the viewer is left out.
+    is_cut  whether the half towards the viewer is left out
+    window  low and high corner of a box of the reference body; only points in it are shown [m]
     """
-    factor = exaggeration(results.reference, step)
-    cells, reference, displacement, floating, loose, values = cells_of(results, step, MOST_CELLS, 1.0, values)
+    cells, reference, displacement, floating, loose, values = cells_of(results, step, MOST_CELLS, 1.0, colours.values)
     spacing = cells.spacing
-    camera = Camera(reference, displacement)
     corners = cells.corners(reference, factor * displacement, loose)
-    shown = np.ones(len(reference), dtype=bool)
+    shown, words = np.ones(len(reference), dtype=bool), list(words)
+    if window is not None:
+        shown = ((reference >= window[0]) & (reference <= window[1])).all(axis=1)
+        camera = Camera(reference[shown], displacement[shown])
+    else:
+        camera = Camera(reference, displacement)
     if is_cut:
         middle = 0.5 * (reference[:, camera.across].min() + reference[:, camera.across].max())
         side = np.sign(camera.towards[camera.across])
-        shown = side * (reference[:, camera.across] - middle) <= 0.25 * spacing
+        shown &= side * (reference[:, camera.across] - middle) <= 0.25 * spacing
         place = 0.0 if abs(middle) < 1e-9 * spacing else middle  # removes the round-off of a mid-plane at 0
         words = [f"cut at {AXES[camera.across]} = {length_words(place)}", *words]
     faces, owners = _visible_faces(cells, corners, loose, camera, shown)
-    box = _bounding_box(reference, spacing)
-
+    box = _bounding_box(reference if window is None else reference[shown], spacing)
     picture = camera.project(faces)
     frame = np.concatenate([picture.reshape(-1, 2), camera.project(box)])
-    low, high = frame.min(axis=0), frame.max(axis=0)
-    figure, axes, bar_place, scale = stage(low, high)
+    unit, size = unit_for(np.ptp(box, axis=0).max(), LENGTHS)
+    extent = " × ".join(number(length / size) for length in np.ptp(box, axis=0))
+    words = [exaggeration_words(factor), *step_words(results, step), *colours.words, *words,
+             f"{number(len(results.volume))} points", f"{extent} {unit}"]  # fmt: skip
+    has_pieces = bool(floating.any())
+    figure, axes, bar_place, scale = stage(frame.min(axis=0), frame.max(axis=0), words, colours.label, foot=0.3 * has_pieces)
     _draw_box(axes, camera, box)
 
-    norm = PowerNorm(0.5, *value_range) if is_cut else Normalize(*value_range)
-    face_colours = lit(colormaps.get_cmap(colours)(norm(values[owners])), faces, camera)
-    edge = spacing * scale * DOTS_PER_INCH
-    edges, width = (face_colours, 0.4) if edge < 7.0 else (darker(face_colours, 0.84), min(0.07 * edge, 1.0))
-    if mark_pieces and floating.any():
+    face_colours = lit(colormaps.get_cmap(colours.colours)(colours.norm(values[owners])), faces, camera)
+    edge = spacing * scale * 72.0 / points(1.0)  # of a cell [point of the code]
+    edges, width = (face_colours, 0.3) if edge < 5.0 else (darker(face_colours, 0.84), min(0.07 * edge, 0.8))
+    if has_pieces:
         piece_legend(figure, piece_words(step), side="right", hatch=None)
-        edges, width = np.where(floating[owners, None], to_rgba(PIECE), edges), max(width, 0.8)
+        edges, width = np.where(floating[owners, None], to_rgba(PIECE), edges), max(width, 0.6)
     axes.add_collection(
-        PolyCollection(picture, facecolors=face_colours, edgecolors=edges, linewidths=width,
+        PolyCollection(picture, facecolors=face_colours, edgecolors=edges, linewidths=points(width),
                        joinstyle="round", zorder=2), autolim=False,
     )  # fmt: skip
     draw_directions(figure, camera)
-    colour_bar(figure, bar_place, ScalarMappable(norm, colours), label,
-               extend=beyond(values[shown], norm.vmin, norm.vmax))  # fmt: skip
-    unit, size = unit_for(np.ptp(box, axis=0).max(), LENGTHS)
-    extent = " × ".join(number(length / size) for length in np.ptp(box, axis=0))
-    heading(figure, results, [exaggeration_words(factor), *step_words(step), *words,
-                              f"{number(len(results.volume))} points", f"{extent} {unit}"])  # fmt: skip
+    colour_bar(figure, bar_place, ScalarMappable(colours.norm, colours.colours), colours.label,
+               extend=beyond(values[shown], colours.low, colours.high))  # fmt: skip
+    heading(figure, results, words)
     return figure
 
 
@@ -129,6 +123,6 @@ def _draw_box(axes, camera, box) -> None:
     """Draws the outline of the reference body's box behind everything."""
     picture = camera.project(box)
     for face in FACES.values():
-        axes.plot(*picture[face + face[:1]].T, color=GHOST, linewidth=1.2, zorder=1)
+        axes.plot(*picture[face + face[:1]].T, color=GHOST, linewidth=points(1.2), zorder=1)
 
 

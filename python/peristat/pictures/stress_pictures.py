@@ -3,16 +3,13 @@
 from functools import partial
 
 from .drawing import Drawing
-from .style import STRESSES
-from .value_pictures import draw_values
+from .field_picture import draw_field
+from .named_values import PRINCIPAL
 
 
 def draw_stresses(results, step):
     """Pictures of the von Mises stress and of the largest principal stress."""
-    von_mises = results.field(step.number, "von_mises")
-    if von_mises is not None:
-        yield Drawing("von_mises", partial(draw_values, results, step, von_mises, "von Mises stress", STRESSES, "inferno"), True)
-    principal = results.field(step.number, "principal_stress", results.dimension)
-    if principal is not None:
-        largest, meaning = principal[:, 0], "largest principal stress"
-        yield Drawing("principal_stress", partial(draw_values, results, step, largest, meaning, STRESSES), True)
+    if results.field(step.number, "von_mises") is not None:
+        yield Drawing("von_mises", partial(draw_field, results, step, "von_mises"), True)
+    if results.field(step.number, PRINCIPAL, results.dimension) is not None:
+        yield Drawing(PRINCIPAL, partial(draw_field, results, step, PRINCIPAL), True)

@@ -1,15 +1,27 @@
-"""Style that all pictures share: fonts, colours, units, titles."""
+"""Style that all pictures share: sizes, letters, colours, headings.
+
+The code of a picture measures in inches of a page on which normal letters have LETTERS points. A style says how wide
+that page is, and how large its letters become when it is printed; lines and marks shrink with them. So one code draws a
+picture for the screen, for a column of a paper and for a slide.
+"""
 
 import contextlib
 import io
+from collections.abc import Iterator
+from contextvars import ContextVar
+from dataclasses import dataclass
 
 import matplotlib
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.patches import Patch
+from matplotlib.textpath import TextToPath
+from matplotlib.ticker import MaxNLocator
 
 INK = "#22282e"  # text and axes
+FACTS = "#5b656e"
 FAINT = "#8a949e"  # secondary text
 GHOST = "#c3cad1"  # reference configuration
 GRID = "#e6e9ec"
@@ -17,101 +29,135 @@ WARNING = "#b4531b"
 PIECE = "#1668b8"  # detached pieces
 LINES = ["#1f6f9f", "#d1603d", "#3f8f5f", "#7a5aa6", "#b58a1b", "#4d5964"]
 
-DOTS_PER_INCH = 100
-
-SETTINGS = {
-    "font.family": "DejaVu Sans",
-    "font.size": 13,
-    "axes.edgecolor": "#9aa3ab",
-    "axes.labelcolor": INK,
-    "axes.linewidth": 0.9,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "grid.color": GRID,
-    "grid.linewidth": 1.0,
-    "text.color": INK,
-    "xtick.color": "#9aa3ab",
-    "ytick.color": "#9aa3ab",
-    "xtick.labelcolor": INK,
-    "ytick.labelcolor": INK,
-    "legend.frameon": False,
-    "hatch.linewidth": 1.2,
-    # Axes show no common factor, which is easily overlooked: each has a unit that suits its values.
-    "axes.formatter.limits": (-7, 8),
-    "axes.formatter.useoffset": False,
-}
-
-PREFIXES = (("T", 1e12), ("G", 1e9), ("M", 1e6), ("k", 1e3), ("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9),
-            ("p", 1e-12), ("f", 1e-15))  # fmt: skip
+LETTERS = 13.0  # points of normal letters on the page of the code; small ones have five sixths of it
+MILLIMETRE = 1.0 / 25.4  # [inch]
 
 
-def scaled(unit: str):
-    """The unit with all prefixes and their sizes, the largest first."""
-    return tuple((prefix + unit, size) for prefix, size in PREFIXES)
+@dataclass(frozen=True)
+class Style:
+    """Size of a page, and of the letters on it."""
+
+    name: str
+    width: float  # [inch]
+    height: float  # most of a picture [inch]
+    letters: float  # size of normal letters [point]
+    dots: int  # per inch
+    has_title: bool = False
+    has_facts: bool = False
+    may_be_narrower: bool = False  # a picture of a tall body has not the whole width
+
+    @property
+    def scale(self) -> float:
+        return self.letters / LETTERS
 
 
-LENGTHS = (("km", 1e3), *scaled("m")[4:])
-FORCES, ENERGIES, ENERGY_DENSITIES, STRESSES = scaled("N"), scaled("J"), scaled("J/m³"), scaled("Pa")
-UNITS = {"m": LENGTHS, "N": FORCES, "J": ENERGIES, "J/m3": ENERGY_DENSITIES, "Pa": STRESSES}  # as results.h5 spells them
+SCREEN = Style("screen", 16.0, 14.0, 17.0, 100, has_title=True, has_facts=True, may_be_narrower=True)
+WIDE = Style("wide", 16.0, 30.0, LETTERS, 100, has_title=True, has_facts=True)  # small letters, for many panels
+TALK = Style("talk", 13.33, 7.5, 20.0, 120, has_facts=True)  # a slide
+# 84 mm and 174 mm are the widths of most journals, or a little below. The smallest letters have 6.25 points.
+PAPER = {"single": Style("paper", 84.0 * MILLIMETRE, 150.0 * MILLIMETRE, 7.5, 500),
+         "double": Style("paper", 174.0 * MILLIMETRE, 180.0 * MILLIMETRE, 7.5, 500)}  # fmt: skip
+STYLES = ("screen", "paper", "talk")
+COLUMNS = tuple(PAPER)
+
+_style: ContextVar[Style] = ContextVar("style", default=SCREEN)
 
 
-def units_of(unit: str):
-    """The units for values that a results folder has in `unit`; a dimensionless number has none."""
-    return UNITS.get(unit, (("" if unit == "1" else unit, 1.0),))
+def style_named(name: str, column: str | None = None) -> Style:
+    """The style of a name and, for a paper, of a column: one of STYLES and COLUMNS."""
+    return {"screen": SCREEN, "talk": TALK, "paper": PAPER[column or "single"]}[name]
 
 
-def unit_for(largest: float, units, least: float = 0.3) -> tuple[str, float]:
-    """Name and size of the largest unit in which the largest value is at least `least`."""
-    for name, size in units:
-        if largest >= least * size:
-            return name, size
-    return units[-1] if largest > 1e-30 else next(unit for unit in units if unit[1] == 1.0)
+def present_style() -> Style:
+    return _style.get()
 
 
-def round_factor(wanted: float) -> float:
-    """Largest of 1, 2, 5, 10, 20, 50, ... that does not exceed the wanted factor; at least 1."""
-    if not np.isfinite(wanted) or wanted <= 1.0:
-        return 1.0
-    decade = 10.0 ** np.floor(np.log10(wanted))
-    return max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= wanted * (1 + 1e-12))
+def page_width() -> float:
+    """Width of the page of the present style [inch of the code]."""
+    return _style.get().width / _style.get().scale
 
 
-def number(value: float, digits: int = 4) -> str:
-    """A number in readable form: 7 500, 0.25, 1.2e-7."""
-    if value == int(value) and abs(value) < 1e9:
-        return f"{int(value):,}".replace(",", "\u2009")
-    return f"{value:.{digits}g}"
+def page_height() -> float:
+    """Largest height of a picture in the present style [inch of the code]."""
+    return _style.get().height / _style.get().scale
 
 
-def load_axis(values) -> tuple[str, float]:
-    """Label of an axis of load factors, and the divisor of its values: a load in metres has tiny ones."""
-    largest = float(np.abs(values).max(initial=0.0))
-    if largest == 0.0 or 1e-2 <= largest < 1e5:
-        return "load factor", 1.0
-    power = 3 * int(np.floor(np.log10(largest) / 3.0))
-    return f"load factor [$10^{{{power}}}$]", 10.0**power
+def is_narrow() -> bool:
+    """Whether two panels do not fit side by side."""
+    return page_width() < 8.0
+
+
+def points(size: float) -> float:
+    """Width of a line, or size of a mark, in the present style [point]."""
+    return size * _style.get().scale
+
+
+def _settings(style: Style) -> dict:
+    scale = style.scale
+    return {
+        "font.family": "DejaVu Sans",
+        "font.size": style.letters,
+        "axes.titlesize": "medium",
+        "axes.edgecolor": "#9aa3ab",
+        "axes.labelcolor": INK,
+        "axes.labelpad": 4.0 * scale,
+        "axes.linewidth": 0.9 * scale,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.grid": True,
+        "axes.axisbelow": True,
+        "grid.color": GRID,
+        "grid.linewidth": scale,
+        "lines.linewidth": 1.8 * scale,
+        "text.color": INK,
+        "xtick.color": "#9aa3ab",
+        "ytick.color": "#9aa3ab",
+        "xtick.labelcolor": INK,
+        "ytick.labelcolor": INK,
+        **{f"{axis}tick.{kind}.{what}": size * scale for axis in "xy" for kind, what, size in (
+            ("major", "size", 4.0), ("major", "width", 0.9), ("major", "pad", 4.0),
+            ("minor", "size", 2.0), ("minor", "width", 0.7))},
+        "legend.frameon": False,
+        "legend.fontsize": "small",
+        "hatch.linewidth": 1.2 * scale,
+        # Axes show no common factor, which is easily overlooked: each has a unit that suits its values.
+        "axes.formatter.limits": (-7, 8),
+        "axes.formatter.useoffset": False,
+        "pdf.fonttype": 42,  # journals refuse others
+        "svg.hashsalt": "peristat",
+    }  # fmt: skip
 
 
 @contextlib.contextmanager
-def own_settings():
+def own_settings(style: Style = SCREEN) -> Iterator[None]:
     """Matplotlib's settings are those of the pictures, whatever the caller's are; its backend stays."""
-    with matplotlib.rc_context():
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(SETTINGS)
-        yield
+    before = _style.set(style)
+    try:
+        with matplotlib.rc_context():
+            matplotlib.rcdefaults()
+            matplotlib.rcParams.update(_settings(style))
+            yield
+    finally:
+        _style.reset(before)
 
 
 class Picture(Figure):
-    """A figure that looks the same wherever it is drawn: axes make their ticks when they are drawn, from the settings."""
+    """A figure that looks the same wherever it is drawn: axes make their ticks when they are drawn, from the settings.
+
+    caption  title and facts, which a style without a heading leaves to the text around the picture
+    """
+
+    def __init__(self, *words, style: Style = SCREEN, **options):
+        super().__init__(*words, **options)
+        self.style = style
+        self.caption = ""
 
     def draw(self, renderer):
-        with own_settings():
+        with own_settings(self.style):
             super().draw(renderer)
 
     def savefig(self, *words, **options):
-        with own_settings():
+        with own_settings(self.style):
             super().savefig(*words, **options)
 
     def _repr_png_(self) -> bytes:
@@ -122,76 +168,91 @@ class Picture(Figure):
 
 
 def new_figure(width: float, height: float) -> Picture:
-    """An empty white figure; sizes in inches (100 dots each). It is to be filled under `own_settings`."""
-    figure = Picture(figsize=(width, height), dpi=DOTS_PER_INCH, facecolor="white")
+    """An empty white figure in the present style [inches of the code]. It is to be filled under `own_settings`."""
+    style = _style.get()
+    figure = Picture(figsize=(width * style.scale, height * style.scale), dpi=style.dots, facecolor="white", style=style)
     FigureCanvasAgg(figure)
     return figure
 
 
-def heading(figure: Figure, results, words: list[str]) -> None:
-    """Title and a line of facts below it; an incomplete run is labelled in colour."""
-    width, height = figure.get_size_inches()
-    completed = results.status == "completed"
-    room = int((width - (0.7 if completed else 2.9)) / 0.17)  # characters of 0.17 inch
-    title = results.title if len(results.title) <= room else results.title[: room - 1] + "…"
-    left = 0.35 / width
-    figure.text(left, 1 - 0.30 / height, title, fontsize=19, fontweight="bold", va="top",
-                parse_math=False)  # fmt: skip
-    figure.text(left, 1 - 0.74 / height, "  ·  ".join(words), fontsize=13, color="#5b656e", va="top")
-    if not completed:
-        remark = {"not_converged": "did not converge"}.get(results.status, results.status)
-        figure.text(1 - left, 1 - 0.36 / height, f"run {remark}", fontsize=13, color=WARNING,
-                    va="top", ha="right", fontweight="bold")  # fmt: skip
+def size_of(figure: Figure) -> np.ndarray:
+    """Width and height of a figure [inches of the code]."""
+    return figure.get_size_inches() / _style.get().scale
 
 
-TIMES = (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9))
+def text_width(text: str, size: str = "medium") -> float:
+    """Width of a line of text [inches of the code]."""
+    font = FontProperties(size=size)
+    return TextToPath().get_text_width_height_descent(text, font, ismath=False)[0] / 72.0 / _style.get().scale
 
 
-def time_unit(longest: float) -> tuple[str, float]:
-    """The unit for a time [s], and its size."""
-    return next(((unit, size) for unit, size in TIMES if abs(longest) >= size), TIMES[-1 if longest else 0])
+# ---------------------------------------------------------------------------------------- headings
+
+MARGIN = 0.3  # beside a heading
+LINE = 0.27  # height of a line of facts
+SEPARATOR = "  ·  "
 
 
-def load_words(load: float, moves: bool, reach: str = "") -> str:
-    """A load factor, or the time of a motion."""
-    if not moves:
-        return f"load factor {reach}{number(load)}"
-    unit, size = time_unit(load)
-    return f"time {reach}{number(load / size)} {unit}"
+def _lines(words: list[str], width: float) -> list[str]:
+    """Facts in as few lines as fit the width."""
+    lines: list[str] = []
+    for word in words:
+        longer = SEPARATOR.join([*lines[-1:], word])
+        if lines and text_width(longer, "small") <= width:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
 
 
-def step_words(step) -> list[str]:
-    """Load factor or time and step as facts for a heading."""
-    return [load_words(step.load_factor, step.mode == "dynamics"), f"step {step.number}"]
+def room_above(words: list[str], width: float) -> float:
+    """Height that the heading of a figure takes, with the space below it."""
+    style = _style.get()
+    facts = len(_lines(words, width - 2 * MARGIN)) * LINE if style.has_facts else 0.0
+    return 0.2 + 0.45 * style.has_title + facts + 0.2 * style.has_facts
 
 
-def bond_words(results, step) -> list[str]:
-    """Number of bonds broken up to a step as a fact for a heading; nothing if unknown."""
-    broken = results.in_history(step.number, "broken_bonds")
-    return [] if broken is None else [f"{number(broken)} broken bond{'s' * (broken != 1)}"]
+def heading(figure: Picture, results, words: list[str]) -> None:
+    """Title and lines of facts below it, as far as the style has them; an incomplete run is labelled in colour."""
+    style, (width, height) = _style.get(), size_of(figure)
+    remark = {"completed": "", "not_converged": "run did not converge"}.get(results.status, f"run {results.status}")
+    figure.caption = SEPARATOR.join([results.title, *words, *([remark] if remark else [])])
+    left, top = MARGIN / width, 0.2
+    if style.has_title:
+        room = width - 2.2 * MARGIN - text_width(remark) - (0.3 if remark else 0.0)
+        title = results.title
+        while len(title) > 1 and 1.08 * text_width(title, "x-large") > room:  # bold letters are wider
+            title = title[: int(0.95 * len(title))].rstrip("… ") + "…"
+        figure.text(left, 1 - top / height, title, fontsize="x-large", fontweight="bold", va="top", parse_math=False)
+        if remark:
+            figure.text(1 - left, 1 - (top + 0.06) / height, remark, color=WARNING, va="top", ha="right",
+                        fontweight="bold")  # fmt: skip
+        top += 0.45
+    for line in _lines(words, width - 2 * MARGIN) if style.has_facts else []:
+        figure.text(left, 1 - top / height, line.replace("$", r"\$"), fontsize="small", color=FACTS, va="top")
+        top += LINE
 
 
-def piece_words(step) -> str:
-    """Number of detached pieces, and of their points."""
-    pieces = len(np.unique(np.rint(step.fragment[step.floating])))
-    points = int(step.floating.sum())
-    return f"{number(pieces)} floating piece{'s' * (pieces != 1)}: {number(points)} point{'s' * (points != 1)}"
+# ------------------------------------------------------------------------------ legends, colour bars
 
 
 def piece_legend(figure: Figure, words: str, side: str = "left", hatch: str | None = "////") -> None:
     """Explains the marks of floating pieces in a lower corner."""
-    mark = Patch(facecolor="none", edgecolor=PIECE, linewidth=1.4, hatch=hatch, label=words)
-    margin = 0.25 / figure.get_size_inches()[0]
-    figure.legend(handles=[mark], loc=f"lower {side}", fontsize=12, borderaxespad=0.4,
+    mark = Patch(facecolor="none", edgecolor=PIECE, linewidth=points(1.4), hatch=hatch, label=words)
+    margin = 0.25 / size_of(figure)[0]
+    figure.legend(handles=[mark], loc=f"lower {side}", borderaxespad=0.4,
                   bbox_to_anchor=(margin if side == "left" else 1.0 - margin, 0.0))  # fmt: skip
 
 
 def colour_bar(figure: Figure, place, mappable, label: str, **options):
-    """A slim colour bar in the rectangle `place` (figure fractions)."""
+    """A slim colour bar in the rectangle `place` (figure fractions), upright or lying as the rectangle is."""
     axes = figure.add_axes(place)
-    bar = figure.colorbar(mappable, cax=axes, **options)
+    width, height = np.array(place[2:]) * size_of(figure)
+    if "ticks" not in options:
+        room = width / 0.8 if width > height else height / 0.35  # of a tick's label
+        options["ticks"] = MaxNLocator(nbins=int(np.clip(room, 1, 8)), steps=[1, 2, 2.5, 5, 10])
+    bar = figure.colorbar(mappable, cax=axes, orientation="horizontal" if width > height else "vertical", **options)
     bar.outline.set_visible(False)
-    bar.set_label(label, labelpad=10)
+    bar.set_label(label, labelpad=points(6))
     axes.grid(False)
-    axes.tick_params(length=4)
     return bar

@@ -2,7 +2,9 @@
 
 import numpy as np
 
-from .style import LENGTHS, LINES, heading, new_figure, number, time_unit, unit_for
+from .curve_page import curve_page, settle
+from .style import LINES
+from .units import LENGTHS, number, time_unit, unit_for
 
 TIP_FIELDS = ("crack_end", "crack_begin")
 SPACINGS = 4  # to each side, over which a speed is averaged, because a tip advances by a spacing at a time
@@ -39,8 +41,7 @@ def tip_speeds(times, places, reach) -> tuple[np.ndarray, np.ndarray]:
 
 
 def draw_tips(results, tips):
-    figure = new_figure(12.0, 8.5)
-    above, below = figure.add_axes([0.1, 0.5, 0.85, 0.36]), figure.add_axes([0.1, 0.1, 0.85, 0.34])
+    figure, (above, below) = curve_page(2, 3.0, is_stacked=True, sharex=True)
     unit, size = time_unit(max(times.max() for _, times, _ in tips))
     length_unit, length = unit_for(max(abs(places).max() for *_, places in tips), LENGTHS)
     reach = SPACINGS * results.spacing
@@ -48,16 +49,13 @@ def draw_tips(results, tips):
     for k, (name, times, places) in enumerate(tips):
         there = places != 0.0
         options = {"color": LINES[k % len(LINES)], "linestyle": ("-", "--", ":")[k % 3]}
-        above.plot(times[there] / size, places[there] / length, label=name.replace("$", r"\$"), **options)
+        above.plot(times[there] / size, places[there] / length, label=name, **options)
         at, speeds = tip_speeds(times[there], places[there], reach)
         below.plot(at / size, speeds, **options)
         largest = max([largest, *abs(speeds)])
     above.set_ylabel(f"tip [{length_unit}]")
-    above.legend(loc="best", fontsize=12)
-    above.tick_params(labelbottom=False)
-    below.set_xlim(above.get_xlim())
     below.set_xlabel(f"time [{unit}]")
     below.set_ylabel("speed [m/s]")
     told = [f"speeds over {2 * SPACINGS} spacings", f"at most {number(round(largest))} m/s"] if largest > 0.0 else []
-    heading(figure, results, ["tips of cracks", *told])
+    settle(figure, results, ["tips of cracks", *told], *above.get_legend_handles_labels())
     return figure

@@ -7,7 +7,8 @@ out, then neighbouring points become one cell; `told` says so.
 import numpy as np
 
 from ..pictures.cloud_cells import CloudCells
-from ..pictures.style import load_words, number
+from ..pictures.state_words import progress
+from ..pictures.units import number
 from .fields import Field
 from .frames import Frames, chosen, read_frames
 from .packing import Pack, Ranges, quantised
@@ -108,7 +109,7 @@ def _frame(results, number_of_step: int) -> dict:
     load = results.in_history(number_of_step, "load_factor")
     return {
         "step": number_of_step,
-        "load": "" if load is None else load_words(load, results.is_of_motion),
+        "load": "" if load is None else " ".join(progress(results, number_of_step, load)).strip(),
         "broken": results.in_history(number_of_step, "broken_bonds"),
     }
 

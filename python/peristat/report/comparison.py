@@ -10,10 +10,11 @@ from urllib.parse import quote
 import numpy as np
 
 from ..errors import InputError
-from ..pictures.curve_pictures import find_abscissa, has_reactions, reactions
+from ..pictures.abscissa import find_abscissa
 from ..pictures.figures import drawings
+from ..pictures.reactions import has_reactions, reactions
 from ..pictures.results_folder import ResultsFolder, read_results_folder
-from ..pictures.style import FORCES, LENGTHS, unit_for
+from ..pictures.units import FORCES, LENGTHS, unit_for
 from .curves import curve, line
 from .markup import Raw, escaped
 from .place import NAME

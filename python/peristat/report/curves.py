@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from ..pictures.curve_pictures import abscissa_of, find_abscissa, has_reactions, reactions
-from ..pictures.style import ENERGIES, FORCES, time_unit, unit_for
+from ..pictures.abscissa import find_abscissa
+from ..pictures.reactions import has_reactions, reactions
+from ..pictures.units import ENERGIES, FORCES, time_unit, unit_for
 
 ENERGY_COLUMNS = (
     ("stored_energy", "stored"),
@@ -64,9 +65,9 @@ def _load_displacement(results, kept) -> list[dict]:
     shown = [line(reaction.label, over[kept], reaction.values[kept] / size) for reaction in drawn]
     found = [curve("load-curve", f"Reactions over {label.partition(' [')[0]}", label, f"reaction [{unit}]", shown, steps=_steps(results, kept))]
     if abscissa := find_abscissa(results, drawn):
-        label, places, own, _ = abscissa_of(abscissa, drawn)
-        shown = [line(reaction.label, places[kept], reaction.values[kept] / size) for reaction in own]
-        found.insert(0, curve("displacement-curve", "Load and displacement", label, f"reaction [{unit}]", shown, steps=_steps(results, kept)))
+        over = abscissa.readable()
+        shown = [line(reaction.label, over.values[kept], reaction.values[kept] / size) for reaction in over.curves(drawn)]
+        found.insert(0, curve("displacement-curve", "Load and displacement", over.label, f"reaction [{unit}]", shown, steps=_steps(results, kept)))
     return found
 
 

@@ -1,7 +1,7 @@
 """The top of a run's page: how it ended, its size, and what the program warned of."""
 
 from ..pictures.results_folder import ResultsFile
-from ..pictures.style import LENGTHS, number, unit_for
+from ..pictures.units import LENGTHS, number, unit_for
 from .markup import escaped, items, paragraph, table
 
 ENDINGS = {

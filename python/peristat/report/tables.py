@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..pictures.style import ENERGIES, number, unit_for
+from ..pictures.units import ENERGIES, number, unit_for
 from .markup import Raw, paragraph, table
 
 LEDGER = (  # keys of summary.json, words, sign in the balance

@@ -26,23 +26,30 @@ PYTHON = Path(__file__).resolve().parents[3] / "python"
 sys.path.insert(0, str(PYTHON))
 
 from peristat.pictures import command  # noqa: E402
+from peristat.pictures.abscissa import abscissas, control_words, find_abscissa  # noqa: E402
+from peristat.pictures.camera import Camera  # noqa: E402
 from peristat.pictures.cells import Cells, merged  # noqa: E402
 from peristat.pictures.convergence_picture import order_words  # noqa: E402
-from peristat.pictures.curve_pictures import draw_load_displacement, find_abscissa, hand_overs, on_the_way, reactions  # noqa: E402
-from peristat.pictures.event_path_picture import draw_events  # noqa: E402
-from peristat.pictures.camera import Camera  # noqa: E402
 from peristat.pictures.crack_surface import crack_surface  # noqa: E402
 from peristat.pictures.crack_surface_pictures import draw_crack_surface, draw_crack_surface_sequence  # noqa: E402
+from peristat.pictures.energy_picture import draw_energies  # noqa: E402
+from peristat.pictures.event_path_picture import draw_events  # noqa: E402
 from peristat.pictures.figures import chosen_frames  # noqa: E402
-from peristat.pictures.field_pictures import beyond, deformed_plate, displacement_magnitude  # noqa: E402
-from peristat.pictures.separations import crosses, separate  # noqa: E402
-from peristat.pictures.resistance_picture import draw_resistances, resistances  # noqa: E402
-from peristat.pictures.results_folder import read_results_folder  # noqa: E402
+from peristat.pictures.fracture_marks import hand_overs, on_the_way  # noqa: E402
+from peristat.pictures.load_displacement_picture import draw_load_displacement  # noqa: E402
+from peristat.pictures.named_values import named_values  # noqa: E402
 from peristat.pictures.panels import number_of_columns  # noqa: E402
 from peristat.pictures.path_picture import draw_path  # noqa: E402
+from peristat.pictures.plane import deformed_plate  # noqa: E402
+from peristat.pictures.ranges import beyond  # noqa: E402
+from peristat.pictures.reactions import reactions  # noqa: E402
+from peristat.pictures.resistance_picture import draw_resistances, resistances  # noqa: E402
+from peristat.pictures.results_folder import read_results_folder  # noqa: E402
+from peristat.pictures.separations import crosses, separate  # noqa: E402
 from peristat.pictures.solid_pictures import draw_cut_solid  # noqa: E402
-from peristat.pictures.style import load_axis, round_factor  # noqa: E402
+from peristat.pictures.state_words import step_words  # noqa: E402
 from peristat.pictures.tip_picture import tip_speeds  # noqa: E402
+from peristat.pictures.units import load_axis, round_factor  # noqa: E402
 from peristat.pictures.voronoi import voronoi_cells  # noqa: E402
 
 SPACING = 1e-3
@@ -573,7 +580,7 @@ class Pictures(unittest.TestCase):
         self.assertEqual(over.get_xlabel(), "controlled displacement [µm]")
         np.testing.assert_allclose(over.lines[0].get_xdata(), [0, 1, 2, 3])
         _, reaction = draw_path(results).axes
-        self.assertIn("reaction of right", reaction.get_ylabel())  # the largest, not the first
+        self.assertIn("reaction of “right”", reaction.get_ylabel())  # the largest, not the first
 
     def test_small_load_factors_have_a_power_of_ten(self):
         self.assertEqual(load_axis(np.array([1.0, -2.0])), ("load factor", 1.0))
@@ -583,7 +590,7 @@ class Pictures(unittest.TestCase):
     def test_a_constraint_has_a_force_and_no_direction(self):
         tie = {f"reaction_{axis}:tie": [value] * 3 for axis, value in zip("xyz", (-5e3, 0, 0))}
         results = self.results_with(tie, '[[constraint]]\nname = "tie"\n')
-        self.assertIn("constraint tie", [curve.label for curve in reactions(results)])
+        self.assertIn("constraint “tie”", [curve.label for curve in reactions(results)])
 
     def test_grips_that_part_are_drawn_over_their_distance(self):
         pulled = "".join(f'[[support]]\nset = "{name}"\ndisplacement = ["{sign}1e-5*load", "free"]\n'
@@ -604,10 +611,11 @@ class Pictures(unittest.TestCase):
     def test_panels_of_a_sequence_leave_no_half_of_it_empty(self):
         for count in range(2, 7):
             for aspect in (0.1, 0.25, 0.5, 1.0, 3.0):
-                columns = number_of_columns(count, aspect)
+                columns = number_of_columns(count, aspect, 11.0)
                 self.assertLessEqual(-count % columns, columns / 3, (count, aspect))
-        self.assertEqual(number_of_columns(4, 0.25), 2)  # a beam
-        self.assertEqual(number_of_columns(6, 1.0), 3)  # a square
+        self.assertEqual(number_of_columns(4, 0.25, 11.0), 2)  # a beam
+        self.assertEqual(number_of_columns(6, 1.0, 11.0), 3)  # a square
+        self.assertEqual(number_of_columns(6, 1.0, 5.0), 2)  # in a column of a paper
 
     # ---- files that are written and removed --------------------------------------------------------
 
@@ -763,11 +771,11 @@ class Pictures(unittest.TestCase):
         count = len(results.history["step"])
         results.history |= {f"reaction_{axis}:roller": [1e-9] * count for axis in "xyz"}
         curves = reactions(results)
-        self.assertEqual([curve.name for curve in curves], ["left"])
-        self.assertEqual(curves[0].others, ["right opposite"])
+        self.assertEqual([curve.name for curve in curves], ["right"])  # whose reaction is positive
+        self.assertEqual(curves[0].others, ["“left” opposite"])
         self.assertGreater(curves[0].values[-1], 0.0)
-        results.case["support"] = [{"set": "right", "displacement": ["1e-5*load", "free"]}]
-        self.assertEqual([curve.name for curve in reactions(results)], ["right"])  # the driven one
+        results.case["support"] = [{"set": "left", "displacement": ["-1e-5*load", "free"]}]
+        self.assertEqual([curve.name for curve in reactions(results)], ["left"])  # the driven one
 
     def test_the_displacement_is_that_of_the_driven_support(self):
         write_folder(self.folder, lattice(10, 10))
@@ -803,11 +811,11 @@ class Pictures(unittest.TestCase):
     def test_a_load_factor_that_is_a_displacement_has_a_unit(self):
         write_folder(self.folder, lattice(10, 10))
         results = read_results_folder(self.folder)
-        labels = lambda: [axes.get_xlabel() for axes in draw_load_displacement(results).axes]
-        self.assertIn("load factor", labels())
-        load = results.numbers("load_factor")
-        results.history |= {"displacement_y:right": list(-load)}
-        self.assertIn("load factor, a displacement [m]", labels())
+        self.assertEqual(step_words(results, results.step(3)), ["load factor 1", "step 3"])
+        results.history |= {"displacement_y:right": list(-results.numbers("load_factor"))}
+        self.assertEqual(step_words(results, results.step(3)), ["prescribed displacement 1 m", "step 3"])
+        results.history["control"] = [1e-6, 2e-6, 3e-6]
+        self.assertEqual(step_words(results, results.step(2)), ["controlled displacement 2 µm", "step 2"])
 
     def test_dead_loads_are_drawn_over_the_loaded_set(self):
         write_folder(self.folder, lattice(10, 10))
@@ -847,13 +855,17 @@ class Pictures(unittest.TestCase):
 
     def test_pieces_do_not_set_the_scale(self):
         write_cracked_folder(self.folder, (20, 20), steps=6)
-        step = read_results_folder(self.folder).step(6)
+        results = read_results_folder(self.folder)
+        step = results.step(6)
         held = np.linalg.norm(step.displacement[~step.floating], axis=1).max()
-        step.displacement[step.floating] += 1.0
-        values, (low, high), label = displacement_magnitude(step)
-        size = {"[µm]": 1e-6, "[mm]": 1e-3}[label.split()[-1]]
-        self.assertAlmostEqual(high * size, held, delta=1e-12 * held)
-        self.assertEqual(beyond(values, low, high), "max")  # and the colour bar shows that there is more
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            moved = file["steps/000006/displacement"][...]
+            moved[step.floating] += 1.0
+            file["steps/000006/displacement"][...] = moved
+        colours = named_values(results, 6, "displacement").shades(step)
+        size = {"[µm]": 1e-6, "[mm]": 1e-3}[colours.label.split()[-1]]
+        self.assertAlmostEqual(colours.high * size, held, delta=1e-12 * held)
+        self.assertEqual(beyond(colours.values, colours.low, colours.high), "max")  # the colour bar shows that there is more
 
     def test_solid(self):
         write_folder(self.folder, lattice(20, 5, 5))
@@ -1130,11 +1142,11 @@ class Pictures(unittest.TestCase):
         write_folder(self.folder, lattice(20, 10))
         results = self.begin_at_rest()
         found = find_abscissa(results, reactions(results))
-        self.assertIn("“left”", found.label)
-        expected = [0.0] + [results.displacement(step)[results.sets["left"], 0].mean() for step in (1, 2, 3)]
+        self.assertIn("“right”", found.label)
+        expected = [0.0] + [results.displacement(step)[results.sets["right"], 0].mean() for step in (1, 2, 3)]
         np.testing.assert_allclose(found.values, expected, rtol=1e-15)
         figure = draw_load_displacement(results)
-        self.assertEqual(len(figure.axes), 2)
+        self.assertEqual(len(figure.axes), 1)
         self.assertTrue(any("3 accepted steps" in text.get_text() for text in figure.texts))
 
     def test_a_body_that_stayed_at_rest_has_no_curve(self):
