@@ -47,7 +47,7 @@ class Table(collections.abc.MutableMapping):
         elif _schema.is_array_of_tables(schema):
             value = TableList(schema["items"], path, value)
         elif value is None:
-            raise input_error(path, "None", "is no value; `del` drops a key")
+            raise input_error(path, "None", "is not a value; `del` removes a key")
         self._values[name] = value
 
     def __delitem__(self, name):

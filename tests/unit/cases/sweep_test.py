@@ -197,8 +197,8 @@ class Computed(unittest.TestCase):
 
     def test_what_has_no_value_is_refused(self):
         for expression, why in {
-            "0.02/lattice.spaceing": "stands neither",
-            "lattice.shape[1].max[0]": "stands neither",
+            "0.02/lattice.spaceing": "is neither in the case file",
+            "lattice.shape[1].max[0]": "is neither in the case file",
             "material.model": "no number",
             "lattice": "no number",
             "1/0": "no value",
