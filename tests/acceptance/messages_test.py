@@ -126,7 +126,7 @@ class Messages(Folder):
         text = PLATE.replace("[[lattice.layer]]", hole + "[[lattice.layer]]", 1)
         self.assert_refused(self.command("check", text), "lattice.shape[1].subtract", "has no effect")
         run = self.command("check", PLATE, "loading.table2=[0, 1]")
-        self.assert_refused(run, "loading.table2", "load2, which no displacement and no load uses")
+        self.assert_refused(run, "loading.table2", "load2, but no displacement and no load uses it")
 
     def test_a_modulus_in_gigapascals(self):
         text = PLATE.replace("200e9", "30").replace("critical = 0.01", "fracture_energy = 100\nstrength = 3e6").replace("critical_stretch", "linear")

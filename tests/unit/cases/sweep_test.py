@@ -199,8 +199,8 @@ class Computed(unittest.TestCase):
         for expression, why in {
             "0.02/lattice.spaceing": "is neither in the case file",
             "lattice.shape[1].max[0]": "is neither in the case file",
-            "material.model": "no number",
-            "lattice": "no number",
+            "material.model": "not a number",
+            "lattice": "not a number",
             "1/0": "no value",
             "(-1)^0.5": "no finite value",
             "9^9^9": "no value",
