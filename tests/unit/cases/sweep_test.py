@@ -210,11 +210,11 @@ class Computed(unittest.TestCase):
             "1" + "+1" * 5000: "no",
             "open('x')": "no function open",
             "__import__('os')": "no function",
-            "'a'*3": "may only hold",
-            "[1][0]": "may only hold",
-            "1 +": "no expression",
-            "(" * 500: "no expression",
-            "": "no expression",
+            "'a'*3": "may only contain",
+            "[1][0]": "may only contain",
+            "1 +": "not an expression",
+            "(" * 500: "not an expression",
+            "": "not an expression",
             "max()": "no value",
         }.items():
             with self.assertRaisesRegex(WrongInput, why, msg=expression):

@@ -319,7 +319,7 @@ const std::vector<BadInput> bad_inputs{
      "[[probe]]",
      "[loading]\ntable = [0, 1]\ntable2 = [0, 1]\n[[probe]]",
      27,
-     {"loading.table2", "gives values of load2, which no displacement and no load uses"}},
+     {"loading.table2", "gives values of load2, but no displacement and no load uses it"}},
     {"LongName",
      "name = \"tip\"",
      "name = \"" + std::string(300, 't') + "\"",
