@@ -249,8 +249,8 @@ steps = 10
         lattice = self.refusal(PULLED.replace("{value}", "product*load"))
         self.assertIn("unknown variable product; allowed are x, load", lattice)
         text = (CLOUD + STILL).format(**TYPED)
-        for header, value, said in (("t", "1", "points.csv:1: the name 't' of a column is taken"), ("sin", "1", "points.csv:1"),
-                                    ("horizon", "1", "points.csv:1: the name 'horizon' of a column is taken"),
+        for header, value, said in (("t", "1", "points.csv:1: the name 't' of a column already has another meaning"), ("sin", "1", "points.csv:1"),
+                                    ("horizon", "1", "points.csv:1: the name 'horizon' of a column already has another meaning"),
                                     ("a b", "1", "points.csv:1: the name 'a b'"), ("T", "inf", "points.csv:2: T = 'inf' is not finite"),
                                     ("T", "hot", "points.csv:2"), ("T", "", "points.csv:2")):  # fmt: skip
             with self.subTest(header=header, value=value):

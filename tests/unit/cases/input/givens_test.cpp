@@ -199,8 +199,9 @@ TEST(Givens, AreRefusedWithTheirNames) {
   EXPECT_NE(unknown.find("did you mean field?"), std::string::npos) << unknown;
   Givens bad;
   bad.functions["sin"] = givens->functions.at("field");
-  EXPECT_NE(refusal(as_text, std::make_shared<const Givens>(bad)).find("is taken"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal(as_text, std::make_shared<const Givens>(bad)).find("already has another meaning"),
+      std::string::npos);
 }
 
 TEST(Givens, PassExceptionsOn) {
@@ -348,7 +349,7 @@ TEST(GivenPoints, AreCheckedLikeThoseOfAFile) {
   expect(refused([](Points& p) { p.sets["held"].clear(); }), "has no point");
   expect(refused([](Points& p) { p.sets[""] = {1}; }), "1 to 100 characters");
   expect(refused([](Points& p) { p.columns["heat"].pop_back(); }), "must have 144");
-  expect(refused([](Points& p) { p.columns["x"] = p.volume; }), "is taken");
+  expect(refused([](Points& p) { p.columns["x"] = p.volume; }), "already has another meaning");
   expect(refused([](Points& p) { std::copy_n(p.reference.begin(), 2, p.reference.begin() + 10); }),
          "points 0 and 5 (from 0) have the same position");
 }
