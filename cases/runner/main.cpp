@@ -69,8 +69,9 @@ Settings overrides(const CommandLine& line) {
 
 void add_settings(CLI::App& command, CommandLine& line) {
   command
-      .add_option("--set", line.settings,
-                  "override a key of the case file, e.g. --set loading.steps=50; may be repeated")
+      .add_option(
+          "--set", line.settings,
+          "override a key of the case file, such as --set loading.steps=50; may be repeated")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all()
@@ -96,8 +97,8 @@ void add_case_options(CLI::App& command, CommandLine& line) {
 void add_run_options(CLI::App& command, CommandLine& line) {
   command
       .add_option("--stop-after", line.steps,
-                  "stop after this many accepted steps (in mode dynamics, rows of the history), as "
-                  "if interrupted; resume continues")
+                  "stop after this number of accepted steps (in mode dynamics: rows of the "
+                  "history), as if interrupted; `peristat resume` continues")
       ->type_name("STEPS")
       ->check(at_least_one());
   command
@@ -113,12 +114,12 @@ void add_run_options(CLI::App& command, CommandLine& line) {
 
 void add_calibration(CLI::App& command, CommandLine& line) {
   CLI::Option* file =
-      command.add_option("case", line.case_file, "case file, whose lattice and material are used");
+      command.add_option("case", line.case_file, "case file; its lattice and material are used");
   add_settings(command, line);
   CalibrationQuestion& asked = line.calibration;
-  command.add_flag(
-      "--strengths", asked.with_strengths,
-      "with a law of damage: also strengths under tension, biaxial tension, shear and compression");
+  command.add_flag("--strengths", asked.with_strengths,
+                   "also print the strengths under tension, biaxial tension, shear and "
+                   "compression; needs a law of damage");
   command.add_option("--dimension", asked.dimension, "2 or 3; for bonds also 1")->excludes(file);
   command.add_option("--spacing", asked.spacing, "spacing of the lattice [m]")->excludes(file);
   command.add_option("--horizon-ratio", asked.horizon_ratio, "horizon / spacing")->excludes(file);
@@ -132,7 +133,8 @@ void add_calibration(CLI::App& command, CommandLine& line) {
   add("--lambda", asked.lambda, "[Pa], with --mu");
   add("--mu", asked.mu, "[Pa]");
   add("--c1", asked.c1, "[N/m6], one-neighbour constant");
-  add("--c2", asked.c2, "[N/m10], two-neighbour constant; in 3D also with moduli");
+  add("--c2", asked.c2,
+      "[N/m10], two-neighbour constant; in 3D it can be given together with moduli");
   add("--c3", asked.c3, "[N/m14], three-neighbour constant, 3D");
 }
 
@@ -223,7 +225,7 @@ void refuse_options_of_bonds(const CommandLine& line) {
 void require_lattice(const CLI::App& command) {
   for (const char* name : {"--dimension", "--spacing", "--horizon-ratio"}) {
     if (command.get_option(name)->count() > 0) continue;
-    throw InputError(name, "", "is missing; calibrate needs it, or a case file");
+    throw InputError(name, "", "is missing; give this option or a case file");
   }
 }
 
@@ -248,7 +250,7 @@ void add_points(CLI::App& command, CommandLine& line) {
   command.add_option("--thickness", asked.thickness, "thickness in 2D [m] (default: 1)");
   command.add_option("--at", asked.at, "elements (default) or nodes")
       ->transform(names<PointsAt>({{"elements", PointsAt::elements}, {"nodes", PointsAt::nodes}}));
-  command.add_option("--output", asked.output, "file of the points, for points.file");
+  command.add_option("--output", asked.output, "write the points to this file, for points.file");
 }
 
 RunOptions run_options(const CommandLine& line, int threads) {
@@ -403,7 +405,7 @@ int main(int count, char** arguments) try {
   add_case_options(*run_command, line);
   run_command->add_option("--output", line.output, "results folder (default: the case's)");
   run_command->add_flag("--overwrite", line.overwrite,
-                        "replace the results of another case, or of version 1, in the folder");
+                        "replace results of another case, or of version 1, in the folder");
   add_run_options(*run_command, line);
   CLI::App* resume_command =
       program.add_subcommand("resume", "continue a run that has not reached its end");
@@ -411,25 +413,27 @@ int main(int count, char** arguments) try {
   add_settings(*resume_command, line);
   add_threads(*resume_command, line);
   add_run_options(*resume_command, line);
-  add_case_options(*program.add_subcommand("check", "read and build a case, without solving"),
-                   line);
+  add_case_options(
+      *program.add_subcommand("check", "read a case and build its body, without solving"), line);
   CLI::App* tangent_command = program.add_subcommand(
-      "check-tangent", "finite-difference check of residual and tangent; prints JSON");
+      "check-tangent", "check residual and tangent by finite differences; prints JSON");
   add_case_options(*tangent_command, line);
   tangent_command->add_option("--deformation", line.deformation,
                               "current coordinates as expressions of x, y, z: 'EXPR; EXPR; …'");
   CLI::App* const keys =
-      program.add_subcommand("keys", "keys of case files, as tables in markdown");
+      program.add_subcommand("keys", "print the keys of case files, as tables in markdown");
   CLI::Option* const table = keys->add_option(
-      "table", line.table, "one table, such as solver or lattice.shape (default: all)");
-  keys->add_flag("--ranks", line.lists_keys_on_ranks, "the keys that run on several ranks")
+      "table", line.table, "print one table, such as solver or lattice.shape (default: all)");
+  keys->add_flag("--ranks", line.lists_keys_on_ranks,
+                 "print the keys that are supported on several ranks")
       ->excludes(table);
-  program.add_subcommand("schema", "JSON schema of case files, by which editors check them");
-  add_points(
-      *program.add_subcommand("points", "counts and sizes of a mesh, and its points as text"),
-      line);
+  program.add_subcommand("schema", "print a JSON schema, with which editors check case files");
+  add_points(*program.add_subcommand(
+                 "points", "print counts and sizes of a mesh, or write its points as text"),
+             line);
   CLI::App* const calibration = program.add_subcommand(
-      "calibrate", "constants from moduli and fracture data, and back; prints JSON");
+      "calibrate",
+      "compute constants from moduli and fracture data, or moduli from constants; prints JSON");
   add_calibration(*calibration, line);
   add_bond_calibration(*calibration, line);
   try {

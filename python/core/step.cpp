@@ -30,8 +30,8 @@ namespace {
 const AcceptedStep& Step::told() const {
   if (told_ != nullptr) return *told_;
   throw std::runtime_error("step " + std::to_string(record_.step) +
-                           " is over: its fields can be read while it is told, and later from "
-                           "the results");
+                           " is over: its fields can be read only in the callback or loop of the "
+                           "step, and later from the results");
 }
 
 py::array_t<double> Step::displacement() const {

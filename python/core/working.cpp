@@ -44,8 +44,8 @@ Working::Working() {
   if (python_ends) throw std::runtime_error("Python is about to end");
   if (turn().try_lock()) return;
   throw std::runtime_error(
-      "another thread is at work in peristat, which works for one thread at a time; peristat.sweep "
-      "with jobs=N runs cases side by side, in processes");
+      "another thread is running peristat, and only one thread at a time may do so; peristat.sweep "
+      "with jobs=N runs cases in parallel processes");
 }
 
 Working::~Working() { turn().unlock(); }

@@ -53,11 +53,11 @@ class LatticeShape(Table):
     add: Literal["box", "disk", "ellipse", "cylinder", "sphere", "polygon", "image", "stl"]
     """kind of the shape to add. exactly one of `add`, `subtract`. Allowed: `'box'` (1D, 2D, 3D), `'disk'`, `'ellipse'` (2D), `'polygon'` (2D; in 3D, where it is infinite in z, only to subtract), `'image'` (2D), `'cylinder'`, `'sphere'`, `'stl'` (3D)"""
     subtract: Literal["box", "disk", "ellipse", "cylinder", "sphere", "polygon", "image", "stl"]
-    """kind of the shape to take away. exactly one of `add`, `subtract`. Allowed: `'box'` (1D, 2D, 3D), `'disk'`, `'ellipse'` (2D), `'polygon'` (2D; in 3D, where it is infinite in z, only to subtract), `'image'` (2D), `'cylinder'`, `'sphere'`, `'stl'` (3D)"""
+    """kind of the shape to subtract. exactly one of `add`, `subtract`. Allowed: `'box'` (1D, 2D, 3D), `'disk'`, `'ellipse'` (2D), `'polygon'` (2D; in 3D, where it is infinite in z, only to subtract), `'image'` (2D), `'cylinder'`, `'sphere'`, `'stl'` (3D)"""
     name: str
     """name of the shape, by which loads refer to its boundary. Default: `''`"""
     cuts_bonds: bool
-    """`subtract`: whether bonds that cross the shape are cut; otherwise bonds longer than its width bridge it. Default: false. Allowed: true, false"""
+    """`subtract`: whether bonds that cross the shape are cut. Otherwise bonds longer than its width bridge it. Default: false. Allowed: true, false"""
     min: List
     """box, image: lower corner [m]. required. Allowed: a number per dimension; below `max`"""
     max: List
@@ -75,13 +75,13 @@ class LatticeShape(Table):
     length: Quantity
     """cylinder: length along its axis, half to each side of the centre [m]. Default: infinite. Allowed: positive; finite if it is added"""
     vertices: List
-    """polygon: corners in order; the last is joined to the first [m]. exactly one of `vertices`, `file`. Allowed: 3 or more pairs `[x, y]`; around an area"""
+    """polygon: corners in order. The last corner is joined to the first [m]. exactly one of `vertices`, `file`. Allowed: 3 or more pairs `[x, y]`; around an area"""
     file: str
-    """polygon (in place of `vertices`), image, stl: file with corners x, y, with a PNG or TIFF picture, with an STL surface; its path is relative to the case file's folder. exactly one of `vertices`, `file`. Allowed: an existing file"""
+    """polygon (instead of `vertices`): file with corners x, y; image: PNG or TIFF picture; stl: STL surface. The path is relative to the case file's folder. exactly one of `vertices`, `file`. Allowed: an existing file"""
     scale: Quantity
-    """polygon, stl: length that 1 in the file stands for [m]. Default: 1, or the `length` of `[units]`. Allowed: positive"""
+    """polygon, stl: length of 1 in the file [m]. Default: 1, or the `length` of `[units]`. Allowed: positive"""
     grey: List
-    """image: least and largest value of grey of the pixels that are inside, 0 (black) to 255, or to 65535 in files with 16 bits. required. Allowed: two numbers, the second not below the first"""
+    """image: smallest and largest grey value of the pixels inside the shape, 0 (black) to 255, or to 65535 in files with 16 bits. required. Allowed: two numbers, the second not below the first"""
     translate: List
     """stl: shift after the scaling [m]. Default: `[0.0, 0.0]`. Allowed: a number per dimension"""
 
@@ -93,7 +93,7 @@ class LatticeLayer(Table):
     thickness: int
     """number of planes [spacings]. Default: 3. Allowed: 1 to 1000"""
     where: str
-    """keeps only the points where it is not zero. Default: all of it. Allowed: an expression of place"""
+    """expression; the layer keeps only the points where it is not zero. Default: all points of the layer. Allowed: an expression of place"""
 
 class Lattice(Table):
     spacing: Quantity | List
@@ -103,21 +103,21 @@ class Lattice(Table):
     lloyd_steps: int
     """number of times that points of blue noise move to the centroids of their Voronoi cells. Default: 5. Allowed: 0 to 100"""
     angle: Quantity
-    """angle by which the lattice is turned under the body, anticlockwise about the origin, in 3D about the z axis; shapes, layers and sets stay where they are [degrees]. Default: 0. Allowed: -360 to 360"""
+    """angle by which the lattice is rotated relative to the body, anticlockwise about the origin, in 3D about the z axis. Shapes, layers and sets are not rotated [degrees]. Default: 0. Allowed: -360 to 360"""
     horizon_ratio: float
-    """horizon / spacing; if spacings differ, over their geometric mean. Default: 3.015. Allowed: 1 to 1000; in 3D to 100; with model `cpd` to 50 in 2D, to 8 in 3D"""
+    """horizon / spacing; if spacings differ, horizon / geometric mean of the spacings. Default: 3.015. Allowed: 1 to 1000; in 3D to 100; with model `cpd` to 50 in 2D, to 8 in 3D"""
     thickness: Quantity
     """thickness of the plate, dimension 2 only [m]. Default: 1. Allowed: positive"""
     area: Quantity
     """cross-section of the bar, dimension 1 only [m2]. Default: 1. Allowed: positive"""
     origin: Literal["cell_centres", "nodes"]
-    """where points stand relative to the lower corner of the first shape. `'cell_centres'`: half a spacing inside; `'nodes'`: on the corner itself. Default: `'cell_centres'`. Allowed: `'cell_centres'`, `'nodes'`"""
+    """position of the points relative to the lower corner of the first shape. `'cell_centres'`: half a spacing inside; `'nodes'`: on the corner itself. Default: `'cell_centres'`. Allowed: `'cell_centres'`, `'nodes'`"""
     volumes: Literal["cells", "fractional"]
     """volumes of points. `'cells'`: the whole cell, if its lattice point lies in the body; `'fractional'`: the part of each cell that lies in the body. Default: `'cells'`. Allowed: `'cells'`, `'fractional'`; `fractional` with model `bond`"""
     perturbation: float
-    """largest random shift of a point along each of the lattice's axes; points of layers are not shifted [spacings]. Default: 0. Allowed: 0 to 0.49"""
+    """largest random shift of a point along each of the lattice's axes; points of layers are not moved [spacings]. Default: 0. Allowed: 0 to 0.49"""
     cell_perturbation: float
-    """largest random shift of the corners of cells inside the body along each of the lattice's axes; points stand at the cells' centroids and have their volumes [spacings]. Default: 0. Allowed: 0 to 0.249; model `bond`"""
+    """largest random shift of the corners of cells inside the body along each of the lattice's axes; a point is at the centroid of its cell and has the volume of the cell [spacings]. Default: 0. Allowed: 0 to 0.249; model `bond`"""
     seed: int
     """seed of the random shifts and positions; the same seed gives the same points. Default: 1. Allowed: whole number from 0"""
     def add_shape(self, *, add: Literal["box", "disk", "ellipse", "cylinder", "sphere", "polygon", "image", "stl"] = ..., subtract: Literal["box", "disk", "ellipse", "cylinder", "sphere", "polygon", "image", "stl"] = ..., name: str = ..., cuts_bonds: bool = ..., min: List = ..., max: List = ..., centre: List = ..., radius: Quantity = ..., radii: List = ..., angle: Quantity = ..., axis: List = ..., length: Quantity = ..., vertices: List = ..., file: str = ..., scale: Quantity = ..., grey: List = ..., translate: List = ...) -> LatticeShape: ...
@@ -129,17 +129,17 @@ class Lattice(Table):
 
 class Points(Table):
     file: str
-    """file with comma- or blank-separated text, or a mesh, by the end of its name (.msh, .inp, .vtu, .vtk, .exo, .e, .ex2, .med); its path is relative to the case file's folder. required. Allowed: an existing file"""
+    """file of points as text with commas or blanks, or a mesh, chosen by the ending of the name (.msh, .inp, .vtu, .vtk, .exo, .e, .ex2, .med); its path is relative to the case file's folder. required. Allowed: an existing file"""
     horizon: Quantity | dict[str, Any]
     """horizon, the same for every point; or `{ ratio = 3.015 }`, a horizon per point of 3.015 times its size, for model `bond` and points of different sizes [m]. required. Allowed: positive, or `{ ratio = … }`; at least the mean spacing; at most as many mean spacings as `lattice.horizon_ratio` allows"""
     length_unit: Quantity
     """unit of the coordinates in the file; its volumes are in this unit cubed [m]. Default: 1, or the `length` of `[units]`. Allowed: positive"""
     neighbours: str
-    """file with the neighbours of the points and the shares of their volumes that count, relative to the case file's folder like `file`; model `bond`. Default: all points within the horizon. Allowed: an existing file"""
+    """file with the neighbours of the points and the shares of their volumes that count; its path is relative to the case file's folder. For model `bond`. Default: all points within the horizon. Allowed: an existing file"""
     at: Literal["elements", "nodes"]
-    """of a mesh: a point at the centroid of each element with its volume, or at each node with its share of the elements around it. Default: `'elements'`. Allowed: `'elements'`, `'nodes'`"""
+    """for a mesh: a point at the centroid of each element, with the volume of the element; or a point at each node, with its share of the volumes of the elements around it. Default: `'elements'`. Allowed: `'elements'`, `'nodes'`"""
     cut_bonds: bool
-    """of a mesh: the boundary of the elements cuts the bonds that leave the body. Default: true. Allowed: true, false"""
+    """for a mesh: whether the boundary of the elements cuts the bonds that leave the body. Default: true. Allowed: true, false"""
     thickness: Quantity
     """thickness of the plate, dimension 2 only [m]. Default: 1. Allowed: positive"""
     area: Quantity
@@ -177,27 +177,27 @@ class SetShapeCylinder(Table):
 
 class SetShapePolygon(Table):
     vertices: List
-    """polygon: corners in order; the last is joined to the first [m]. exactly one of `vertices`, `file`. Allowed: 3 or more pairs `[x, y]`; around an area"""
+    """polygon: corners in order. The last corner is joined to the first [m]. exactly one of `vertices`, `file`. Allowed: 3 or more pairs `[x, y]`; around an area"""
     file: str
-    """polygon (in place of `vertices`), image, stl: file with corners x, y, with a PNG or TIFF picture, with an STL surface; its path is relative to the case file's folder. exactly one of `vertices`, `file`. Allowed: an existing file"""
+    """polygon (instead of `vertices`): file with corners x, y; image: PNG or TIFF picture; stl: STL surface. The path is relative to the case file's folder. exactly one of `vertices`, `file`. Allowed: an existing file"""
     scale: Quantity
-    """polygon, stl: length that 1 in the file stands for [m]. Default: 1, or the `length` of `[units]`. Allowed: positive"""
+    """polygon, stl: length of 1 in the file [m]. Default: 1, or the `length` of `[units]`. Allowed: positive"""
 
 class SetShapeImage(Table):
     file: str
-    """polygon (in place of `vertices`), image, stl: file with corners x, y, with a PNG or TIFF picture, with an STL surface; its path is relative to the case file's folder. required. Allowed: an existing file"""
+    """polygon (instead of `vertices`): file with corners x, y; image: PNG or TIFF picture; stl: STL surface. The path is relative to the case file's folder. required. Allowed: an existing file"""
     min: List
     """box, image: lower corner [m]. required. Allowed: a number per dimension; below `max`"""
     max: List
     """box, image: upper corner [m]. required. Allowed: a number per dimension"""
     grey: List
-    """image: least and largest value of grey of the pixels that are inside, 0 (black) to 255, or to 65535 in files with 16 bits. required. Allowed: two numbers, the second not below the first"""
+    """image: smallest and largest grey value of the pixels inside the shape, 0 (black) to 255, or to 65535 in files with 16 bits. required. Allowed: two numbers, the second not below the first"""
 
 class SetShapeStl(Table):
     file: str
-    """polygon (in place of `vertices`), image, stl: file with corners x, y, with a PNG or TIFF picture, with an STL surface; its path is relative to the case file's folder. required. Allowed: an existing file"""
+    """polygon (instead of `vertices`): file with corners x, y; image: PNG or TIFF picture; stl: STL surface. The path is relative to the case file's folder. required. Allowed: an existing file"""
     scale: Quantity
-    """polygon, stl: length that 1 in the file stands for [m]. Default: 1, or the `length` of `[units]`. Allowed: positive"""
+    """polygon, stl: length of 1 in the file [m]. Default: 1, or the `length` of `[units]`. Allowed: positive"""
     translate: List
     """stl: shift after the scaling [m]. Default: `[0.0, 0.0]`. Allowed: a number per dimension"""
 
@@ -215,47 +215,47 @@ class Set(Table):
     name: str
     """name of the set. required. Allowed: letters, digits, `_`, `-`; at most 100 characters; no other set or layer has it"""
     where: str
-    """selects the points where it is not zero. this or `shape` is required. Allowed: an expression of place"""
+    """expression; the set has the points where it is not zero. this or `shape` is required. Allowed: an expression of place"""
     shape: Inner[SetShape]
-    """selects the points in it; its keys are those of `[[lattice.shape]]`: `{ box = { min = [0, 0], max = [1, 1] } }`. this or `where` is required. Allowed: `'box'`, `'disk'`, `'ellipse'`, `'cylinder'`, `'sphere'`, `'polygon'`, `'image'`, `'stl'`"""
+    """shape; the set has the points in it. Its keys are those of `[[lattice.shape]]`: `{ box = { min = [0, 0], max = [1, 1] } }`. this or `where` is required. Allowed: `'box'`, `'disk'`, `'ellipse'`, `'cylinder'`, `'sphere'`, `'polygon'`, `'image'`, `'stl'`"""
 
 class Crack(Table):
     outline: List
-    """2D: corners of a closed polygon whose sides cut bonds; the last corner is joined to the first [m]. Default: this, or `from` and `to`, in 2D. Allowed: 3 or more pairs `[x, y]`"""
+    """2D: corners of a closed polygon. Its sides cut bonds. The last corner is joined to the first [m]. Default: this, or `from` and `to`, in 2D. Allowed: 3 or more pairs `[x, y]`"""
     from_: List
     """2D: one end [m]. required in 2D without `outline`. Allowed: a number per dimension"""
     to: List
     """2D: the other end [m]. required in 2D without `outline`. Allowed: a number per dimension; not `from`"""
     vertices: List
-    """3D: corners in order; the last is joined to the first [m]. required in 3D. Allowed: 3 or more `[x, y, z]`; in one plane (to 10⁻⁹ of the extent) and around an area; edges must not cross or touch"""
+    """3D: corners of a polygon in order. The last corner is joined to the first [m]. required in 3D. Allowed: 3 or more `[x, y, z]`; in one plane (to 10⁻⁹ of the extent) and around an area; edges must not cross or touch"""
 
 class Quadrature(Table):
     form: Literal["collocation", "energy", "printed"]
     """model `lps`. `'collocation'`: forces at points by a quadrature that is exact for linear displacements up to the surface; they have no potential. `'energy'`: forces of an energy, with a symmetric tangent and all modes and loads of the other models except mode `path`. `'printed'`: forces of [FCBM] (A-8), for comparisons only; they have no potential where neighbourhoods differ, and need `solver.operator = 'fft'` in mode `dynamics` with `scheme = 'verlet'`. Default: `'collocation'`. Allowed: `'collocation'`, `'energy'`, `'printed'`"""
     volume_correction: Literal["none", "linear", "exact", "exact_centroids"]
-    """share of a neighbour's volume that counts near the edge of the horizon. `'none'`: all of it; `'linear'`: linear over half a spacing to either side; `'exact'`: the part of its cell within the horizon; `'exact_centroids'`: the same, with the bond's length and influence taken at that part's centroid. The last two are for whole cells of a lattice, whose corners `cell_perturbation` may shift. Default: `'none'`. Allowed: `'none'`, `'linear'`, `'exact'`, `'exact_centroids'`"""
+    """share of a neighbour's volume that counts near the horizon. `'none'`: all of it; `'linear'`: linear over half a spacing to either side; `'exact'`: the part of its cell within the horizon; `'exact_centroids'`: the same, with the bond's length and influence taken at that part's centroid. The last two are for whole cells of a lattice, whose corners `cell_perturbation` may shift. Default: `'none'`. Allowed: `'none'`, `'linear'`, `'exact'`, `'exact_centroids'`"""
     horizon_shape: Literal["ball", "box", "diamond"]
-    """which neighbours a point sees: those within the horizon by their distance (`'ball'`), by its largest component along the lattice's axes (`'box'`), or by the sum of these components (`'diamond'`). Boxes and diamonds are stiffer along some directions than along others: moduli are means over all directions. Default: `'ball'`. Allowed: `'ball'`, `'box'`, `'diamond'`"""
+    """shape of the neighbourhood. A point interacts with the points within the horizon by their distance (`'ball'`), by the largest component of their distance along the lattice's axes (`'box'`), or by the sum of these components (`'diamond'`). Boxes and diamonds are stiffer along some directions than along others: moduli are means over all directions. Default: `'ball'`. Allowed: `'ball'`, `'box'`, `'diamond'`"""
     surface_correction: Literal["none", "volume", "energy"]
     """factor that restores the stiffness of points whose neighbourhood is cut by a surface. `'none'`: no factor; `'volume'`: from the volume of the neighbourhood; `'energy'`: from the energy of simple deformations. Default: `'none'`. Allowed: `'none'`, `'volume'`, `'energy'`"""
     weights: Literal["mean", "bulk"]
     """model `cpd`: weights of interactions near surfaces. `'mean'`: from the mean of their points' effective volumes; `'bulk'`: as in the bulk everywhere. Default: `'mean'`. Allowed: `'mean'`, `'bulk'`"""
     degree: int
-    """model `lps` by collocation: degree of the polynomials that the quadrature is exact for. Default: 5. Allowed: whole number from 4"""
+    """model `lps` by collocation: degree of the polynomials for which the quadrature is exact. Default: 5. Allowed: whole number from 4"""
     traction_form: Literal["full", "paper"]
-    """model `lps` by collocation: part of the displacements' continuation over the boundary that counts. `'full'`: all of it, which is exact for linear fields on every grid; `'paper'`: the part that [LPS] eq. 4.6 keeps. Default: `'full'`. Allowed: `'full'`, `'paper'`"""
+    """model `lps` by collocation: part of the displacements' continuation beyond the boundary that is used. `'full'`: all of it, which is exact for linear fields on every grid; `'paper'`: the part that [LPS] eq. 4.6 keeps. Default: `'full'`. Allowed: `'full'`, `'paper'`"""
     normals: Literal["numerical", "exact"]
     """model `lps` by collocation: normals of surfaces. `'numerical'`: from the neighbourhoods; `'exact'`: from the shapes' faces, at points that have one face and all of their bonds. Default: `'numerical'`. Allowed: `'numerical'`, `'exact'`"""
 
 class MaterialDamage(Table):
     law: Literal["none", "critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended", "table", "energy_density"]
-    """`'none'`: no damage, and the other keys of the table have no effect; `'critical_stretch'`: a bond is undamaged up to `critical` and then broken; `'tanh'`: softening from `onset` to `critical` as published in [ADAPT], with jumps of (1 − tanh `rate`)/2 at both ends; `'tanh_continuous'`: the same law, rescaled so that it does not jump; `'linear'`: the force falls linearly from `onset` to zero at `critical`; `'exponential'`: it falls exponentially, without a jump at `critical`; `'blended'`: it rises on a lower slope from `onset` to `peak`, and then falls linearly; `'table'`: the force is the curve of `stretches` and `forces`; `'energy_density'`: a point fails at once and for good where its energy density exceeds `fracture_energy` / (2 δ); this law is for `kinematics = 'linear'`, and with `solver.operator = 'fft'` for all models. Default: `'none'`. Allowed: `'none'`, `'critical_stretch'`, `'tanh'`, `'tanh_continuous'`, `'linear'`, `'exponential'`, `'blended'`, `'table'`, `'energy_density'`"""
+    """`'none'`: no damage, and the other keys of the table have no effect; `'critical_stretch'`: a bond is undamaged up to `critical` and then broken; `'tanh'`: softening from `onset` to `critical` as published in [ADAPT], with jumps of (1 − tanh `rate`)/2 at both ends; `'tanh_continuous'`: the same law, rescaled to have no jumps; `'linear'`: the force falls linearly from `onset` to zero at `critical`; `'exponential'`: it falls exponentially, without a jump at `critical`; `'blended'`: it rises on a lower slope from `onset` to `peak`, and then falls linearly; `'table'`: the force is the curve of `stretches` and `forces`; `'energy_density'`: a point fails at once and irreversibly where its energy density exceeds `fracture_energy` / (2 δ). This law is for `kinematics = 'linear'`, and with `solver.operator = 'fft'` for all models. Default: `'none'`. Allowed: `'none'`, `'critical_stretch'`, `'tanh'`, `'tanh_continuous'`, `'linear'`, `'exponential'`, `'blended'`, `'table'`, `'energy_density'`"""
     fracture_energy: Quantity
-    """$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` follows from it. `cpd` takes it at horizon ratios up to 12 in 2D, 3.2 in 3D [J/m2]. Default: none. Allowed: positive"""
+    """$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` follows from it. `cpd` accepts it at horizon ratios up to 12 in 2D, 3.2 in 3D [J/m2]. Default: none. Allowed: positive"""
     fracture_toughness: Quantity
-    """$K_{Ic}$, another way to give `fracture_energy`, $G_c = K_{Ic}^2/E'$, with $E' = E$ in plane stress (and with `cpd` in 2D) and $E/(1 - \\nu^2)$ in plane strain and 3D, by the moduli of the model [Pa*sqrt(m)]. Default: none. Allowed: positive"""
+    """$K_{Ic}$, can be given instead of `fracture_energy`: $G_c = K_{Ic}^2/E'$, with $E' = E$ in plane stress (and with `cpd` in 2D) and $E/(1 - \\nu^2)$ in plane strain and 3D, with the moduli of the model [Pa*sqrt(m)]. Default: none. Allowed: positive"""
     strength: Quantity
-    """$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the mean over directions (theory); `onset` follows from it, for `blended` the `peak`, for `critical_stretch` the value of `critical`. `cpd` takes it at the horizon ratios of `fracture_energy`, in 3D at smaller ones, where it does not take minutes [Pa]. Default: none. Allowed: positive"""
+    """$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the mean over directions (theory); `onset` follows from it, for `blended` the `peak`, for `critical_stretch` the value of `critical`. `cpd` accepts it at the horizon ratios of `fracture_energy`, in 3D only at smaller ones, where the computation takes less than minutes [Pa]. Default: none. Allowed: positive"""
     critical: Expression
     """stretch $s_c$ at which a bond breaks [1]. this, `fracture_energy` or `fracture_toughness` is required with a law. Allowed: 1e-9 to 1000, or an expression of `horizon` and `spacing`"""
     onset: Expression
@@ -265,11 +265,11 @@ class MaterialDamage(Table):
     hardening: Quantity
     """`blended`: slope of the force between `onset` and `peak`, relative to that of the undamaged bond [1]. Default: 0.5. Allowed: 0 to 0.99"""
     rate: Quantity
-    """tanh laws: $\\beta$, how strongly the softening is concentrated midway between the two stretches; `exponential`: how much more steeply the force falls at first [1]. Default: 3. Allowed: 0.1 to 50"""
+    """tanh laws: $\\beta$; a larger value concentrates the softening midway between the two stretches. `exponential`: a larger value makes the force fall more steeply at first [1]. Default: 3. Allowed: 0.1 to 50"""
     stretches: List
-    """`table`: stretches, ascending; the first ends the elastic part, at the last one the bond breaks [1]. required with law `table`. Allowed: list of numbers; 1e-9 to 1000"""
+    """`table`: stretches, ascending. The first one ends the elastic part. At the last one the bond breaks [1]. required with law `table`. Allowed: list of numbers; 1e-9 to 1000"""
     forces: List
-    """`table`: force of a bond at each of the `stretches` over its constant $c$, so that the first is the first stretch; linear in between. Force over stretch must not grow. The last may be 0 [1]. required with law `table`. Allowed: list of numbers"""
+    """`table`: force of a bond at each of the `stretches`, divided by its constant $c$, and linear in between. So the first force equals the first stretch. Force over stretch must not grow. The last force may be 0 [1]. required with law `table`. Allowed: list of numbers"""
     no_fail: List
     """sets of points whose bonds stay elastic at any stretch, including bonds to points outside the sets. Default: none. Allowed: list of names of sets and layers"""
 
@@ -281,35 +281,35 @@ class MaterialFibre(Table):
     transverse_modulus: Quantity
     """Young's modulus $E_2$ across the fibres; `youngs_modulus` is $E_1$, along them [Pa]. required. Allowed: positive"""
     shear_modulus: Quantity
-    """$G$ of planes that contain the fibres; Poisson's ratio follows from it [Pa]. Default: $\\sqrt{E_1E_2}/(2 + 2\\nu)$ with the $\\nu$ of isotropic bonds, 1/3 or 1/4. Allowed: positive; such that no bond has a negative constant"""
+    """$G$ in planes that contain the fibres. Poisson's ratio follows from it [Pa]. Default: $\\sqrt{E_1E_2}/(2 + 2\\nu)$ with the $\\nu$ of isotropic bonds, 1/3 or 1/4. Allowed: positive; such that no bond has a negative constant"""
     transverse_critical: Quantity
-    """`critical` of bonds across the fibres; that of `[material.damage]` then holds along them. In between, `critical` varies with the square of the cosine, and `onset` with it [1]. Default: as along the fibres. Allowed: 1e-9 to 1000"""
+    """`critical` of bonds across the fibres. `critical` of `[material.damage]` then holds along the fibres. In between, `critical` varies with the square of the cosine, and `onset` in proportion to it [1]. Default: as along the fibres. Allowed: 1e-9 to 1000"""
 
 class MaterialScatter(Table):
     of: Literal["stiffness", "strength"]
     """what the factor multiplies: the constants of bonds, triangles and tetrahedra, or the stretches of the law of damage. required. Allowed: `'stiffness'`, `'strength'`"""
     factor: Expression
-    """the factor at each point, in the place of a random one; that of a bond is the mean of its ends [1]. Default: random. Allowed: number or expression of place; from 1e-6 to 1e6 at each point"""
+    """the factor at each point, instead of a random one. The factor of a bond is the mean of its ends [1]. Default: random. Allowed: number or expression of place; from 1e-6 to 1e6 at each point"""
     distribution: Literal["weibull"]
     """distribution of the factor, whose mean is 1. Default: `'weibull'`. Allowed: `'weibull'`"""
     weibull_modulus: Quantity
-    """shape $m$: the larger, the less scatter [1]. required without `factor`. Allowed: 1 to 1000"""
+    """shape $m$; a larger value gives less scatter [1]. required without `factor`. Allowed: 1 to 1000"""
     correlation_length: Quantity
-    """length $\\ell$ over which the field changes; 0: every point has a value of its own [m]. Default: 0. Allowed: 0 or positive"""
+    """length $\\ell$ over which the field changes; 0: the points have independent values [m]. Default: 0. Allowed: 0 or positive"""
     seed: int
     """seed of the field; the same seed and position give the same value, whatever else the case contains. Default: 1. Allowed: whole number from 0"""
 
 class Material(Table):
     model: Literal["bond", "cpd", "lps", "green_bond", "correspondence"]
-    """`'bond'`: bond-based peridynamics, whose Poisson ratio is 1/4 (3D and plane strain) or 1/3 (plane stress); `'cpd'`: continuum-kinematics-inspired peridynamics with one-, two- and three-neighbour interactions, dimension 2 and 3; `'lps'`: the linear peridynamic solid of any Poisson ratio, by collocation or as an energy, for small displacements, dimension 2 and 3; `'green_bond'`: bonds that stretch by their squared lengths, at any deformation, like `bond` at small strains; `'correspondence'`: a correspondence material of St. Venant and Kirchhoff of any Poisson ratio, at any deformation, dimension 2 and 3. The last two are summed by `solver.operator = 'fft'` alone. Default: `'bond'`. Allowed: `'bond'`, `'cpd'`, `'lps'`, `'green_bond'`, `'correspondence'`"""
+    """`'bond'`: bond-based peridynamics, whose Poisson ratio is 1/4 (3D and plane strain) or 1/3 (plane stress); `'cpd'`: continuum-kinematics-inspired peridynamics with one-, two- and three-neighbour interactions, dimension 2 and 3; `'lps'`: the linear peridynamic solid of any Poisson ratio, by collocation or as an energy, for small displacements, dimension 2 and 3; `'green_bond'`: bonds that stretch by their squared lengths, at any deformation, like `bond` at small strains; `'correspondence'`: a correspondence material of St. Venant and Kirchhoff of any Poisson ratio, at any deformation, dimension 2 and 3. The last two need `solver.operator = 'fft'`. Default: `'bond'`. Allowed: `'bond'`, `'cpd'`, `'lps'`, `'green_bond'`, `'correspondence'`"""
     potential: Literal["harmonic"]
     """potential of undamaged bonds, a function of their stretch; a damage law uses it below its onset. Default: `'harmonic'`. Allowed: `'harmonic'`"""
     plane: Literal["stress", "strain"]
-    """state of a plane body, dimension 2 only (`cpd` in 2D is purely two-dimensional and has neither). Default: `'stress'`. Allowed: `'stress'`, `'strain'`"""
+    """plane stress or plane strain, dimension 2 only (`cpd` in 2D is purely two-dimensional and has neither). Default: `'stress'`. Allowed: `'stress'`, `'strain'`"""
     kinematics: Literal["finite", "linear"]
-    """stretch of a `bond`. `'finite'`: by its length, at any deformation; `'linear'`: by the displacements along it, for small ones, so that forces are linear. `'linear'` goes without eigenstrains, with `potential = 'harmonic'` and with damage by `energy_density` alone. `lps` is always linear. Default: `'finite'`. Allowed: `'finite'`, `'linear'`"""
+    """stretch of a `bond`. `'finite'`: from its length, for any deformation; `'linear'`: from the displacements along it, for small displacements, so that forces are linear. `'linear'` is only for `potential = 'harmonic'`, damage by `energy_density`, and no eigenstrains. `lps` is always linear. Default: `'finite'`. Allowed: `'finite'`, `'linear'`"""
     influence: Literal["constant", "piecewise_constant", "linear", "cubic", "quintic", "septic", "gaussian", "inverse"]
-    """influence function $\\omega(r/\\delta)$: [GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, $e^{-(r/\\delta)^2}$, or $\\delta/r$. The force density of a bond is $c\\,\\omega s$; constants, moduli and fracture energy account for it. `cpd`: a triangle or tetrahedron has the product of its sides' functions, and constants of the lattice. `lps` as an energy: the kernel K(r); by collocation the inverse one alone. Default: `'constant'`; `'inverse'` with `lps`. Allowed: `'constant'`, `'piecewise_constant'`, `'linear'`, `'cubic'`, `'quintic'`, `'septic'`, `'gaussian'`, `'inverse'`"""
+    """influence function $\\omega(r/\\delta)$: [GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, $e^{-(r/\\delta)^2}$, or $\\delta/r$. The force density of a bond is $c\\,\\omega s$; constants, moduli and fracture energy account for it. `cpd`: a triangle or tetrahedron has the product of its sides' functions, and the constants are those of the lattice. `lps` as an energy: the kernel K(r); by collocation only `inverse`. Default: `'constant'`; `'inverse'` with `lps`. Allowed: `'constant'`, `'piecewise_constant'`, `'linear'`, `'cubic'`, `'quintic'`, `'septic'`, `'gaussian'`, `'inverse'`"""
     youngs_modulus: Quantity
     """Young's modulus, for all models [Pa]. exactly one of `youngs_modulus`, `micromodulus`, `c1`. Allowed: positive"""
     micromodulus: Quantity
@@ -317,7 +317,7 @@ class Material(Table):
     poisson_ratio: float
     """Poisson's ratio, for `cpd`, `lps` and `correspondence` with `youngs_modulus`. required with `youngs_modulus`. Allowed: -1 to 1; `lps`, `correspondence`: to 0.5; `cpd`: in 3D to 0.5; these limits are excluded; `cpd` with damage: at least 1/3 (2D) or 1/4 (3D)"""
     stabilisation: float
-    """`correspondence`: stiffness of the springs that resist motions the deformation gradients do not see (zero-energy modes), relative to bonds of the same bulk modulus. Default: 0.5. Allowed: positive"""
+    """`correspondence`: stiffness of the springs against zero-energy modes, which do not change the deformation gradients; relative to bonds of the same bulk modulus. Default: 0.5. Allowed: positive"""
     c1: Quantity
     """`cpd`: one-neighbour constant [N/m6]. exactly one of `youngs_modulus`, `micromodulus`, `c1`. Allowed: positive"""
     c2: Quantity
@@ -325,11 +325,11 @@ class Material(Table):
     c3: Quantity
     """`cpd`: three-neighbour constant, 3D; it follows from `youngs_modulus` if that is given [N/m14]. Default: 0. Allowed: any number; for a negative one see `c2`"""
     calibration: Literal["lattice", "continuum"]
-    """with `youngs_modulus`: where the constants reproduce the moduli. `'lattice'`: in the sums of this lattice with their corrections (`bond`: in the mean over all directions); `'continuum'`: in the integrals. Default: `'lattice'` with `cpd`, `'continuum'` with `bond`. Allowed: `'lattice'`, `'continuum'`"""
+    """with `youngs_modulus`: how the constants follow from the moduli. `'lattice'`: by the sums of this lattice with their corrections (`bond`: in the mean over all directions); `'continuum'`: by integrals. Default: `'lattice'` with `cpd`, `'continuum'` with `bond`. Allowed: `'lattice'`, `'continuum'`"""
     thermal_expansion: Quantity
     """coefficient α of linear expansion, for `[temperature]` [1/K]. Default: none. Allowed: -1 to 1"""
     density: Quantity
-    """mass density, for gravity and mode `dynamics`; dynamic relaxation has a pseudo density of its own [kg/m3]. Default: none. Allowed: positive"""
+    """mass density, for gravity and mode `dynamics`. Dynamic relaxation has a pseudo density of its own [kg/m3]. Default: none. Allowed: positive"""
     damage: Inner[MaterialDamage]
     """table `[material.damage]`. Default: no damage"""
     fibre: Inner[MaterialFibre]
@@ -348,9 +348,9 @@ class Interface(Table):
     between: List
     """the two materials that meet at the interface. Default: all pairs that no other `[[interface]]` names. Allowed: two sets of regions; `'material'` for the points in none"""
     rule: Literal["harmonic", "arithmetic", "weaker"]
-    """how the constants of a bond between them, or of an interaction of points of both, follow from those of its points, and likewise the stretches of like laws of damage: their harmonic or arithmetic mean, or the smallest value. Default: `'harmonic'`. Allowed: `'harmonic'`, `'arithmetic'`, `'weaker'`"""
+    """rule for the constants of a bond or other interaction between points of the two materials: the harmonic or arithmetic mean of the values of its points, or the smallest value. The stretches of damage laws of the same kind follow by the same rule. Default: `'harmonic'`. Allowed: `'harmonic'`, `'arithmetic'`, `'weaker'`"""
     material: Inner[Material]
-    """table `[interface.material]`, with the keys of [`material]` but `density` and `scatter`: constants and damage of its own. Default: none: the `rule` holds"""
+    """table `[interface.material]`, with the keys of [`material]` except `density` and `scatter`: constants and damage of the interface. Default: none: the `rule` holds"""
 
 class Support(Table):
     set: str
@@ -370,17 +370,17 @@ class Rigid(Table):
 
 class Roller(Table):
     set: str
-    """set of points, each of which slides across the normal. exactly one of `set`, `at`. Allowed: name of a set or layer"""
+    """set of points, each of which can slide at right angles to the normal. exactly one of `set`, `at`. Allowed: name of a set or layer"""
     at: List
-    """where a roller touches the body: it holds the mean displacement of the points around, weighted so that it is the displacement at this place [m]. exactly one of `set`, `at`. Allowed: a number per dimension"""
+    """position at which a roller touches the body. It holds the mean displacement of the points around, with weights that give the displacement at this position [m]. exactly one of `set`, `at`. Allowed: a number per dimension"""
     to: List
-    """3D: other end of the line along which it touches [m]. Default: a point. Allowed: a number per dimension"""
+    """3D: other end of the line along which the roller touches the body [m]. Default: a point. Allowed: a number per dimension"""
     name: str
     """with `at`: name under which its reaction is reported. required with `at`. Allowed: letters, digits, `_`, `-`; at most 100 characters"""
     normal: List
     """direction that is held, a vector of any length. required. Allowed: a number per dimension; not all zero"""
     displacement: Expression
-    """displacement along the normal; `'free'`: unknown, but the same for all points of the set (a platen without friction that does not turn) [m]. Default: `'0'`. Allowed: number, or expression of place and `load`, or `'free'`"""
+    """displacement along the normal; `'free'`: unknown, but the same for all points of the set (a platen without friction that does not rotate) [m]. Default: `'0'`. Allowed: number, or expression of place and `load`, or `'free'`"""
 
 class ConstraintTerm(Table):
     set: str
@@ -399,9 +399,9 @@ class Constraint(Table):
 
 class Symmetry(Table):
     axis: Literal["x", "y", "z"]
-    """axis that the plane is normal to. required. Allowed: `'x'`, `'y'`, `'z'`, as the dimension has them"""
+    """axis normal to the plane. required. Allowed: `'x'`, `'y'`, `'z'`, as the dimension has them"""
     at: Quantity
-    """where the plane crosses the axis, half a spacing before the first points [m]. Default: 0. Allowed: a number"""
+    """coordinate of the plane on the axis, half a spacing before the first points [m]. Default: 0. Allowed: a number"""
 
 class Period(Table):
     axis: Literal["x", "y", "z"]
@@ -419,15 +419,15 @@ class Load(Table):
     body_force: List
     """force density per component [N/m3]. exactly one of `body_force`, `total_force`, `gravity`, `traction`, `pressure`, `stress`. Allowed: number or expression of place and `load` (mode `dynamics`: `t`)"""
     total_force: List
-    """force on the whole set per component, distributed in proportion to the volume [N]. exactly one of `body_force`, `total_force`, `gravity`, `traction`, `pressure`, `stress`. Allowed: number or expression of `load` (`t`) alone"""
+    """force on the whole set per component, distributed in proportion to the volumes of the points [N]. exactly one of `body_force`, `total_force`, `gravity`, `traction`, `pressure`, `stress`. Allowed: number or expression of `load` (`t`) alone"""
     gravity: List
-    """acceleration per component, multiplied by `material.density`; layers have no weight unless `set` names them [m/s2]. exactly one of `body_force`, `total_force`, `gravity`, `traction`, `pressure`, `stress`. Allowed: number or expression of place and `load` (mode `dynamics`: `t`)"""
+    """acceleration per component. It is multiplied by `material.density`. Layers have no weight unless `set` names them [m/s2]. exactly one of `body_force`, `total_force`, `gravity`, `traction`, `pressure`, `stress`. Allowed: number or expression of place and `load` (mode `dynamics`: `t`)"""
     traction: List
-    """force per area per component on a flat part of the boundary, or on facets of a mesh; its direction stays fixed; on a lattice or mesh [Pa]. exactly one of `body_force`, `total_force`, `gravity`, `traction`, `pressure`, `stress`. Allowed: number or expression of place and `load` (mode `dynamics`: `t`)"""
+    """force per area per component on a flat part of the boundary, or on facets of a mesh. Its direction is fixed. For a lattice or a mesh [Pa]. exactly one of `body_force`, `total_force`, `gravity`, `traction`, `pressure`, `stress`. Allowed: number or expression of place and `load` (mode `dynamics`: `t`)"""
     pressure: Expression
-    """pressure on the exposed faces of the cells of the set's points, or of a side; it follows the faces as they deform, and pushes if it is positive; on a lattice or mesh [Pa]. exactly one of `body_force`, `total_force`, `gravity`, `traction`, `pressure`, `stress`. Allowed: number or expression of place and `load` (mode `dynamics`: `t`)"""
+    """pressure on the exposed faces of the cells of the set's points, or of a side. It follows the faces as they deform. Positive values push. For a lattice or a mesh [Pa]. exactly one of `body_force`, `total_force`, `gravity`, `traction`, `pressure`, `stress`. Allowed: number or expression of place and `load` (mode `dynamics`: `t`)"""
     stress: List
-    """model `lps`: stress of the surroundings, [xx, yy, xy] or [xx, yy, zz, xy, yz, xz]; it loads the surface by its traction, the stress times the outward normal [Pa]. exactly one of `body_force`, `total_force`, `gravity`, `traction`, `pressure`, `stress`. Allowed: numbers or expressions of place and `load` (mode `dynamics`: `t`)"""
+    """model `lps`: stress outside the surface, [xx, yy, xy] or [xx, yy, zz, xy, yz, xz]. It loads the surface with the traction stress · outward normal [Pa]. exactly one of `body_force`, `total_force`, `gravity`, `traction`, `pressure`, `stress`. Allowed: numbers or expressions of place and `load` (mode `dynamics`: `t`)"""
     boundary: str
     """model `lps`: `name` of the `[[lattice.shape]]` whose boundary is loaded. Default: `''`"""
     side: Literal["x-", "x+", "y-", "y+", "z-", "z+"]
@@ -439,7 +439,7 @@ class Foundation(Table):
     name: str
     """name under which its force is reported. required. Allowed: letters, digits, `_`, `-`; at most 100 characters"""
     set: str
-    """set that stands on the foundation; with `modulus` one plane of points on the boundary. required, except for `modulus` with a `side`. Allowed: name of a set or layer"""
+    """set on the foundation; with `modulus` one plane of points on the boundary. required, except for `modulus` with a `side`. Allowed: name of a set or layer"""
     side: Literal["x-", "x+", "y-", "y+", "z-", "z+"]
     """`modulus`: the body's outermost plane of points on a side, or the side that is meant if the set lies on several. Default: none. Allowed: `'x-'`, `'x+'`, and so on for y and z"""
     modulus: List
@@ -451,25 +451,25 @@ class Foundation(Table):
 
 class Eigenstrain(Table):
     set: str
-    """set that is strained. Default: all points. Allowed: name of a set or layer"""
+    """set with the strain. Default: all points. Allowed: name of a set or layer"""
     strain: Expression
-    """strain that a part would have if nothing held it, the same in all directions: its length relative to that in the reference, minus 1 [1]. required. Allowed: number or expression of place and `load` (mode `dynamics`: `t`); above −1"""
+    """strain that a part would have if it were not held, the same in all directions: its length relative to that in the reference, minus 1 [1]. required. Allowed: number or expression of place and `load` (mode `dynamics`: `t`); above −1"""
 
 class Temperature(Table):
     change: Expression
-    """change of the temperature from that of the reference; with `material.thermal_expansion` it gives all points an eigenstrain α ΔT [K]. no change; required in the table. Allowed: number or expression of place and `load` (mode `dynamics`: `t`)"""
+    """change of the temperature from the reference. With `material.thermal_expansion` all points get the eigenstrain α ΔT [K]. no change; required in the table. Allowed: number or expression of place and `load` (mode `dynamics`: `t`)"""
 
 class Control(Table):
     set: str
     """set whose mean displacement is taken. required. Allowed: name of a set or layer"""
     weights: List
-    """weights of the mean displacement's components; the weighted displacements of all these tables add up to the controlled one. required. Allowed: a number per dimension; not all zero"""
+    """weights of the mean displacement's components. The controlled displacement is the sum of the weighted displacements of all these tables. required. Allowed: a number per dimension; not all zero"""
 
 class Initial(Table):
     set: str
     """set of points that begin with these values. Default: all points. Allowed: name of a set or layer"""
     displacement: List
-    """displacement at time 0, per component; where a support prescribes another value, the support wins [m]. Default: `['0', '0']`. Allowed: number or expression of place"""
+    """displacement at time 0, per component. Where a support prescribes another value, that value is used [m]. Default: `['0', '0']`. Allowed: number or expression of place"""
     velocity: List
     """velocity at time 0, per component, where no support prescribes the displacement [m/s]. Default: `['0', '0']`. Allowed: number or expression of place"""
 
@@ -483,7 +483,7 @@ class Loading(Table):
     steps: int
     """number of equal steps from one entry of the tables to the next, or of a table that is an expression; without a table from 0 to 1. Default: 1. Allowed: 1 to 1000000"""
     table: List | str
-    """values of `load` that the path goes through, linearly from one to the next: it may rise, fall and rest; with `[[control]]` values of the controlled displacement in m; in mode `dynamics` pairs of a time in s and the value of `load` then. `[0, 1]`; required with `[[control]]`. Allowed: at least two numbers, the first 0, or an expression of `step`, 0 at step 0; in mode `dynamics` two or more pairs `[t, value]`, from t = 0 to `end_time`, ascending"""
+    """values of `load` along the path, linear from one to the next. They may rise, fall and stay constant. With `[[control]]`: values of the controlled displacement in m. In mode `dynamics`: pairs of a time in s and the value of `load` at it. `[0, 1]`; required with `[[control]]`. Allowed: at least two numbers, the first 0, or an expression of `step`, 0 at step 0; in mode `dynamics` two or more pairs `[t, value]`, from t = 0 to `end_time`, ascending"""
     table2: List | str
     """likewise for a further load parameter, `load2`. Default: no `load2`. Allowed: at least two numbers, the first 0, or an expression of `step`, 0 at step 0; in mode `dynamics` two or more pairs `[t, value]`, from t = 0 to `end_time`, ascending"""
     table3: List | str
@@ -491,57 +491,57 @@ class Loading(Table):
     table4: List | str
     """likewise for a further load parameter, `load4`. Default: no `load4`. Allowed: at least two numbers, the first 0, or an expression of `step`, 0 at step 0; in mode `dynamics` two or more pairs `[t, value]`, from t = 0 to `end_time`, ascending"""
     adaptive: bool
-    """whether a step that does not converge is cut, after which steps grow again; otherwise it ends the run. Default: true. Allowed: true, false"""
+    """whether a step that does not converge is cut; steps then grow again. Otherwise such a step ends the run. Default: true. Allowed: true, false"""
     smallest_step: float
-    """smallest step of the stage (the load factor, without a table); the run ends when it needs a smaller one. Default: 1e-6. Allowed: 1e-12 to 1; at most the first step"""
+    """smallest step of the stage (the load factor, without a table). The run ends when it needs a smaller one. Default: 1e-6. Allowed: 1e-12 to 1; at most the first step"""
     largest_step: float
     """largest step of the stage, to which steps may grow. Default: the first step. Allowed: 1e-12 to 1; at least the first step"""
     max_broken_bonds: int
-    """mode `newton`: most bonds that may break in one step; a step with more is cut. 0: no limit [bonds]. Default: 0. Allowed: whole number from 0"""
+    """mode `newton`: largest number of bonds that may break in one step. A step with more is cut. 0: no limit [bonds]. Default: 0. Allowed: whole number from 0"""
     stop_below: float
-    """share of the largest support reaction so far: the run is complete when the largest reaction falls below this share of it, as that of a specimen that tears. 0: only the load ends the run. Default: 0. Allowed: 0 to 1"""
+    """the run is complete when the largest support reaction falls below this share of its maximum so far, as when a specimen tears. 0: only the end of the load ends the run. Default: 0. Allowed: 0 to 1"""
     event_tolerance: float
-    """mode `path`: bonds whose utilisation is within this share of the largest one break with it; 0: only bonds that tie with it. Default: 0.002. Allowed: 0 to 0.5"""
+    """mode `path`: bonds whose utilisation is within this share of the largest one break together with it. 0: only bonds with equal utilisation. Default: 0.002. Allowed: 0 to 0.5"""
     teeth: int
-    """mode `path`: most teeth of the saw-tooth that stands for a law of damage whose force falls smoothly. Default: 10. Allowed: 1 to 1000"""
+    """mode `path`: largest number of teeth of the saw-tooth law that replaces a law of damage with smooth softening. Default: 10. Allowed: 1 to 1000"""
 
 class Solver(Table):
     mode: Literal["newton", "relaxation", "adaptive", "arc_length", "path", "dynamics"]
-    """`'newton'`: implicit throughout; `'relaxation'`: by dynamic relaxation throughout; `'adaptive'`: implicit while no damage grows, by relaxation while it does; `'arc_length'`: along the path itself, through limit points and bifurcations, without damage; `'path'`: sequentially linear analysis, from one breaking bond to the next; `'dynamics'`: the motion in time, by explicit or implicit steps. Default: `'newton'`. Allowed: `'newton'`, `'relaxation'`, `'adaptive'`, `'arc_length'`, `'path'`, `'dynamics'`"""
+    """`'newton'`: all steps implicit; `'relaxation'`: all steps by dynamic relaxation; `'adaptive'`: implicit steps while no damage grows, relaxation while it does; `'arc_length'`: steps along the equilibrium path, through limit points and bifurcations, without damage; `'path'`: sequentially linear analysis, from one breaking bond to the next; `'dynamics'`: the motion in time, by explicit or implicit steps. Default: `'newton'`. Allowed: `'newton'`, `'relaxation'`, `'adaptive'`, `'arc_length'`, `'path'`, `'dynamics'`"""
     linear: Literal["auto", "cholesky", "pcg", "minres", "gmres", "lu", "bicgstab"]
-    """solver of the linear systems (linear-solvers.md); `'auto'` chooses, says why, and falls back where it fails. `'lu'` and `'bicgstab'` are for models whose tangent is not symmetric, `'gmres'` is for all models, the others are for symmetric tangents. Default: `'auto'`. Allowed: `'auto'`, `'cholesky'`, `'pcg'`, `'minres'`, `'gmres'`, `'lu'`, `'bicgstab'`"""
+    """solver of the linear systems (linear-solvers.md); `'auto'` chooses one, reports why, and takes another one if it fails. `'lu'` and `'bicgstab'` are for models whose tangent is not symmetric, `'gmres'` is for all models, the others are for symmetric tangents. Default: `'auto'`. Allowed: `'auto'`, `'cholesky'`, `'pcg'`, `'minres'`, `'gmres'`, `'lu'`, `'bicgstab'`"""
     preconditioner: Literal["auto", "jacobi", "block_jacobi", "rigid_pieces", "surrogate", "sines", "riluk", "chebyshev", "multigrid", "local_operator"]
     """preconditioner of iterative solvers, not for `'cholesky'` and `'lu'`. Symmetric tangent: `'auto'` means `'rigid_pieces'`, and with a preconditioner that is given `linear = 'auto'` means `'pcg'`; `'sines'` is for points on a lattice along the axes, without constraints and images. Unsymmetric tangent: `'local_operator'`, `'jacobi'` and `'block_jacobi'` are allowed, `'auto'` means `'local_operator'`, and `linear = 'auto'` then means `'gmres'`. Default: `'auto'`. Allowed: `'auto'`, `'jacobi'`, `'block_jacobi'`, `'rigid_pieces'`, `'surrogate'`, `'sines'`, `'riluk'`, `'chebyshev'`, `'multigrid'`, `'local_operator'`"""
     tangent: Literal["auto", "stored", "matrix_free"]
     """`'stored'`: the tangent's blocks are stored; `'matrix_free'`: they are computed anew in each product, which takes a third of the memory in 3D, for `material.model = 'bond'` without `'cholesky'`, `'riluk'`, `'chebyshev'` and `'multigrid'`. `'auto'` stores them for direct solvers. Default: `'auto'`. Allowed: `'auto'`, `'stored'`, `'matrix_free'`"""
     operator: Literal["auto", "bonds", "fft"]
-    """how forces of `material.kinematics = 'linear'`, and of `lps` as an energy, are summed. `'bonds'`: bond by bond; `'fft'`: by fast Fourier transforms, which store no bonds and take the same time whatever the horizon, for one material on points of a lattice with equal volumes, without a `surface_correction`. Both give the same results to round-off. `'auto'` takes the faster one: where possible `fft` for motions by explicit steps with a horizon of 2.5 spacings or more. Models `green_bond` and `correspondence`, and `lps` as printed, have `fft` alone. Default: `'bonds'`. Allowed: `'auto'`, `'bonds'`, `'fft'`"""
+    """how forces of `material.kinematics = 'linear'`, and of `lps` as an energy, are summed. `'bonds'`: bond by bond; `'fft'`: by fast Fourier transforms, which store no bonds and take the same time whatever the horizon, for one material on points of a lattice with equal volumes, without a `surface_correction`. Both give the same results to round-off. `'auto'` chooses the faster one: where possible `fft` for motions by explicit steps with a horizon of 2.5 spacings or more. Models `green_bond` and `correspondence`, and `lps` as printed, have only `fft`. Default: `'bonds'`. Allowed: `'auto'`, `'bonds'`, `'fft'`"""
     predictor: Literal["consistent", "none"]
     """state about which the first iteration of a step linearises. `'consistent'`: the old state, spreading the jump of the supports; `'none'`: the state after the jump, as in [CPD]. Default: `'consistent'`. Allowed: `'consistent'`, `'none'`"""
     projection: Literal["auto", "never", "always"]
-    """projection of interactions to their positive semidefinite part. `'auto'`: when the exact tangent has negative pivots or the search fails with it. Default: `'auto'`. Allowed: `'auto'`, `'never'`, `'always'`"""
+    """when the tangents of interactions are projected to their positive semidefinite part. `'auto'`: if the exact tangent has negative pivots or the search fails with it. Default: `'auto'`. Allowed: `'auto'`, `'never'`, `'always'`"""
     relative_tolerance: float
     """relative tolerance of the residual. Default: 1e-10. Allowed: 1e-14 to 0.01"""
     linear_tolerance: float
     """largest relative residual allowed in the linear system of a Newton iteration. Default: 0.001. Allowed: 1e-14 to 0.1"""
     max_iterations: int
-    """most iterations of Newton's method in one step. Default: 25. Allowed: 1 to 1000"""
+    """largest number of iterations of Newton's method in one step. Default: 25. Allowed: 1 to 1000"""
     fragments: Literal["hold", "remove", "stop"]
-    """what happens to pieces that come off. `'hold'`: just enough of their degrees of freedom are pinned that they cannot move freely; `'remove'`: they leave the equations and stay where they are; `'stop'`: the run ends with outcome `fragmented`. Default: `'hold'`. Allowed: `'hold'`, `'remove'`, `'stop'`; not `'remove'` with eigenstrains or a temperature"""
+    """what happens to pieces that come off. `'hold'`: as many of their degrees of freedom are pinned as are needed to prevent free motions; `'remove'`: they leave the equations and stay where they are; `'stop'`: the run ends with outcome `fragmented`. Default: `'hold'`. Allowed: `'hold'`, `'remove'`, `'stop'`; not `'remove'` with eigenstrains or a temperature"""
     elastic_horizon_ratio: float
     """mode `adaptive`: horizon / spacing of an elastic stand-in that replaces the body until damage begins; needs model `bond`, `youngs_modulus` and a damage law. Default: no stand-in. Allowed: 1 to 1000; in 3D to 100"""
 
 class Relaxation(Table):
     steps: int
-    """number of equal steps of the *whole* load, or from one entry of `loading.table` to the next; the first step is 1/steps, however much of the load the implicit steps have left. Default: `loading.steps`; in mode `adaptive` with damage at least 50. If the table is an expression, which has an entry for each step: 1, in mode `adaptive` with damage at least 50 in all. Allowed: whole number from 1"""
+    """number of equal steps of the *whole* load, or from one entry of `loading.table` to the next; the first step is 1/steps, whatever part of the load the implicit steps have left. Default: `loading.steps`; in mode `adaptive` with damage at least 50. If the table is an expression, which has an entry for each step: 1, in mode `adaptive` with damage at least 50 in all. Allowed: whole number from 1"""
     method: Literal["dynamic", "flow"]
-    """`'dynamic'`: dynamic relaxation, a motion with a pseudo inertia; `'flow'`: the flow without inertia, whose directions are solved for. Default: `'dynamic'`. Allowed: `'dynamic'`, `'flow'`"""
+    """`'dynamic'`: dynamic relaxation, a motion with a pseudo inertia; `'flow'`: the flow without inertia, whose directions are solutions of linear systems. Default: `'dynamic'`. Allowed: `'dynamic'`, `'flow'`"""
     flow_tolerance: float
-    """method `flow`: how far a step may deviate from the flow's path, relative to its length. Default: 0.1. Allowed: 0.001 to 0.5"""
+    """method `flow`: largest deviation of a step from the path of the flow, relative to the length of the step. Default: 0.1. Allowed: 0.001 to 0.5"""
     peak_tolerance: float
     """mode `adaptive`: a relaxed step in which the force begins to fall is halved until it is no longer than this share of the whole load; the decision that accepts it names the load factors between which the peak lies. 0: no search. Default: 0. Allowed: 0 to 1"""
     load: Literal["fixed", "moving"]
-    """`'fixed'`: the load rests after the ramp until the body is in equilibrium; `'moving'`: it never rests. Default: `'fixed'`. Allowed: `'fixed'`, `'moving'`"""
+    """`'fixed'`: the load is constant after the ramp until the body is in equilibrium; `'moving'`: it changes in every iteration. Default: `'fixed'`. Allowed: `'fixed'`, `'moving'`"""
     iterations: int
     """load `moving`: iterations over the whole load, or from one entry of `loading.table` to the next, shared equally among the steps. Default: 10000. Allowed: whole number from 1; a multiple of `steps`"""
     ramp: int
@@ -549,37 +549,37 @@ class Relaxation(Table):
     quiet_iterations: int
     """load `fixed`: iterations without a further bond breaking before a state may be accepted. Default: 50. Allowed: whole number from 0"""
     breaking: Literal["at_equilibrium", "transient"]
-    """when damage becomes permanent. `'at_equilibrium'`: in accepted states alone, so that overshoot breaks nothing; `'transient'`: in every iteration, as published. Default: `'at_equilibrium'`; `'transient'` if the load is `moving`. Allowed: `'at_equilibrium'`, `'transient'`"""
+    """when damage becomes permanent. `'at_equilibrium'`: only in accepted states, so an overshoot breaks nothing; `'transient'`: in every iteration, as published. Default: `'at_equilibrium'`; `'transient'` if the load is `moving`. Allowed: `'at_equilibrium'`, `'transient'`"""
     damping: Literal["adaptive", "kinetic"]
-    """`'adaptive'`: a coefficient from the Rayleigh quotient of the present motion, as published; `'kinetic'`: none, but all motion stops whenever the kinetic energy has passed a peak. Default: `'kinetic'`; `'adaptive'` if the load is `moving`. Allowed: `'adaptive'`, `'kinetic'`"""
+    """`'adaptive'`: a coefficient from the Rayleigh quotient of the present motion, as published; `'kinetic'`: no damping coefficient, but all motion is stopped whenever the kinetic energy has passed a peak. Default: `'kinetic'`; `'adaptive'` if the load is `moving`. Allowed: `'adaptive'`, `'kinetic'`"""
     mass_factor: float
     """pseudo density relative to the smallest stable one: larger is slower and safer. Default: 2; 1 with adaptive damping. Allowed: 1 to 1e6"""
     max_iterations: int
-    """load `fixed`: most iterations after the ramp; a step that needs more fails and is cut. Default: 50000. Allowed: whole number from 1"""
+    """load `fixed`: largest number of iterations after the ramp. A step that needs more fails and is cut. Default: 50000. Allowed: whole number from 1"""
     displacement_tolerance: float
     """load `fixed`: also accepts a state whose displacements changed by less than this in an iteration, ‖Δu‖/‖u‖, as published (10⁻⁹). 0: never. Default: 0. Allowed: 0 to 1"""
 
 class ArcLength(Table):
     steps: int
-    """number of steps after which the path ends, unless the load has reached its end before; 0: the load has to reach its end within 10 000 steps [steps]. Default: 0. Allowed: whole number from 0"""
+    """number of steps after which the path ends, unless the load reaches its end before. 0: the load must reach its end within 10 000 steps [steps]. Default: 0. Allowed: whole number from 0"""
     largest_step: float
-    """largest step of the arc length; steps grow up to it where the path is straight. The first step is 1/`loading.steps`, and is initially a step of the load factor. Default: 1e6. Allowed: 1e-12 to 1e6"""
+    """largest step of the arc length. Steps grow up to it where the path is straight. The first step is 1/`loading.steps`; at first this is a step of the load factor. Default: 1e6. Allowed: 1e-12 to 1e6"""
     bifurcation: Literal["branch", "straight"]
-    """where another path leaves a stable one. `'branch'`: follow the other path; `'straight'`: go straight on, where states are unstable. Default: `'branch'`. Allowed: `'branch'`, `'straight'`"""
+    """what to do at a bifurcation of a stable path. `'branch'`: follow the other path; `'straight'`: continue on the same path, where states are unstable. Default: `'branch'`. Allowed: `'branch'`, `'straight'`"""
 
 class Dynamics(Table):
     end_time: Quantity
     """time up to which the motion is followed, from 0 [s]. required. Allowed: positive"""
     scheme: Literal["verlet", "newmark"]
-    """`'verlet'`: explicit steps; `'newmark'`: implicit steps, each of which searches an equilibrium with inertia by Newton's method, for motions that are slow compared with the stable step. Default: `'verlet'`. Allowed: `'verlet'`, `'newmark'`"""
+    """`'verlet'`: explicit steps; `'newmark'`: implicit steps, each of which finds an equilibrium with inertia by Newton's method, for motions that are slow compared with the stable step. Default: `'verlet'`. Allowed: `'verlet'`, `'newmark'`"""
     start: Literal["rest", "equilibrium"]
-    """`'rest'`: undeformed, except for initial displacements; `'equilibrium'`: in equilibrium with supports and loads at t = 0, which is searched by Newton's method and may damage nothing. Default: `'rest'`. Allowed: `'rest'`, `'equilibrium'`"""
+    """`'rest'`: undeformed, except for initial displacements; `'equilibrium'`: in equilibrium with supports and loads at t = 0, which Newton's method finds; it must not damage anything. Default: `'rest'`. Allowed: `'rest'`, `'equilibrium'`"""
     spectral_radius: float
-    """implicit steps: factor that a step leaves of the highest frequencies. 1: average acceleration, which conserves the energy; below 1: the generalised alpha method, which damps frequencies that the steps do not resolve. Default: 1. Allowed: 0 to 1"""
+    """implicit steps: factor by which a step multiplies the highest frequencies. 1: average acceleration, which conserves the energy; below 1: the generalised alpha method, which damps frequencies that the steps do not resolve. Default: 1. Allowed: 0 to 1"""
     time_step: Quantity
-    """constant time step. Explicit: the run ends where it is longer than the stable step. Implicit: a step that does not converge is halved, down to a thousandth. The last step is shorter where it has to be [s]. Default: a share of the stable step. Allowed: positive; explicit: at most the stable step"""
+    """constant time step. Explicit: the run ends if it is longer than the stable step. Implicit: a step that does not converge is halved, down to a thousandth. The last step is shorter if necessary [s]. Default: a share of the stable step. Allowed: positive; explicit: at most the stable step"""
     step_share: float
-    """time step as a share of the stable one, which is found anew as the stiffness changes. Default: 0.9. Allowed: 1e-6 to 0.99"""
+    """time step as a share of the stable one, which is updated as the stiffness changes. Default: 0.9. Allowed: 1e-6 to 0.99"""
     history_every: int
     """number of steps from one row of the history to the next [time steps]. Default: `output.every`. Allowed: whole number from 1"""
 
@@ -589,7 +589,7 @@ class Output(Table):
     every: int
     """fields are written at every n-th accepted step (in mode `dynamics` every n-th time step), and at the last one [steps]. Default: 1; in mode `dynamics` about 100 time steps. Allowed: whole number from 1"""
     count_cracks: bool
-    """whether bonds that a `[[crack]]` has cut count as lost in `damage` and `max_damage`, so that the crack shows in the pictures from the start. Default: false. Allowed: true, false"""
+    """whether `damage` and `max_damage` count the bonds that a `[[crack]]` has cut. If they do, pictures show the crack from the start. Default: false. Allowed: true, false"""
     stress: bool
     """whether strain and stress are among the fields: deformation gradient, strain, first Piola–Kirchhoff and Cauchy stress, von Mises' stress, principal values and directions (theory); they take several times the space of the other fields. Default: false. Allowed: true, false"""
 
@@ -597,13 +597,13 @@ class Probe(Table):
     name: str
     """name of the column. required. Allowed: letters, digits, `_`, `-`; at most 100 characters; no other probe has it"""
     set: str
-    """set over whose points the value is taken. exactly one of `set`, `at`, `from`. Allowed: name of a set or layer"""
+    """set whose points give the value. exactly one of `set`, `at`, `from`. Allowed: name of a set or layer"""
     at: List
-    """place whose nearest point gives the value [m]. exactly one of `set`, `at`, `from`. Allowed: a number per dimension"""
+    """position; the nearest point gives the value [m]. exactly one of `set`, `at`, `from`. Allowed: a number per dimension"""
     from_: List
-    """start of a line; the points within half a spacing of the line make a table, `line_NAME.csv` [m]. exactly one of `set`, `at`, `from`. Allowed: a number per dimension"""
+    """start of a line. The points within half a spacing of the line are written to `line_NAME.csv` [m]. exactly one of `set`, `at`, `from`. Allowed: a number per dimension"""
     field: Literal["displacement", "force", "damage", "energy_density", "stretch", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"]
-    """displacement, opening, length and place in m, area in m², force in N, energy densities in J/m³, velocity in m/s, stress in Pa, angles in degrees, work of fracture and crack resistance in J/m²; `stress` is the Cauchy stress, `strain` the Green–Lagrange strain. Default: `'displacement'`. Allowed: `'displacement'`, `'force'`, `'damage'`, `'energy_density'`, `'stretch'`, `'deformation_gradient'`, `'divergence'`, `'first_piola_stress'`, `'strain'`, `'stress'`, `'von_mises'`, `'principal_stress'`, `'missing_neighbourhood'`, `'velocity'`, `'kinetic_energy_density'`, `'poisson_ratio'`, `'opening'`, `'crack_length'`, `'crack_begin'`, `'crack_end'`, `'crack_angle'`, `'crack_area'`, `'work_of_fracture'`, `'crack_resistance'`"""
+    """field. Units: displacement, opening, length and position in m, area in m², force in N, energy densities in J/m³, velocity in m/s, stress in Pa, angles in degrees, work of fracture and crack resistance in J/m²; `stress` is the Cauchy stress, `strain` the Green–Lagrange strain. Default: `'displacement'`. Allowed: `'displacement'`, `'force'`, `'damage'`, `'energy_density'`, `'stretch'`, `'deformation_gradient'`, `'divergence'`, `'first_piola_stress'`, `'strain'`, `'stress'`, `'von_mises'`, `'principal_stress'`, `'missing_neighbourhood'`, `'velocity'`, `'kinetic_energy_density'`, `'poisson_ratio'`, `'opening'`, `'crack_length'`, `'crack_begin'`, `'crack_end'`, `'crack_angle'`, `'crack_area'`, `'work_of_fracture'`, `'crack_resistance'`"""
     to: List
     """end of the line [m]. required with `from`. Allowed: a number per dimension"""
     component: Literal["x", "y", "z", "1", "2", "3", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"]
@@ -619,19 +619,19 @@ class Probe(Table):
 
 class CrackTip(Table):
     name: str
-    """name with which its columns begin. required. Allowed: letters, digits, `_`, `-`; at most 100 characters; no other crack tip has it"""
+    """first part of the names of its columns. required. Allowed: letters, digits, `_`, `-`; at most 100 characters; no other crack tip has it"""
     at: List
-    """position of the tip; 3D: any place on its straight front [m]. required. Allowed: a number per dimension"""
+    """position of the tip; 3D: any position on its straight front [m]. required. Allowed: a number per dimension"""
     direction: List
-    """direction in which the crack would go on, a vector of any length. required. Allowed: a number per dimension; not all zero"""
+    """direction in which the crack would continue, a vector of any length. required. Allowed: a number per dimension; not all zero"""
     front: List
-    """3D: direction of the front, a vector of any length; the front goes through the whole body. Default: `[0, 0, 1]`. Allowed: a number per dimension; at a right angle to `direction`"""
+    """3D: direction of the front, a vector of any length. The front extends through the whole body. Default: `[0, 0, 1]`. Allowed: a number per dimension; at a right angle to `direction`"""
     inner: Quantity
     """inner radius of the ring of the integrals [m]. Default: 2 horizons. Allowed: positive; at least 2 horizons"""
     outer: Quantity
     """outer radius of the ring [m]. Default: 4 horizons, or twice `inner`. Allowed: positive; at least a horizon more than `inner`"""
     cut: Quantity
-    """length of a cut ahead of the tip, which also gives energy release rates; every step then solves one more system of equations [m]. Default: none. Allowed: positive; at least a horizon"""
+    """length of a cut ahead of the tip, from which energy release rates follow. Every step then solves one more system of equations [m]. Default: none. Allowed: positive; at least a horizon"""
 
 class CaseTable(Table):
     title: str
@@ -647,11 +647,11 @@ class CaseTable(Table):
     def add_set(self, *, name: str = ..., where: str = ..., shape: dict[str, Any] | Table = ...) -> Set: ...
     def add_crack(self, *, outline: List = ..., from_: List = ..., to: List = ..., vertices: List = ...) -> Crack: ...
     crack: Array[Crack]
-    """tables: cracks that are there from the start. Default: none"""
+    """tables: initial cracks. Default: none"""
     quadrature: Inner[Quadrature]
     """table: corrections of the weights. Default: all defaults"""
     material: Inner[Material]
-    """table: model, constants and damage of the points in no region. required without `[[region]]`"""
+    """table: model, constants and damage of the points that are in no region. required without `[[region]]`"""
     def add_region(self, *, set: str = ..., material: dict[str, Any] | Table = ...) -> Region: ...
     region: Array[Region]
     """tables: sets of points with materials of their own. Default: none"""
@@ -681,15 +681,15 @@ class CaseTable(Table):
     """tables: forces. Default: none"""
     def add_foundation(self, *, name: str = ..., set: str = ..., side: Literal["x-", "x+", "y-", "y+", "z-", "z+"] = ..., modulus: List = ..., stiffness: List = ..., displacement: List = ...) -> Foundation: ...
     foundation: Array[Foundation]
-    """tables: springs between a part of the body and a ground. Default: none"""
+    """tables: springs between a part of the body and the ground. Default: none"""
     def add_eigenstrain(self, *, set: str = ..., strain: Expression = ...) -> Eigenstrain: ...
     eigenstrain: Array[Eigenstrain]
-    """tables: strains that cost no energy. Default: none"""
+    """tables: strains without stored energy, such as growth or drying. Default: none"""
     temperature: Inner[Temperature]
     """table: change of temperature. Default: all defaults"""
     def add_control(self, *, set: str = ..., weights: List = ...) -> Control: ...
     control: Array[Control]
-    """tables: the displacement that is controlled instead of `load`. Default: none"""
+    """tables: the displacement that is prescribed instead of `load`. Default: none"""
     def add_initial(self, *, set: str = ..., displacement: List = ..., velocity: List = ...) -> Initial: ...
     initial: Array[Initial]
     """tables: displacements and velocities at time 0. Default: none"""

@@ -58,7 +58,7 @@ class Table(Copied, collections.abc.MutableMapping):
         elif _schema.is_array_of_tables(schema):
             value = TableList(schema["items"], path, value)
         elif value is None:
-            raise input_error(path, "None", "is no value; `del` drops a key")
+            raise input_error(path, "None", "is not a value; `del` removes a key")
         self._values[name] = value if isinstance(value, (Table, TableList)) else _plain(value)
 
     def __delitem__(self, name):

@@ -36,7 +36,7 @@ void require_resolved(const Points& points, double horizon) {
   for (const double at : points.reference) farthest = std::max(farthest, std::abs(at));
   if (farthest * std::numeric_limits<double>::epsilon() <= horizon_tolerance * horizon) return;
   throw InputError("points.reference", "",
-                   "a point stands at " + number_text(farthest) +
+                   "a point is at " + number_text(farthest) +
                        " m, so far from the origin that round-off of its position is more than " +
                        number_text(horizon_tolerance) + " of the horizon, " + number_text(horizon) +
                        " m; move the body to the origin");

@@ -59,9 +59,9 @@ std::vector<std::string> describe_interactions(const Body& body) {
                        [&](Index i, Index j) { return norm_in_setting(body, i, j); });
   if (on_horizon > least_shell) {
     lines.push_back(
-        fmt::format("{:.2g} % of the bonds are exactly as long as the horizon, so that round-off "
-                    "decides which points are neighbours; a ratio between the distances of the "
-                    "lattice, such as 3.015, or a volume_correction avoids this",
+        fmt::format("{:.2g} % of the bonds are exactly as long as the horizon, so round-off "
+                    "decides which points are neighbours; take a ratio between two distances of "
+                    "the lattice, such as 3.015, or a volume_correction",
                     100.0 * on_horizon));
   }
   return lines;

@@ -104,10 +104,9 @@ std::string describe_flatness(const Body& body) {
     if (extent[std::size_t(c)] > flat * largest) continue;
     const char axis = "xyz"[c];
     return fmt::format(
-        "all points stand at the same {0}, so that no bond resists their motion along {0}: give "
-        "the "
-        "body two layers or more across it, prescribe that displacement everywhere, or model it in "
-        "{1} dimension{2}",
+        "all points have the same {0}, so no bond resists their motion along {0}: give the body "
+        "two layers or more across it, prescribe that displacement everywhere, or model it in {1} "
+        "dimension{2}",
         axis, dimension - 1, dimension == 2 ? "" : "s");
   }
   return {};
@@ -133,8 +132,8 @@ void refuse_unheld_bodies(const Body& body) {
   if (!loose.empty()) {
     throw InputError(body.specification.cracks.empty() ? "points" : "cracks", "",
                      loose +
-                         ". Remove such points, move what cuts them off, or give them more bonds "
-                         "(a larger horizon)");
+                         ". Remove such points, move the crack or shape that isolates them, or "
+                         "give them more bonds (a larger horizon)");
   }
 }
 

@@ -30,7 +30,7 @@ constexpr int most_steps = 10'000;
 constexpr double share_of_branch = 1e-3;
 
 constexpr const char* follows_no_damage =
-    "solver.mode = \"arc_length\" follows none; a [[control]] does";
+    "solver.mode = \"arc_length\" does not follow damage; a [[control]] does";
 
 double extent(const Points& points) {
   double largest = 0.0;

@@ -229,7 +229,7 @@ std::string Dynamics::choose_step(const Trial& state, double time) {
   const double before = dynamics.step, wanted = options_.step_share * stable;
   if (!std::isfinite(stable)) {  // any step is stable: all that moves has come apart
     if (before > 0.0) return {};
-    return "nothing has a stiffness, so there is no stable step; give dynamics.time_step";
+    return "no moving point has a stiffness, so there is no stable step; give dynamics.time_step";
   }
   if (before > 0.0 && wanted >= before && wanted < least_growth * before) return {};
   dynamics.step = wanted;
@@ -418,7 +418,7 @@ std::string Dynamics::fault_of_balance(const Ledger& after, double energy_of_ons
   const bool is_damped = is_implicit() && options_.spectral_radius < 1.0;  // damping loses energy
   const bool balances = path_.damaged().has_potential();
   if (balances && (!(-error <= allowed) || !(is_damped || error <= allowed))) {
-    return "the modified energy is " + number_text(error) + " J less than what was put in, " +
+    return "the modified energy is " + number_text(error) + " J below the supplied energy, " +
            number_text(dynamics.largest_energy) + " J";
   }
   if (!(after.drained >= -allowed)) {
@@ -428,14 +428,14 @@ std::string Dynamics::fault_of_balance(const Ledger& after, double energy_of_ons
   if (balances && path_.state().steps >= steps_of_onset &&
       !(scheme <= unresolved * std::max(put_in, energy))) {
     return "the time step does not resolve the motion: " + number_text(scheme) +
-           " J of its energy depend on the step, and " + number_text(dynamics.largest_energy) +
-           " J have been put in; take a shorter step, or start from fields that are smooth over a "
-           "horizon";
+           " J of its energy depend on the step, while " + number_text(dynamics.largest_energy) +
+           " J have been supplied; take a shorter step, or start from fields that are smooth over "
+           "a horizon";
   }
   const double growth = balances ? growth_of_instability : growth_without_potential;
   if (!(energy <= growth * put_in)) {
-    return "the motion holds " + number_text(energy) + " J, but no more than " +
-           number_text(dynamics.largest_energy) + " J have been put in";
+    return "the energy of the motion is " + number_text(energy) + " J, but only " +
+           number_text(dynamics.largest_energy) + " J have been supplied";
   }
   return {};
 }

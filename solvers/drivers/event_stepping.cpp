@@ -68,8 +68,8 @@ EventStepping::EventStepping(Path& path) : Driver(path) {
   if (has_softened_smoothly(path)) {
     throw InputError(
         "mode", "path",
-        "can't continue where bonds have softened in another mode: it follows a saw-tooth of their "
-        "law, in which they would bear other forces; start from rest");
+        "can't continue from a state in which bonds have softened in another mode: mode path "
+        "follows a saw-tooth of their law, which gives other forces; start from rest");
   }
 }
 
@@ -283,7 +283,8 @@ bool EventStepping::book_event(const State& at, const PathLedger& ledger, const 
   const double turned_over = std::abs(lost) + std::abs(after.stored) + std::abs(drained);
   if (drained < -share_from_nothing * turned_over) {
     settled.outcome = Outcome::inconsistent;
-    settled.fault = number_text(-drained) + " J appear without a source as bonds break";
+    settled.fault =
+        number_text(-drained) + " J of energy appear without a source while bonds break";
     return false;
   }
   after.drained += drained;

@@ -28,7 +28,7 @@ std::string lost_load(const Path& path, const Attempt& attempt) {
   const double pinned = path.state().pins.force(sums, attempt.state, load);
   if (whole == 0.0 || pinned <= share_of_lost_load * whole) return {};
   return number_text(pinned) + " N of the loads of " + number_text(whole) +
-         " N act on pieces that have come off: the body does not bear them";
+         " N act on pieces that have come off, so the body does not carry them";
 }
 
 /// Records the largest reaction, and reports if it has fallen so far that the path ends.

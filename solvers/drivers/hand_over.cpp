@@ -58,9 +58,8 @@ std::string overrun_text(const Path& path, double onset, double relaxed) {
          number_text(conditions.load_factor(LoadPoint(stage + onset))) +
          ", but the next step goes to " +
          number_text(conditions.load_factor(LoadPoint(stage + relaxed))) +
-         ": a peak of the force between them is passed over; give more steps (relaxation.steps) or "
-         "a "
-         "smaller load";
+         ": a peak of the force between them would be missed; give more steps (relaxation.steps) "
+         "or a smaller load";
 }
 
 /// Largest change of a set's reactions, as a fraction of the largest reaction.

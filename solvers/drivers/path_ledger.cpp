@@ -62,7 +62,8 @@ std::string PathLedger::jump_to(const Ledger& with_step) const {
   const double lost = with_step.balance_error() - entries.balance_error();
   if (lost <= share_of_jump * std::max(entries.stored, with_step.external_work)) return {};
   return number_text(lost) + " J of " + number_text(with_step.external_work) +
-         " J are released but not accounted for: the body has jumped to another equilibrium";
+         " J are released that no work or dissipation accounts for: the body has jumped to another "
+         "equilibrium";
 }
 
 }  // namespace peristat

@@ -26,17 +26,18 @@ void check_points_and_operator(const BodySpecification& of, const Points& points
                  is_for(Option::horizons));
   const bool has_images = !of.constraints.symmetries.empty() || !of.constraints.periods.empty();
   if (has_images && !options.has(Option::images)) {
-    throw InputError("material.model", model,
-                     "does not go with planes of symmetry and periods, which are for other models");
+    throw InputError(
+        "material.model", model,
+        "is not allowed with planes of symmetry and periods, which are for other models");
   }
   for (std::size_t k = 0; !options.has(Option::pressures) && k < of.loads.size(); ++k) {
     require_absent(of.loads[k].kind == LoadSpecification::Kind::pressure,
                    "loads[" + std::to_string(k) + "].pressure",
-                   "turns with its faces, which couples points in a way that operator \"fft\" does "
-                   "not support; take \"bonds\", or a traction");
+                   "rotates with its faces, which couples points in a way that operator \"fft\" "
+                   "does not support; take \"bonds\", or a traction");
   }
   require(of.is_convolved() || !formulation_of(of).needs_convolutions, "force_operator", "bonds",
-          "does not go with model \"" + model + "\", which needs convolutions; take \"fft\"");
+          "is not allowed with model \"" + model + "\", which needs convolutions; take \"fft\"");
 }
 
 /// Refuses laws of damage that a formulation does not take.
@@ -70,7 +71,7 @@ void check_fibre(const MaterialSpecification& material, const std::string& key, 
                  "determine the constants");
   require(std::isfinite(fibre.angle), table + ".angle", number_text(fibre.angle), "must be finite");
   require_absent(dimension == 3 && fibre.angle != 0.0, table + ".angle",
-                 "is for dimension 2; 3D has a direction");
+                 "is for dimension 2; in 3D give direction");
   if (dimension == 3) {
     const auto& [x, y, z] = fibre.direction;
     const double length = std::hypot(x, y, z);
@@ -78,7 +79,7 @@ void check_fibre(const MaterialSpecification& material, const std::string& key, 
             place_text(fibre.direction, 3), "must be finite, and not all zero");
   } else {
     require_absent(fibre.direction != Coordinates{}, table + ".direction",
-                   "is for dimension 3; 2D has an angle");
+                   "is for dimension 3; in 2D give angle");
   }
   require_positive(fibre.transverse_modulus, table + ".transverse_modulus");
   require_positive(fibre.shear_modulus, table + ".shear_modulus");
@@ -236,7 +237,8 @@ void check_for_horizons(const BodySpecification& of) {
                    "take a law of stretches" +
                        with);
     if (damage.law != DamageLaw::blended || !damage.fracture_energy) return;
-    const std::string alone = "changes the shape of \"blended\" from horizon to horizon;" + with +
+    const std::string alone = "would change the shape of \"blended\" from horizon to horizon;" +
+                              with +
                               " give fracture_energy alone, another law, or strength or stretches";
     require_absent(damage.strength.has_value(), table + "strength", alone);
     require_absent(damage.onset != 0.0, table + "onset", alone);
@@ -304,7 +306,7 @@ void check_horizon_shape(const BodySpecification& of, const Points& points) {
     refuse("must be \"ball\" with fibres: their moduli are harmonics of the bond's direction");
   }
   if (of.volume_correction != VolumeCorrection::none) {
-    refuse("needs volume_correction \"none\": this shape takes no parts of cells");
+    refuse("needs volume_correction \"none\": parts of cells are not computed for this shape");
   }
   if (!points.neighbours.empty()) refuse("is for neighbours found by the search");
 }

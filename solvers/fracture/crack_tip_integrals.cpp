@@ -134,8 +134,8 @@ void CrackTipIntegrals::check_ring(const std::string& key) const {
     throw InputError(
         key + ".outer", number_text(tip_.outer),
         "the ring from " + number_text(tip_.inner) + " to " + number_text(tip_.outer) +
-            " m meets the body's edge or a hole, or comes closer to it than half a horizon, " +
-            where + "; take a smaller ring, for which a finer spacing makes room");
+            " m meets the body's edge or a hole, or is closer to it than half a horizon, " + where +
+            "; take a smaller ring, which a finer spacing allows");
   };
   if (is_on_plane_) extent[above > 0.0 ? 3 : 2] = outer;
   constexpr std::array<const char*, 4> names{"ahead of the tip", "behind the tip",

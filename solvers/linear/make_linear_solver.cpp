@@ -148,9 +148,9 @@ ChosenSolver choose(const LinearProblem& problem, SolverLadder::Reporter tell) {
     rungs = {cholesky, pieces, surrogate, patient};
     reason =
         is_small ? fmt::format("a factorisation of {:.2g} flops is small", problem.factor_flops)
-        : for_stability ? std::string("its pivots tell whether the softening body is stable")
+        : for_stability ? std::string("its pivots show whether the softening body is stable")
         : for_many
-            ? std::string("each factor serves many solves")
+            ? std::string("each factor is used for many solutions")
             : fmt::format("a factorisation is estimated at {:.2g} s, iterations at {:.2g} s a step",
                           direct, iterative);
   } else {

@@ -55,7 +55,7 @@ const std::vector<double>& Observation::values(const std::string& field) {
   const PointField* const row = point_field(field);
   if (row == nullptr) throw InputError("field", '"' + field + '"', "no field of this name");
   if (row->needs == FieldNeeds::motion && !body_.conditions->programme().is_of_time()) {
-    throw InputError("field", '"' + field + '"', "is of a body in motion");
+    throw InputError("field", '"' + field + '"', "is a field of bodies in motion");
   }
   std::vector<double> computed = row->compute(*this);
   return values_.emplace(field, std::move(computed)).first->second;

@@ -144,8 +144,8 @@ const std::vector<PointField>& point_fields() {
       {"principal_direction", "1", "unit vectors of the principal stresses, one per row", tensor,
        part_of_stress<&S::principal_direction>, stress, steps},
       {"missing_neighbourhood", "1",
-       "share of a neighbourhood inside the lattice that each point lacks, by surfaces, cracks "
-       "and broken bonds; 1 where the unbroken bonds give no F",
+       "share of a complete neighbourhood that each point lacks because of surfaces, cracks and "
+       "broken bonds; 1 where the unbroken bonds give no F",
        scalar, lacking, stress, both},
       {"velocity", "m/s", "velocity of each point", vector,
        [](Observation& in) { return recorded(in, in.extras().velocity); }, motion, both},

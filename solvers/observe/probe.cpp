@@ -192,7 +192,7 @@ void require_answer(const ProbeSpecification& probe, const RecordedPoints& point
   require_places_of_probes({&probe, 1}, points);
   if (field == nullptr) return;
   require(probe.component.empty() || std::ranges::count(field->components(d), probe.component) > 0,
-          "component", '"' + probe.component + '"', "is none of the field's");
+          "component", '"' + probe.component + '"', "is not a component of this field");
   require(
       !is_of_error(probe.statistic) || probe.expected.size() == chosen_components(probe, d).size(),
       "expected", "", "needs as many expressions as there are components");

@@ -167,7 +167,7 @@ std::string check_energies(const EquilibriumProblem& problem, const TangentOpera
   // Where all has come apart nothing is turned over but the rounding of the sums.
   const double rounding = round_off * (std::abs(after.external_work) + after.dissipated);
   if (drained >= -work_error * turned_over - rounding) return {};
-  return number_text(-drained) + " J appear without a source: " + number_text(work) +
+  return number_text(-drained) + " J of energy appear without a source: " + number_text(work) +
          " J of work for " + number_text(stored) + " J stored and " + number_text(dissipated) +
          " J dissipated";
 }
@@ -179,7 +179,7 @@ std::string check_magnitude(const Sums& sums, const FoundState& found) {
   const bool has_worked = std::abs(found.after.external_work) >= smallest_energy;
   if (has_worked || forces == 0.0 || moved == 0.0 || forces * moved >= smallest_energy) return {};
   return "forces and displacements are so small that their products vanish in double precision; "
-         "use units of the body's own size";
+         "use units that fit the size of the body";
 }
 
 }  // namespace

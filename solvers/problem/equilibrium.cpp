@@ -82,14 +82,14 @@ std::string explanation(Outcome outcome) {
              "near the last one is found, however small the load step";
     case Outcome::damage_limit:
       return "more bonds break at one load than loading.max_broken_bonds allows, however small the "
-             "step: a limit point, from which the crack runs by itself";
+             "step: a limit point, beyond which the crack runs by itself";
     case Outcome::fragmented:
       return "a piece has come off (solver.fragments = \"stop\")";
     case Outcome::undefined_condition:
       return "supports or loads have no value at this load factor, or contradict each other";
     case Outcome::no_answer:
-      return "the controlled displacement does not respond to the load: the path turns back in it "
-             "here, or no load moves it";
+      return "the controlled displacement does not respond to the load: the path turns back here, "
+             "or no load moves it";
     case Outcome::sharp_turn:
       return "the path turns too sharply for the length of the step";
     case Outcome::step_limit:

@@ -88,7 +88,7 @@ std::vector<CrackTip> make_crack_tips(const Body& body,
   for (std::size_t k = 0; k < tips.size(); ++k) {
     const std::string key = indexed("crack_tips", k);
     if (body.specification.eigenstrains.are_there()) {
-      throw InputError(key, "", "does not go with eigenstrains or a temperature");
+      throw InputError(key, "", "is not allowed with eigenstrains or a temperature");
     }
     if (!body.index_map->is_whole()) refuse_without_ranks(tips[k], key);
     CrackTip tip{{body.points,

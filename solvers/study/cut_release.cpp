@@ -46,10 +46,10 @@ void refuse_what_has_no_rate(const Body& body, const CrackTipSpecification& tip,
                      "must be at least a horizon, " + number_text(body.setting.reach()) +
                          " m: a shorter cut leaves bonds across it");
   }
-  if (conditions.control()) throw InputError(key, "", "does not go with a [[control]]");
+  if (conditions.control()) throw InputError(key, "", "is not allowed with a [[control]]");
   const double end = conditions.programme().end();
   if (conditions.environment(end)) {
-    throw InputError(key, "", "does not go with pressures or a ground that moves");
+    throw InputError(key, "", "is not allowed with pressures or a ground that moves");
   }
   std::vector<double> force(conditions.constraints().dofs()), moved(force.size(), 0.0);
   conditions.external_force(end, force);

@@ -65,7 +65,7 @@ LinearSolverOptions options_of_convolutions(const StudyOptions& options, bool ha
   }
   if (options.tangent == TangentStorage::stored) {
     throw InputError("tangent", "stored",
-                     "does not go with operator \"fft\", which has products only");
+                     "is not allowed with operator \"fft\", which has only products");
   }
   if (linear.method == LinearMethod::automatic) linear.method = LinearMethod::conjugate_gradients;
   if (linear.preconditioner == Kind::automatic) {
@@ -338,7 +338,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
     const ConstraintSpecification& of = body.specification.constraints;
     if (!of.rigid_sets.empty() || !of.rollers.empty() || !of.linear.empty()) {
       throw InputError("constraints", "",
-                       "rigid sets, rollers and linear constraints do not go with operator "
+                       "rigid sets, rollers and linear constraints are not allowed with operator "
                        "\"fft\"; take \"bonds\"");
     }
     if (finds_loads(options, *body.conditions)) {

@@ -21,7 +21,7 @@ void refuse_constraints(const ConstraintSpecification& constraints, int dimensio
   const auto refuse = [](const std::string& key, const std::string& what) {
     throw InputError(
         key, "",
-        what + " does not go with mode dynamics: its inertia is not that of individual points");
+        what + " is not allowed in mode dynamics: its inertia is not that of individual points");
   };
   if (!constraints.rigid_sets.empty()) refuse("rigid_sets", "a set that moves as a rigid body");
   if (!constraints.rollers.empty()) refuse("rollers", "a roller");

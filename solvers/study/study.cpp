@@ -88,7 +88,7 @@ void refuse_initial_displacements(const Body& body) {
     for (const std::string& component : initial[k].displacement) {
       if (component == "0") continue;
       throw InputError(indexed("initial", k) + ".displacement", '"' + component + '"',
-                       "does not go with a start in equilibrium, which finds the displacements");
+                       "is not allowed with a start in equilibrium, which finds the displacements");
     }
   }
 }

@@ -58,7 +58,7 @@ void check_options(const StudyOptions& options) {
     throw InputError("linear.preconditioner", "", "is for iterative solvers");
   if (options.tangent == TangentStorage::matrix_free && !can_be_matrix_free(linear))
     throw InputError("tangent", "matrix_free",
-                     "does not go with this linear.method or linear.preconditioner");
+                     "is not allowed with this linear.method or linear.preconditioner");
 }
 
 }  // namespace peristat

@@ -19,7 +19,7 @@ void check_weights(const ControlTerm& term, int dimension, const std::string& ke
     if (!std::isfinite(weight)) throw InputError(key, number_text(weight), "must be finite");
     largest = std::max(largest, std::abs(weight));
   }
-  if (largest == 0.0) throw InputError(key, "", "are all zero, so they control nothing");
+  if (largest == 0.0) throw InputError(key, "", "are all zero, so no displacement is controlled");
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ Coordinates checked(const Coordinates& stiffness, int dimension, const std::stri
     }
     holds |= stiffness[c] > 0.0;
   }
-  if (!holds) throw InputError(key, "", "is zero in every component, so it holds nothing");
+  if (!holds) throw InputError(key, "", "is zero in every component, so it has no effect");
   return stiffness;
 }
 

@@ -55,8 +55,8 @@ const GivenFunctions Expression::no_functions;
 std::string why_no_column(const std::string& name) {
   constexpr std::size_t longest = 100;
   if (!is_identifier(name)) {
-    return "is no name that expressions can use: it must have letters, digits and _, and begin "
-           "with none of the digits";
+    return "is not a valid name in expressions: a name has letters, digits and _, and does not "
+           "begin with a digit";
   }
   if (name.size() > longest) return "has more than " + std::to_string(longest) + " characters";
   static const std::vector<std::string> words{
@@ -64,7 +64,7 @@ std::string why_no_column(const std::string& name) {
       "spacing", "spacing_x", "spacing_y", "spacing_z", "horizon", "pi",    "free",  table_name};
   const bool is_function = mu::Parser().GetFunDef().contains(name);
   if (is_function || std::ranges::count(words, name) > 0) {
-    return "is taken: it means something else in expressions; choose another name";
+    return "already has another meaning in expressions; choose another name";
   }
   return "";
 }
@@ -320,7 +320,8 @@ struct Expression::Parser {
     if (dimension > 0) {
       for (const auto& [name, of_points] : *columns) variables.push_back(name);
     } else if (columns->contains(word)) {
-      refuse("column " + word + " has a value at each point, but this one number is for none");
+      refuse("column " + word +
+             " has a value at each point, but this number does not belong to a point");
     }
     for (const auto& [name, callback] : parser.GetFunDef()) callable.push_back(name);
     for (const auto& [name, function] : *functions) callable.push_back(name);
@@ -374,14 +375,14 @@ struct Expression::Parser {
         }
         if (compared.back()) {
           refuse("the comparison at character " + std::to_string(i + 1) +
-                 " would compare the truth value of the one before; join the two with &&");
+                 " would compare the result of the comparison before it; join the two with &&");
         }
         compared.back() = true;
         i += two_characters ? 2 : 1;
       } else {
         if (c == '*' && at(i + 1) == '*') {
           refuse("'**' at character " + std::to_string(i + 1) +
-                 " is no operator; a power is written with ^, as in load^2");
+                 " is not an operator; write a power with ^, as in load^2");
         }
         if (c == '(') compared.push_back(false);
         if (c == ')' && compared.size() > 1) compared.pop_back();
@@ -407,7 +408,7 @@ struct Expression::Parser {
     }
     // muParser stops silently at a zero character.
     if (text.find('\0') != std::string::npos)
-      refuse("an expression must not hold a zero character");
+      refuse("an expression must not contain a zero character");
     std::string plain = read_tables();
     const bool varies = scan(plain);
     plain = take_calls(std::move(plain));

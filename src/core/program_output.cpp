@@ -54,7 +54,7 @@ std::string program_output(const std::vector<std::string>& words) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail("ended before it was done");
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail("ended too early");
   return text;
 }
 

@@ -20,7 +20,7 @@ class TableCallScanner {
         if (text_.compare(begin, at_ - begin, "table") == 0) take_call(found);
       } else {
         if (is_quote(here())) {
-          refuse("a quote is only for the file and the column of a table, as in " +
+          refuse("quotes are only for the file and the column of a table, as in " +
                  std::string(example));
         }
         ++at_;

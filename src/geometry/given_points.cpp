@@ -100,7 +100,7 @@ Points points_of_given(const Points& given, double cross_section, double length_
   if (const auto pair = points_at_one_place(points, same_place_tolerance * points.spacing)) {
     refuse_given("reference", "",
                  "points " + std::to_string(pair->first) + " and " + std::to_string(pair->second) +
-                     " (from 0) stand at one place");
+                     " (from 0) have the same position");
   }
   const std::vector<Index> order =
       locality_order(points.dimension, points.spacing, points.reference);

@@ -56,11 +56,11 @@ void refuse_idle_shapes(const Lattice& lattice) {
                                        lattice.shapes.begin() + std::ptrdiff_t(k));
     const Solid before(lattice.dimension, steps);
     if (takes_something(lattice, before, step.shape)) continue;
-    throw InputError(
-        "shapes[" + std::to_string(k) + "].action", "",
-        "takes nothing away: no point of the body lies in this shape, which extends from " +
-            extent_text(bounds(step.shape), lattice.dimension) + "; the body extends from " +
-            extent_text(before.bounds(), lattice.dimension));
+    throw InputError("shapes[" + std::to_string(k) + "].action", "",
+                     "has no effect: no point of the body lies in this shape, which extends from " +
+                         extent_text(bounds(step.shape), lattice.dimension) +
+                         "; the body extends from " +
+                         extent_text(before.bounds(), lattice.dimension));
   }
 }
 

@@ -91,7 +91,7 @@ void check_blue_noise(const Lattice& lattice) {
   };
   require(lattice.dimension > 1, "is for dimensions 2 and 3; in 1D there is cell_perturbation");
   require(lattice.spacing.is_square(), "needs one spacing");
-  require(lattice.angle == 0.0, "has no axes for an angle to turn");
+  require(lattice.angle == 0.0, "has no axes, so it takes no angle");
   require(lattice.origin == LatticeOrigin::cell_centres,
           "has no points at corners; leave origin out");
   require(lattice.volumes == CellVolumes::whole,

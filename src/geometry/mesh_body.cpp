@@ -135,8 +135,8 @@ class MeshReading {
     }
     if (curved_ > 0)
       body_->remarks.push_back(count_words(curved_, "element") +
-                               " of second order are read by their corners: their sides are "
-                               "straight (plane or bilinear)");
+                               " of second order are read only by their corners, so their sides "
+                               "become straight (plane or bilinear)");
   }
 
   void take_nodes() {
@@ -200,9 +200,9 @@ class MeshReading {
         body_->elements.corners[first + k] = nodes[std::size_t(shape.mirrored[k])];
     }
     if (mirrored > 0 && mirrored < body_->count())
-      body_->remarks.push_back(count_words(mirrored, "element") + " of " +
-                               std::to_string(body_->count()) +
-                               " are numbered in the opposite direction, and read like the others");
+      body_->remarks.push_back(
+          count_words(mirrored, "element") + " of " + std::to_string(body_->count()) +
+          " are numbered in the opposite direction; they are read like the others");
   }
 
   /// Refuses nodes at one place: elements that do not share them are not joined.
@@ -222,10 +222,10 @@ class MeshReading {
     }
     const auto pair = points_at_one_place(nodes, same_node * cell);
     if (!pair) return;
-    refuse(node_text(*body_, numbers[std::size_t(pair->second)]) + " is at the place of node " +
+    refuse(node_text(*body_, numbers[std::size_t(pair->second)]) + " has the position of node " +
            std::to_string(numbers[std::size_t(pair->first)] + 1) +
-           ": elements are joined by common nodes only, so the body would be parted there; merge "
-           "the nodes, and give a crack as [[crack]]");
+           ": elements are joined only by common nodes, so the body would be separated there; "
+           "merge the nodes, and give a crack as [[crack]]");
   }
 
   /// Shells and the like are no part of the body.
@@ -247,7 +247,7 @@ class MeshReading {
     if (idle > 0)
       body_->remarks.push_back(
           count_words(std::size_t(idle), body_->dimension == 2 ? "line" : "face") +
-          " that are no side of an element are left out");
+          " that are not a side of an element are left out");
   }
 
   /// Refuses names that tables and datasets of results can't have.

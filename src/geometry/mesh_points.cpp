@@ -147,7 +147,7 @@ Points make_points(std::shared_ptr<const MeshBody> of, PointsAt at, double cross
       return element_text(mesh, std::size_t(found - mesh.file_element.begin()));
     };
     throw InputError("file", file,
-                     text(pair->first) + " and " + text(pair->second) + " have one centroid");
+                     text(pair->first) + " and " + text(pair->second) + " have the same centroid");
   }
   const ElementsOfNodes around(mesh);
   for (const auto& [name, group] : mesh.groups) {

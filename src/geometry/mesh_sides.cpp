@@ -181,7 +181,7 @@ void refuse_divided_sides(const MeshBody& body, const std::string& file) {
                             element_text(body, std::size_t(facet.element)) +
                             " meets a triangular side of " +
                             element_text(body, std::size_t(found->second)) +
-                            ": elements must meet at whole sides; pyramids between them do");
+                            ": elements must meet at whole sides; put pyramids between them");
     }
   }
 }

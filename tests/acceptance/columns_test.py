@@ -234,9 +234,9 @@ steps = 10
         for old, new, *said in (
             ("1e-3*copy_of_x*load", "1e-3*copy_of_y*load", "copy_of_y", "copy_of_x, is_right, product", "did you mean copy_of_x?"),
             ('body_force = ["product*load", "-copy_of_x"]', 'total_force = ["product*load", "0"]', "load[0].total_force[0]",
-             "column product has a value at each point, but this one number is for none"),
+             "column product has a value at each point, but this number does not belong to a point"),
             ('factor = "1 + product/80"', 'factor = "product"', "scatter[0].factor", "a factor must be from 1e-6 to 1e6"),
-            ('factor = "1 + product/80"', 'factor = "1"\nseed = 3', "seed", "leave it out with factor"),
+            ('factor = "1 + product/80"', 'factor = "1"\nseed = 3', "seed", "leave it out if factor is given"),
             ('factor = "1 + product/80"', 'factor = "load"', "unknown variable load"),
             ('of = "stiffness"', 'of = "strength"', "strength needs a law of damage"),
             ("is_right > 0.5", "1/(is_right - 1)", "set[1].where", "inf"),
@@ -249,8 +249,8 @@ steps = 10
         lattice = self.refusal(PULLED.replace("{value}", "product*load"))
         self.assertIn("unknown variable product; allowed are x, load", lattice)
         text = (CLOUD + STILL).format(**TYPED)
-        for header, value, said in (("t", "1", "points.csv:1: the name 't' of a column is taken"), ("sin", "1", "points.csv:1"),
-                                    ("horizon", "1", "points.csv:1: the name 'horizon' of a column is taken"),
+        for header, value, said in (("t", "1", "points.csv:1: the name 't' of a column already has another meaning"), ("sin", "1", "points.csv:1"),
+                                    ("horizon", "1", "points.csv:1: the name 'horizon' of a column already has another meaning"),
                                     ("a b", "1", "points.csv:1: the name 'a b'"), ("T", "inf", "points.csv:2: T = 'inf' is not finite"),
                                     ("T", "hot", "points.csv:2"), ("T", "", "points.csv:2")):  # fmt: skip
             with self.subTest(header=header, value=value):
@@ -350,7 +350,7 @@ class Tables(Folder):
             ('table("amplitude.csv", "v", load)', "amplitude.csv:2", "no column 'v'"),
             ('table("amplitude.csv", "u", 3*load)', "goes from 0 to 2", "load = 1"),
             ('table(load, load)', "name of a file in quotes"),
-            ('"load"', "a quote is only for"),
+            ('"load"', "quotes are only for"),
             ('table("amplitude.csv", "u)', "this quote is not closed"),
             ('table(".", load)', "no such file"),
         ):

@@ -225,7 +225,7 @@ total_force = [0, "-1*load"]
 
     def test_slips_are_told(self):
         for text, told in (
-            ('name = "bed"\nset = "all"\nstiffness = [0, 0]\n', "holds nothing"),
+            ('name = "bed"\nset = "all"\nstiffness = [0, 0]\n', "has no effect"),
             ('name = "bed"\nset = "all"\nstiffness = [-1, 0]\n', "0 or positive"),
             ('name = "bed"\nset = "all"\nstiffness = [1, 0]\nmodulus = [1, 0]\n', "modulus"),
             ('name = "bed"\nset = "all"\n', "stiffness"),

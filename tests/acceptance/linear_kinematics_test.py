@@ -362,7 +362,7 @@ class Torn(CommandLine):
         loaded = STRIP[: STRIP.index('[[support]]\nset = "right"')] + STRIP[STRIP.index("[solver]") :]
         loaded += '[loading]\nsteps = 30\n[[load]]\nside = "x+"\ntraction = ["4e7*load", 0]\n'
         self.run_case(loaded, FAILING, threads=2, code=3)
-        self.assertIn("the body does not bear them", (self.folder / "out/decisions.csv").read_text())
+        self.assertIn("the body does not carry them", (self.folder / "out/decisions.csv").read_text())
 
     def test_what_is_torn_through_is_left_with_round_off(self):
         run = self.results(STRIP, FAILING, "solver.operator=fft", "loading={steps=10, adaptive=false}",

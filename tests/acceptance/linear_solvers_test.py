@@ -83,7 +83,7 @@ class LinearSolvers(Folder):
         told = self.command("check", CASES / "bar/tension.toml").output
         self.assertRegex(told, r"solver +CHOLMOD .* \(auto: .*\)")
         told = self.command("check", CASES / "plate_with_hole/square.toml", "solver.mode=newton").output
-        self.assertRegex(told, r"solver +CHOLMOD .* \(auto: its pivots tell whether the softening body is stable\)")
+        self.assertRegex(told, r"solver +CHOLMOD .* \(auto: its pivots show whether the softening body is stable\)")
 
     def test_a_preconditioner_that_is_named_is_used(self):
         told, _ = self.solved(BEAM, *SMALL, "solver.preconditioner=surrogate")

@@ -430,7 +430,7 @@ class BrokenMeshes(Folder):
         self.refuses("bent.msh", msh(changed(nodes, 6, (1, 1, 0.3)), elements, names), "z from 0 to 0.3")
         parted = [(0, 0), (1, 0), (1, 1), (0, 1), (1, 0), (2, 0), (2, 1), (1, 1)]
         both = [(QUADRILATERAL, 3, of) for of in ((1, 2, 3, 4), (5, 6, 7, 8))]
-        self.refuses("doubled.msh", msh(parted, both, names[2:]), "place of node")
+        self.refuses("doubled.msh", msh(parted, both, names[2:]), "position of node")
         hanging = [(0, 0), (1, 0), (1, 1), (0, 1), (2, 0), (2, 1), (1, 0.5), (2, 0.5)]
         halves = [(QUADRILATERAL, 3, of) for of in ((1, 2, 3, 4), (2, 5, 8, 7), (7, 8, 6, 3))]
         self.refuses("hanging.msh", msh(hanging, halves, names[2:]), "without being one of its corners")

@@ -110,7 +110,7 @@ class Messages(Folder):
         case = PLATE.replace('"LIFT*load"', "1e-6").replace("thickness = 1e-3\n", "")
         told = self.warnings(self.command("check", case))
         self.assertEqual(len(told), 2, told)
-        self.assertIn("lattice.thickness is not given and taken as 1 m", told[0])
+        self.assertIn("lattice.thickness is not given, so it is 1 m", told[0])
         self.assertIn("support[1].displacement[1] = 1e-06 does not depend on load: it is applied in full at load 0", told[1])
         self.assertEqual(self.results(case).summary["warnings"], told)
         self.assertEqual(self.warnings(self.ended), told)
@@ -124,9 +124,9 @@ class Messages(Folder):
             self.assert_refused(self.command(command, outside), "crack[0]", "cuts no bond")
         hole = '[[lattice.shape]]\nsubtract = "disk"\ncentre = [4.0, 4.0]\nradius = 1.0\n'
         text = PLATE.replace("[[lattice.layer]]", hole + "[[lattice.layer]]", 1)
-        self.assert_refused(self.command("check", text), "lattice.shape[1].subtract", "takes nothing away")
+        self.assert_refused(self.command("check", text), "lattice.shape[1].subtract", "has no effect")
         run = self.command("check", PLATE, "loading.table2=[0, 1]")
-        self.assert_refused(run, "loading.table2", "load2, which no displacement and no load uses")
+        self.assert_refused(run, "loading.table2", "load2, but no displacement and no load uses it")
 
     def test_a_modulus_in_gigapascals(self):
         text = PLATE.replace("200e9", "30").replace("critical = 0.01", "fracture_energy = 100\nstrength = 3e6").replace("critical_stretch", "linear")
@@ -183,7 +183,7 @@ class Messages(Folder):
         layer += '[material]\nyoungs_modulus = 200e9\n[[set]]\nname = "left"\nwhere = "x < 0.003"\n'
         layer += '[[support]]\nset = "left"\ndisplacement = [0, 0, 0]\n[[load]]\nset = "left"\nbody_force = ["load", 0, 0]\n'
         run = self.command("check", layer)
-        self.assert_refused(run, "all points stand at the same z", "two layers", "2 dimensions")
+        self.assert_refused(run, "all points have the same z", "two layers", "2 dimensions")
         self.assertNotIn("horizon", run.errors)
 
     def test_an_option_that_is_a_key(self):

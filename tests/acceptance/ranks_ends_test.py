@@ -99,7 +99,7 @@ class Ends(OnRanks):
             self.assertEqual(list(file["steps"]), [f"{step:06}" for step in steps if step > 0])  # nothing moves at load 0
         for ranks in numbers_of_ranks:
             run = self.resume_on(ranks, output, words=("--stop-after", 2), code=130)
-            self.assertIn("going on after step", run.output)
+            self.assertIn("continuing after step", run.output)
         with h5py.File(output / "results.h5") as file:
             self.assertGreaterEqual(len(file["history/step"]), len(steps) + 2 * len(numbers_of_ranks) - 1)
 

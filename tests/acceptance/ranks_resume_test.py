@@ -24,7 +24,7 @@ class GoesOn(Comparison):
         folder = self.folder / f"{output.name}_resumed_on_{ranks}"
         shutil.copytree(output, folder)
         run = self.resume_on(ranks, folder, *options)
-        self.assertIn("going on after step 2", run.output)
+        self.assertIn("continuing after step 2", run.output)
         self.expect_same(whole, folder)
         self.expect_like_costs(whole, folder)
         with h5py.File(whole / "results.h5") as expected, h5py.File(folder / "results.h5") as found:
@@ -81,7 +81,7 @@ class GoesOn(Comparison):
         with h5py.File(results, "r+") as file:
             file["points/reference"][7, 1] += 1e-12
         said = self.resume_on(3, output, code=2).errors
-        self.assertIn("its points are not those", said)
+        self.assertIn("its points differ from those", said)
         self.assertEqual(said.count("peristat:"), 1)
 
     def test_from_a_damaged_checkpoint(self):

@@ -348,13 +348,13 @@ class Refused(Resumed):
     def test_points_that_are_others(self):
         with h5py.File(self.out / "results.h5", "r+") as file:
             file["points/reference"][3, 1] += 1e-12
-        self.refuses("its points are not those that the case now makes")
+        self.refuses("its points differ from those that the case now makes")
 
     def test_sets_that_are_others(self):
         with h5py.File(self.out / "results.h5", "r+") as file:
             flags = file["points/sets/right"]
             flags[0] = 1 - flags[0]
-        self.refuses("its points are not those that the case now makes")
+        self.refuses("its points differ from those that the case now makes")
 
     def test_a_checkpoint_that_is_damaged(self):
         self.change_checkpoint(lambda data: data[:-1])
@@ -449,7 +449,7 @@ class LossOfPower(Resumed):
         for name in ("results.h5", "parts/checkpoint.0", "parts/checkpoint.1", "history.csv"):
             (self.out / name).unlink()  # a file of the last moments, not the one that was synced
             (self.out / name).touch()
-        self.assertIn("an older state, which is safe on the disk, is used instead", self.go_on().errors)
+        self.assertIn("an older state, which is on the disk, is used instead", self.go_on().errors)
         self.is_as(whole)
 
 

@@ -127,7 +127,7 @@ class Ellipses(Shapes):
             text = PLATE.replace("SHAPE", ELLIPSE.replace("[0.75, 0.3]", change))
             self.refused(text, *words, code=2 if words else 0)
         self.refused(PLATE.replace("SHAPE", ELLIPSE.replace("angle", "axis")), "axis", "is not a key of the shape ellipse")
-        self.refused(PLATE.replace("SHAPE", ELLIPSE.replace("1.5, 1]", "9, 1]")), "takes nothing away")
+        self.refused(PLATE.replace("SHAPE", ELLIPSE.replace("1.5, 1]", "9, 1]")), "has no effect")
         self.refused(BODY.replace('"stl"\nfile = "FILE"', '"ellipse"\ncentre=[0,0,0]\nradii=[1,1,1]'),
                      "there is no ellipse in dimension 3")  # fmt: skip
 

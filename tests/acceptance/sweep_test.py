@@ -309,7 +309,7 @@ class Sweep(Folder):
             self.assertAlmostEqual(float(tip[f"spacing_{k}"]) / spacing, 1.0, delta=1e-14)
         self.assertAlmostEqual(float(tip["extrapolated"]) / 1e-6, 1.0, delta=1e-3)
         refused = self.sweep("--set", 'lattice.spacing="4 mm"', "--refine", "3", case=ROOT / "cases/bar/tension.toml", output=("--output", "refused"))
-        self.assert_refused(refused, "lattice.spacing is no number", "unit")
+        self.assert_refused(refused, "lattice.spacing is not a number", "unit")
 
     def test_a_refinement_in_which_a_run_fails_extrapolates_nothing(self):
         run = self.sweep("--refine", "3", "--vary", "solver.max_iterations=1,20", "--set", "loading.smallest_step=0.5")
@@ -327,13 +327,13 @@ class Sweep(Folder):
             ("--vary", "=1,2"): "key=value1,value2",
             ("--vary", "loading.steps="): "a value is empty",
             ("--vary", "loading.steps=1,,2"): "a value is empty",
-            ("--vary", "loading.steps=1,2,1"): "stands twice",
+            ("--vary", "loading.steps=1,2,1"): "is given twice",
             ("--vary", "load[0].body_force=[0, 1"): "] is missing",
             ("--with", "loading.steps=1"): "needs a --vary before it",
             ("--vary", "loading.steps=1,2", "--with", "solver.max_iterations=1"): "has 1 values and loading.steps has 2",
             ("--vary", "loading.steps=1", "--with", "loading.steps=2"): "varied twice",
             ("--vary", "loading.steps=1", "--with", "solver.max_iterations:=1/0"): "no value",
-            ("--vary", "loading.steps=1", "--with", "loading.smallest_step:=lattice.spaceing"): "stands neither",
+            ("--vary", "loading.steps=1", "--with", "loading.smallest_step:=lattice.spaceing"): "is neither in the case file",
             ("--vary", "loading.steps:=1"): "computed by --with loading.steps:=EXPRESSION",
             ("--vary", "loading.steps=1", "--with", "lattice.horizon_ratio:=lattice.spacing*3e3", "--with",
              "lattice.spacing:=1e-3"): "computed later",

@@ -356,7 +356,7 @@ class Launcher(unittest.TestCase):
     def test_an_option_that_ctest_would_ignore_is_refused(self):
         result = self.launch("test", "--nonsense")
         self.assertEqual(result.returncode, 2)
-        self.assertIn("--nonsense: no option of CTest", result.stderr)
+        self.assertIn("--nonsense: not an option of CTest", result.stderr)
 
     def test_an_unknown_command_names_the_nearest_one(self):
         for given, meant in [("chekc", "check"), ("rnu", "run"), ("tests", "test")]:

@@ -191,8 +191,8 @@ Exit calibrate_bonds(const Case& from, bool with_strengths, std::FILE* out) {
   located_errors(from, [&] {
     if (!body->points.horizons.empty())
       throw InputError("points.horizon", "",
-                       "is a ratio, so that the constants differ from point to point; calibrate "
-                       "with the horizon of one size, a length");
+                       "is a ratio, so the constants differ from point to point; give a length, "
+                       "the horizon of one size");
     const PointMaterials materials(body->specification, body->points);
     const auto all = all_materials(body->specification, materials);
     for (std::size_t k = 0; k < all.size(); ++k) {

@@ -256,7 +256,7 @@ void print_pressures(std::FILE* out, const Body& body) {
         is_symmetric
             ? "closed or held: its stiffness is symmetric"
             : fmt::format("open or uneven: its stiffness at the end of the load is {:.3g} N/m; the "
-                          "tangent leaves out its unsymmetric part, {:.3g} N/m (forces are exact)",
+                          "tangent omits its unsymmetric part, {:.3g} N/m (forces are exact)",
                           std::hypot(symmetric, left_out), left_out));
   }
 }
@@ -313,14 +313,12 @@ void print_points(std::FILE* out, const Body& body) {
                body.horizon_ratio());
     return;
   }
-  fmt::print(
-      out,
-      ", horizons {:g} to {:g} m ({:.4g} sizes of their points)\n"
-      "horizons    constants below are those of the largest one: a horizon's micromodulus goes "
-      "with "
-      "its power -{}, stretches by fracture_energy alone with its power -1/2\n",
-      *std::ranges::min_element(points.horizons), body.setting.horizon, body.horizon_ratio(),
-      points.dimension + 1);
+  fmt::print(out,
+             ", horizons {:g} to {:g} m ({:.4g} sizes of their points)\nhorizons    constants "
+             "below are for the largest horizon: the micromodulus is proportional to the power -{} "
+             "of the horizon, stretches by fracture_energy alone to its power -1/2\n",
+             *std::ranges::min_element(points.horizons), body.setting.horizon, body.horizon_ratio(),
+             points.dimension + 1);
 }
 
 }  // namespace
@@ -382,8 +380,7 @@ Exit check(const Case& from, int threads, std::FILE* out) {
   if (from.solver.mode == Mode::dynamics) {
     located_errors(from, [&] { print_motion(out, from, body, options, chosen.seconds / threads); });
   } else if (from.solver.mode == Mode::path) {
-    fmt::print(out,
-               "time        {} for an event; the number of events is not known before the run\n",
+    fmt::print(out, "time        {} per event; the number of events is not known before the run\n",
                seconds_text(chosen.seconds / threads));
   } else {
     const int steps = from.loading.steps_to_entry() * int(body.conditions->programme().end());

@@ -67,8 +67,8 @@ void print_spacings(const Points& points) {
   if (coarsest <= graded_ratio * finest) return;
   fmt::print(
       "warning: the mesh is graded: this horizon is {:.3g} spacings where the mesh is coarsest and "
-      "{:.3g} where it is finest. One horizon for all needs {:.4g} m, {} of the coarsest; "
-      "points.horizon = {{ ratio = {} }} gives each point a horizon of its own\n",
+      "{:.3g} where it is finest. One horizon for all points must be {:.4g} m, {} of the coarsest "
+      "spacings; points.horizon = {{ ratio = {} }} gives each point a horizon of its own\n",
       horizon / coarsest, horizon / finest, usual_horizon_ratio * coarsest, usual_horizon_ratio,
       usual_horizon_ratio);
 }
@@ -120,8 +120,9 @@ Exit print_points(const PointsQuestion& question) {
   PointSource source;
   source.file = question.mesh;
   if (!source.is_mesh())
-    throw InputError("", question.mesh.string(),
-                     "is no mesh; meshes end in .msh, .inp, .vtu, .vtk, .exo, .e, .ex2 or .med");
+    throw InputError(
+        "", question.mesh.string(),
+        "is not a mesh; names of meshes end in .msh, .inp, .vtu, .vtk, .exo, .e, .ex2 or .med");
   if (!std::isfinite(question.thickness) || !(question.thickness > 0.0))
     throw InputError("--thickness", fmt::format("{}", question.thickness), "must be positive");
   std::error_code error;

@@ -71,8 +71,8 @@ void require_same_files(const EarlierRun& earlier, const Case& from) {
     if (line.starts_with(mark_of_given)) continue;  // require_givens has seen to these
     if (("\n" + earlier.files()).find("\n" + line + "\n") != std::string::npos) continue;
     throw InputError("", "",
-                     "has changed since the run began, which reads it. Restore it to resume, or "
-                     "start again with `run`",
+                     "has changed since the run began. The run reads this file: restore it to "
+                     "resume, or start again with `run`",
                      line.substr(line.find(' ') + 1));
   }
 }
@@ -92,11 +92,10 @@ void require_same_loads(const LoadingProgramme& then, const LoadingProgramme& no
   }
   for (const double at : times) {
     if (then.at(at) == now.at(at)) continue;
-    throw InputError(
-        "--set", "loading.table",
-        fmt::format("the loads at {:.6g} s have changed, but the run has used them to "
-                    "reach {:.6g} s; a run is resumed with tables that begin as before",
-                    at, time));
+    throw InputError("--set", "loading.table",
+                     fmt::format("the loads at {:.6g} s have changed, but the run has used them to "
+                                 "reach {:.6g} s; the tables may change only after this time",
+                                 at, time));
   }
 }
 
@@ -117,7 +116,7 @@ void require_same_beginning(const LoadingProgramme& then, const LoadingProgramme
     if (then.at(entry) == now.at(entry)) continue;
     throw InputError("--set", "loading.table",
                      fmt::format("entry {} has changed, but the run has used it to reach stage "
-                                 "{:.6g}; a run is resumed with tables that begin as before",
+                                 "{:.6g}; only later entries may change",
                                  entry, stage));
   }
   if (is_long_enough) return;

@@ -234,7 +234,7 @@ class CaseRun {
     const auto all_say = [&](bool holds) { return ranks_.min(double(holds)) > 0.0; };
     if (!all_say(
             earlier.has_points(only_recorded({body_->points, *body_->index_map}), *gathering_))) {
-      refuse("its points are not those that the case now makes");
+      refuse("its points differ from those that the case now makes");
     }
     if (!all_say(is_of_body(earlier.checkpoint().path, study_->equations().assembler(),
                             body_->conditions->prescribed()))) {
@@ -259,8 +259,8 @@ class CaseRun {
     if (difference <= round_off * largest) return;
     throw InputError(
         "", "",
-        fmt::format("the functions of its supports are others than when it ran: at the "
-                    "load that it has reached they differ by {:.3g} m",
+        fmt::format("the functions of its supports have changed: at the load that the run has "
+                    "reached their displacements differ by {:.3g} m from those of the run",
                     difference),
         earlier.directory().string());
   }
@@ -290,7 +290,7 @@ class CaseRun {
   void tell_beginning() {
     if (!earlier_->remark().empty()) progress_.problem(earlier_->remark());
     const PathState& path = earlier_->checkpoint().path;
-    progress_.say(fmt::format("going on after step {}, load factor {:.6g}", path.steps,
+    progress_.say(fmt::format("continuing after step {}, load factor {:.6g}", path.steps,
                               body_->conditions->load_factor(load_point(path.accepted))));
   }
 
@@ -416,10 +416,10 @@ class CaseRun {
     progress_.problem(summary_.reason);
     progress_.problem(fmt::format("{} accepted steps are in {}", result.steps, folder));
     if (result.outcome == Outcome::interrupted) {
-      if (recorder_->last()) progress_.problem("to go on: peristat resume " + folder);
+      if (recorder_->last()) progress_.problem("to continue: peristat resume " + folder);
       return Exit::interrupted;
     }
-    progress_.problem("dossier.txt there says where it failed and what to do");
+    progress_.problem("dossier.txt there describes where it failed and what to do");
     return result.outcome == Outcome::out_of_memory ? Exit::out_of_memory : Exit::not_converged;
   }
 

@@ -44,7 +44,7 @@ void keep_inputs_and_log_apart(const Case& from, const std::string& log_file) {
       throw InputError("directory", from.output.directory.string(),
                        file.string() +
                            " is read by the run, but a result of the run has the same name and "
-                           "would replace it; name another folder");
+                           "would replace it; name another results folder");
     }
     if (!log_file.empty() && resolved(file) == resolved(log_file)) {
       throw InputError("--log", log_file, "is an input of the run; name a new file");
@@ -182,7 +182,7 @@ void report_unbalanced_force(const StepRecord& last, Progress& progress) {
   }
   if (last.unbalanced_force <= worth_telling * largest) return;
   progress.say(fmt::format(
-      "loads and reactions differ by {:.3g} N: horizon and spacing are coarse for this body",
+      "loads and reactions differ by {:.3g} N: horizon and spacing are too coarse for this body",
       last.unbalanced_force));
 }
 

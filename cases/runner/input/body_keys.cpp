@@ -30,7 +30,7 @@ template <class Member>
 Key<Case> thickness(Member cross_section) {
   return Key<Case>("thickness", cross_section, positive("m"),
                    "thickness of the plate, dimension 2 only")
-      .unless(in_dimension<1>, "is for dimension 2; dimension 1 has an area")
+      .unless(in_dimension<1>, "is for dimension 2; in dimension 1 give area")
       .unless(in_dimension<3>, "is for dimension 2 only")
       .default_words("1")
       .on_ranks();
@@ -40,7 +40,7 @@ template <class Member>
 Key<Case> area(Member cross_section) {
   return Key<Case>("area", cross_section, positive("m2"),
                    "cross-section of the bar, dimension 1 only")
-      .unless(in_dimension<2>, "is for dimension 1; dimension 2 has a thickness")
+      .unless(in_dimension<2>, "is for dimension 1; in dimension 2 give thickness")
       .unless(in_dimension<3>, "is for dimension 1 only")
       .default_words("1")
       .on_ranks();
@@ -60,7 +60,7 @@ Table<ShapeStep> shape_step_keys() {
           {K("add", &ShapeStep::shape, shape_beside(), "kind of the shape to add")
                .written_if([](auto& step, auto&) { return step.action == Action::add; })
                .one_of(),
-           K("subtract", &ShapeStep::shape, shape_beside(), "kind of the shape to take away")
+           K("subtract", &ShapeStep::shape, shape_beside(), "kind of the shape to subtract")
                .then([](auto&, auto& step) { step.action = Action::subtract; })
                .written_if([](auto& step, auto&) { return step.action == Action::subtract; })
                .one_of(),
@@ -68,7 +68,7 @@ Table<ShapeStep> shape_step_keys() {
              "name of the shape, by which loads refer to its boundary")
                .written_if([](auto& step, auto&) { return !step.name.empty(); }),
            K("cuts_bonds", &ShapeStep::cuts_bonds, boolean(),
-             "`subtract`: whether bonds that cross the shape are cut; otherwise bonds longer than "
+             "`subtract`: whether bonds that cross the shape are cut. Otherwise bonds longer than "
              "its width bridge it")
                .written_if([](auto& step, auto&) { return step.cuts_bonds; })
                .then([](auto& at, auto& step) {
@@ -83,7 +83,8 @@ Table<Layer> layer_keys() {
           {K("name", &Layer::name, set_name(), "name of the layer and of its set").required(),
            K("side", &Layer::side, side(), "side of the body").required(),
            K("thickness", &Layer::thickness, integer(1, 1000, "spacings"), "number of planes"),
-           where<Layer>("keeps only the points where it is not zero", "all of it")}};
+           where<Layer>("expression; the layer keeps only the points where it is not zero",
+                        "all points of the layer")}};
 }
 
 }  // namespace
@@ -111,12 +112,12 @@ Table<Case> lattice_keys() {
                       auto&) { return lattice(from).arrangement != Arrangement::blue_noise; },
                    "is for points = \"blue_noise\""),
        K("angle", in(lattice, &Lattice::angle), between(-360.0, 360.0, "degrees"),
-         "angle by which the lattice is turned under the body, anticlockwise about the origin, in "
-         "3D about the z axis; shapes, layers and sets stay where they are")
+         "angle by which the lattice is rotated relative to the body, anticlockwise about the "
+         "origin, in 3D about the z axis. Shapes, layers and sets are not rotated")
            .unless(in_dimension<1>, "is for dimensions 2 and 3")
            .on_ranks(),
        K("horizon_ratio", &Case::horizon_ratio, number(Range::positive("-"), "1 to 1000"),
-         "horizon / spacing; if spacings differ, over their geometric mean")
+         "horizon / spacing; if spacings differ, horizon / geometric mean of the spacings")
            .then([](auto& at, auto& result) {
              if (result.horizon_ratio < 1.0)
                at.refuse(
@@ -135,8 +136,8 @@ Table<Case> lattice_keys() {
        K("origin", in(lattice, &Lattice::origin),
          choice<LatticeOrigin>(
              {{"cell_centres", LatticeOrigin::cell_centres}, {"nodes", LatticeOrigin::nodes}}),
-         "where points stand relative to the lower corner of the first shape. `\"cell_centres\"`: "
-         "half a spacing inside; `\"nodes\"`: on the corner itself")
+         "position of the points relative to the lower corner of the first shape. "
+         "`\"cell_centres\"`: half a spacing inside; `\"nodes\"`: on the corner itself")
            .on_ranks(),
        K("volumes", in(lattice, &Lattice::volumes),
          choice<CellVolumes>(
@@ -147,12 +148,12 @@ Table<Case> lattice_keys() {
            .on_ranks(),
        K("perturbation", in(lattice, &Lattice::perturbation), between(0.0, 0.49, "spacings"),
          "largest random shift of a point along each of the lattice's axes; points of layers are "
-         "not shifted")
+         "not moved")
            .on_ranks(),
        K("cell_perturbation", in(lattice, &Lattice::cell_perturbation),
          between(0.0, 0.249, "spacings"),
          "largest random shift of the corners of cells inside the body along each of the lattice's "
-         "axes; points stand at the cells' centroids and have their volumes")
+         "axes; a point is at the centroid of its cell and has the volume of the cell")
            .unless(in_dimension<3>, "is for dimensions 1 and 2")
            .moreover("model `bond`")
            .on_ranks(),
@@ -181,11 +182,11 @@ namespace {
 
 const Table<PointHorizon>& point_horizon_keys() {
   using K = Key<PointHorizon>;
-  static const Table<PointHorizon> keys{
-      "points.horizon",
-      {K("ratio", &PointHorizon::ratio, between(1.0, 1000.0),
-         "horizon of each point over its size, the edge of a square or cube of its volume")
-           .required()}};
+  static const Table<PointHorizon> keys{"points.horizon",
+                                        {K("ratio", &PointHorizon::ratio, between(1.0, 1000.0),
+                                           "horizon of each point divided by its size, which is "
+                                           "the edge of a square or cube of its volume")
+                                             .required()}};
   return keys;
 }
 
@@ -226,88 +227,90 @@ Table<Case> points_keys() {
   constexpr auto is_no_mesh = [has_mesh](const Case& from, const Case& so_far) {
     return !has_mesh(from, so_far);
   };
-  return {
-      "points",
-      {K("file", in(points, &PointSource::file), file_beside_the_case(),
-         "file with comma- or blank-separated text, or a mesh, by the end of its name (.msh, .inp, "
-         ".vtu, .vtk, .exo, .e, .ex2, .med); its path is relative to the case file's folder")
-           .required()
-           .unless(are_given, "goes with no points that a program gives; leave one of them out")
-           .early()
-           .then([](auto&, auto& from) {
-             if (points(from).is_mesh()) return;
-             for (const std::string& name : further_columns(points(from).file, from.dimension))
-               from.columns[name];
-           })
-           .on_ranks(),
-       K("horizon", in(points, &PointSource::horizon), point_horizon(),
-         "horizon, the same for every point; or `{ ratio = 3.015 }`, a "
-         "[horizon per point](theory.md#horizon-per-point) of 3.015 times its size, for model "
-         "`bond` and points of different sizes")
-           .moreover("at least the mean spacing; at most as many mean spacings as "
-                     "`lattice.horizon_ratio` allows")
-           .required()
-           .early()
-           .describes([](auto& all) { point_horizon_keys().describe(all); })
-           .on_ranks(),
-       K("length_unit", in(points, &PointSource::length_unit), positive("m"),
-         "unit of the coordinates in the file; its volumes are in this unit cubed")
-           .otherwise(
-               [](auto& result, auto&) {
-                 points(result).length_unit = unit_system(result.units).length.size();
-               },
-               "1, or the `length` of `[units]`")
-           .written_if([](auto& from, auto&) { return points(from).length_unit != 1.0; })
-           .on_ranks(),
-       K("neighbours", in(points, &PointSource::neighbours), file_beside_the_case(),
-         "file with the neighbours of the points and the shares of their volumes that count, "
-         "relative to the case file's folder like `file`; model `bond`")
-           .unless(has_mesh, "is for a file of text")
-           .unless(are_given, "is for points from a file")
-           .written_if([](auto& from, auto&) { return !points(from).neighbours.empty(); })
-           .then([](auto& at, auto& result) {
-             if (!points(result).neighbours.empty() && points(result).horizon.ratio > 0.0)
-               at.refuse("goes with one horizon for all points, not with a ratio");
-           })
-           .default_words("all points within the horizon"),
-       K("at", in(points, &PointSource::at),
-         choice<PointsAt>({{"elements", PointsAt::elements}, {"nodes", PointsAt::nodes}}),
-         "of a mesh: a point at the centroid of each element with its volume, or at each node with "
-         "its share of the elements around it")
-           .default_words("`\"elements\"`")
-           .unless(is_no_mesh, "is for a mesh")
-           .written_if(has_mesh),
-       K("cut_bonds", in(points, &PointSource::cut_bonds), boolean(),
-         "of a mesh: the boundary of the elements cuts the bonds that leave the body")
-           .default_words("true")
-           .unless(is_no_mesh, "is for a mesh")
-           .written_if(has_mesh),
-       thickness(in(points, &PointSource::cross_section)),
-       area(in(points, &PointSource::cross_section))},
-      [](auto& at, auto& result) {
-        result.body = PointSource();
-        const std::optional<Points>& given = result.givens->points;
-        if (!given) return;
-        if (given->dimension != result.dimension)
-          at.refuse("the points that the program gives have dimension " +
-                    std::to_string(given->dimension) + ", the case has " +
-                    std::to_string(result.dimension));
-        for (const auto& [name, values] : given->columns) {
-          const std::string why_not = why_no_column(name);
-          if (!why_not.empty()) at.refuse("the column \"" + name + "\" " + why_not);
-          result.columns[name];
-        }
-      }};
+  return {"points",
+          {K("file", in(points, &PointSource::file), file_beside_the_case(),
+             "file of points as text with commas or blanks, or a mesh, chosen by the ending of the "
+             "name (.msh, .inp, .vtu, .vtk, .exo, .e, .ex2, .med); its path is relative to the "
+             "case file's folder")
+               .required()
+               .unless(are_given,
+                       "cannot be combined with points that a program gives; leave one of them out")
+               .early()
+               .then([](auto&, auto& from) {
+                 if (points(from).is_mesh()) return;
+                 for (const std::string& name : further_columns(points(from).file, from.dimension))
+                   from.columns[name];
+               })
+               .on_ranks(),
+           K("horizon", in(points, &PointSource::horizon), point_horizon(),
+             "horizon, the same for every point; or `{ ratio = 3.015 }`, a "
+             "[horizon per point](theory.md#horizon-per-point) of 3.015 times its size, for model "
+             "`bond` and points of different sizes")
+               .moreover("at least the mean spacing; at most as many mean spacings as "
+                         "`lattice.horizon_ratio` allows")
+               .required()
+               .early()
+               .describes([](auto& all) { point_horizon_keys().describe(all); })
+               .on_ranks(),
+           K("length_unit", in(points, &PointSource::length_unit), positive("m"),
+             "unit of the coordinates in the file; its volumes are in this unit cubed")
+               .otherwise(
+                   [](auto& result, auto&) {
+                     points(result).length_unit = unit_system(result.units).length.size();
+                   },
+                   "1, or the `length` of `[units]`")
+               .written_if([](auto& from, auto&) { return points(from).length_unit != 1.0; })
+               .on_ranks(),
+           K("neighbours", in(points, &PointSource::neighbours), file_beside_the_case(),
+             "file with the neighbours of the points and the shares of their volumes that count; "
+             "its path is relative to the case file's folder. For model `bond`")
+               .unless(has_mesh, "is for a file of text")
+               .unless(are_given, "is for points from a file")
+               .written_if([](auto& from, auto&) { return !points(from).neighbours.empty(); })
+               .then([](auto& at, auto& result) {
+                 if (!points(result).neighbours.empty() && points(result).horizon.ratio > 0.0)
+                   at.refuse("needs one horizon for all points, not a ratio");
+               })
+               .default_words("all points within the horizon"),
+           K("at", in(points, &PointSource::at),
+             choice<PointsAt>({{"elements", PointsAt::elements}, {"nodes", PointsAt::nodes}}),
+             "for a mesh: a point at the centroid of each element, with the volume of the element; "
+             "or a point at each node, with its share of the volumes of the elements around it")
+               .default_words("`\"elements\"`")
+               .unless(is_no_mesh, "is for a mesh")
+               .written_if(has_mesh),
+           K("cut_bonds", in(points, &PointSource::cut_bonds), boolean(),
+             "for a mesh: whether the boundary of the elements cuts the bonds that leave the body")
+               .default_words("true")
+               .unless(is_no_mesh, "is for a mesh")
+               .written_if(has_mesh),
+           thickness(in(points, &PointSource::cross_section)),
+           area(in(points, &PointSource::cross_section))},
+          [](auto& at, auto& result) {
+            result.body = PointSource();
+            const std::optional<Points>& given = result.givens->points;
+            if (!given) return;
+            if (given->dimension != result.dimension)
+              at.refuse("the points that the program gives have dimension " +
+                        std::to_string(given->dimension) + ", the case has " +
+                        std::to_string(result.dimension));
+            for (const auto& [name, values] : given->columns) {
+              const std::string why_not = why_no_column(name);
+              if (!why_not.empty()) at.refuse("the column \"" + name + "\" " + why_not);
+              result.columns[name];
+            }
+          }};
 }
 
 Table<SetRule> set_keys() {
   using K = Key<SetRule>;
   return {"set",
           {K("name", &SetRule::name, set_name(), "name of the set").required(),
-           where<SetRule>("selects the points where it is not zero", "this or `shape` is required"),
+           where<SetRule>("expression; the set has the points where it is not zero",
+                          "this or `shape` is required"),
            K("shape", &SetRule::shape, shape_inside(),
-             "selects the points in it; its keys are those of `[[lattice.shape]]`: `{ box = { min "
-             "= [0, 0], max = [1, 1] } }`")
+             "shape; the set has the points in it. Its keys are those of `[[lattice.shape]]`: `{ "
+             "box = { min = [0, 0], max = [1, 1] } }`")
                .describes(describe_shapes)
                .default_words("this or `where` is required")},
           {},
@@ -332,12 +335,11 @@ Table<Crack> crack_keys() {
   const auto is_outline = [](auto& crack, auto&) {
     return std::holds_alternative<CrackOutline>(crack);
   };
-  const std::string in_space = "is for dimension 2; 3D has vertices",
-                    beside_outline =
-                        "can't be given together with outline: a crack is one or the other";
+  const std::string in_space = "is for dimension 2; in 3D give vertices",
+                    beside_outline = "can't be given together with outline; give only one of them";
   return {"crack",
           {K("outline", in(outline, &CrackOutline::vertices), pairs(),
-             "2D: corners of a closed polygon whose sides cut bonds; the last corner is joined to "
+             "2D: corners of a closed polygon. Its sides cut bonds. The last corner is joined to "
              "the first")
                .unless(in_dimension<3>, in_space)
                .written_if(is_outline)
@@ -353,8 +355,8 @@ Table<Crack> crack_keys() {
                .moreover("not `from`")
                .required("required in 2D without `outline`"),
            K("vertices", in(polygon, &CrackPolygon::vertices), triples(),
-             "3D: corners in order; the last is joined to the first")
-               .unless(in_dimension<2>, "is for dimension 3; 2D has from and to, or an outline")
+             "3D: corners of a polygon in order. The last corner is joined to the first")
+               .unless(in_dimension<2>, "is for dimension 3; in 2D give from and to, or an outline")
                .moreover("in one plane (to 10⁻⁹ of the extent) and around an area; edges must not "
                          "cross or touch")
                .required("required in 3D")},
@@ -393,9 +395,9 @@ Table<Case> quadrature_keys() {
                                    {"linear", VolumeCorrection::linear},
                                    {"exact", VolumeCorrection::exact},
                                    {"exact_centroids", VolumeCorrection::exact_centroids}}),
-         "share of a neighbour's volume that counts near the edge of the horizon. `\"none\"`: all "
-         "of it; `\"linear\"`: linear over half a spacing to either side; `\"exact\"`: the part of "
-         "its cell within the horizon; `\"exact_centroids\"`: the same, with the bond's length and "
+         "share of a neighbour's volume that counts near the horizon. `\"none\"`: all of it; "
+         "`\"linear\"`: linear over half a spacing to either side; `\"exact\"`: the part of its "
+         "cell within the horizon; `\"exact_centroids\"`: the same, with the bond's length and "
          "influence taken at that part's centroid. The last two are for whole cells of a lattice, "
          "whose corners `cell_perturbation` may shift")
            .written_if(with(Option::volume_correction))
@@ -404,10 +406,11 @@ Table<Case> quadrature_keys() {
          choice<HorizonShape>({{"ball", HorizonShape::ball},
                                {"box", HorizonShape::box},
                                {"diamond", HorizonShape::diamond}}),
-         "which neighbours a point sees: those within the horizon by their distance (`\"ball\"`), "
-         "by its largest component along the lattice's axes (`\"box\"`), or by the sum of these "
-         "components (`\"diamond\"`). Boxes and diamonds are stiffer along some directions than "
-         "along others: [moduli](theory.md#horizon-shapes) are means over all directions")
+         "shape of the neighbourhood. A point interacts with the points within the horizon by "
+         "their distance (`\"ball\"`), by the largest component of their distance along the "
+         "lattice's axes (`\"box\"`), or by the sum of these components (`\"diamond\"`). Boxes and "
+         "diamonds are stiffer along some directions than along others: "
+         "[moduli](theory.md#horizon-shapes) are means over all directions")
            .written_if(with(Option::horizon_shape))
            .on_ranks(),
        K("surface_correction", &Case::surface_correction,
@@ -428,13 +431,13 @@ Table<Case> quadrature_keys() {
            .on_ranks(),
        K("degree", in(collocation, &CollocationSpecification::degree),
          count_from(least_exact_degree, "", most_exact_degree),
-         "model `lps` by collocation: degree of the polynomials that the quadrature is exact for")
+         "model `lps` by collocation: degree of the polynomials for which the quadrature is exact")
            .written_if(with(Option::collocation))
            .on_ranks(),
        K("traction_form", in(collocation, &CollocationSpecification::traction_form),
          choice<TractionForm>({{"full", TractionForm::full}, {"paper", TractionForm::paper}}),
-         "model `lps` by collocation: part of the displacements' continuation over the boundary "
-         "that counts. `\"full\"`: all of it, which is exact for linear fields on every grid; "
+         "model `lps` by collocation: part of the displacements' continuation beyond the boundary "
+         "that is used. `\"full\"`: all of it, which is exact for linear fields on every grid; "
          "`\"paper\"`: the part that [LPS] eq. 4.6 keeps")
            .written_if(with(Option::collocation))
            .on_ranks(),

@@ -73,7 +73,7 @@ std::string read_case_text(const fs::path& file) {
   // a device or a pipe might never end
   if (!fs::is_regular_file(status)) refuse("is not a regular file");
   if (fs::file_size(file, error) > largest_size || error)
-    refuse("is larger than 16 MiB, so it is no case file");
+    refuse("is larger than 16 MiB, so it is not a case file");
 
   errno = 0;
   std::ifstream in(file, std::ios::binary);

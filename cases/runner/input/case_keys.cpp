@@ -49,18 +49,18 @@ Table<Case> all_keys() {
            .on_ranks(),
        K("lattice", itself, lattice_keys(), "table: points on a lattice")
            .written_if(body_is<Lattice>)
-           .unless([](auto&, const Case& from) { return from.givens->points.has_value(); },
-                   "goes with no points that a program gives; they need the table [points]")
+           .unless(
+               [](auto&, const Case& from) { return from.givens->points.has_value(); },
+               "cannot be combined with points that a program gives; these need the table [points]")
            .one_of(),
        K("points", itself, points_keys(), "table: points from a file")
            .written_if(body_is<PointSource>)
            .one_of(),
        K("set", &Case::sets, set_keys(), "tables: named sets of points").on_ranks(),
-       K("crack", &Case::cracks, crack_keys(), "tables: cracks that are there from the start")
-           .on_ranks(),
+       K("crack", &Case::cracks, crack_keys(), "tables: initial cracks").on_ranks(),
        K("quadrature", itself, quadrature_keys(), "table: corrections of the weights"),
        K("material", &Case::material, material_keys("material"),
-         "table: model, constants and damage of the points in no region")
+         "table: model, constants and damage of the points that are in no region")
            .otherwise([](auto&, auto&) {}, "required without `[[region]]`")
            .written_if([](auto& result, auto&) { return result.material.has_constants(); }),
        K("region", &Case::regions, region_keys(),
@@ -91,10 +91,10 @@ Table<Case> all_keys() {
            .on_ranks(),
        K("load", &Case::loads, load_keys(), "tables: forces"),
        K("foundation", &Case::foundations, foundation_keys(),
-         "tables: springs between a part of the body and a ground")
+         "tables: springs between a part of the body and the ground")
            .on_ranks(),
        K("eigenstrain", in(&Case::eigenstrains, &Eigenstrains::given), eigenstrain_keys(),
-         "tables: strains that cost no energy")
+         "tables: strains without stored energy, such as growth or drying")
            .on_ranks(),
        K("temperature", &Case::eigenstrains, temperature_keys(), "table: change of temperature")
            .then(check_temperature)
@@ -103,7 +103,7 @@ Table<Case> all_keys() {
            })
            .on_ranks(),
        K("control", &Case::controls, control_keys(),
-         "tables: the displacement that is controlled instead of `load`"),
+         "tables: the displacement that is prescribed instead of `load`"),
        K("initial", &Case::initial, initial_keys(),
          "tables: displacements and velocities at time 0")
            .on_ranks(),

@@ -32,15 +32,17 @@ Table<RollerSpecification> roller_keys() {
   using K = Key<Spec>;
   return {
       "roller",
-      {K("set", &Spec::set, known_set(), "set of points, each of which slides across the normal")
+      {K("set", &Spec::set, known_set(),
+         "set of points, each of which can slide at right angles to the normal")
            .written_if([](auto& roller, auto&) { return !roller.at; })
            .one_of(),
        K("at", &Spec::at, coordinates(),
-         "where a roller touches the body: it holds the mean displacement of the points around, "
-         "weighted so that it is the displacement at this place")
+         "position at which a roller touches the body. It holds the mean displacement of the "
+         "points around, with weights that give the displacement at this position")
            .early()
            .one_of(),
-       K("to", &Spec::to, coordinates(), "3D: other end of the line along which it touches")
+       K("to", &Spec::to, coordinates(),
+         "3D: other end of the line along which the roller touches the body")
            .unless(in_dimension<2>, "is for dimension 3: in 2D a roller touches at a point")
            .unless([](auto& roller, auto&) { return !roller.at; }, "needs the key at")
            .default_words("a point"),
@@ -52,7 +54,7 @@ Table<RollerSpecification> roller_keys() {
            .required(),
        K("displacement", &Spec::displacement, expression_or_free(),
          "displacement along the normal; `\"free\"`: unknown, but the same for all points of the "
-         "set (a platen without friction that does not turn)")},
+         "set (a platen without friction that does not rotate)")},
       [](auto& at, auto&) {
         if (at.so_far.dimension == 1)
           at.refuse("is for dimension 2 and 3; in 1D prescribe a displacement");
@@ -89,7 +91,7 @@ Table<FoundationSpecification> foundation_keys() {
       "foundation",
       {K("name", &Spec::name, name(), "name under which its force is reported").required(),
        K("set", &Spec::set, known_set(),
-         "set that stands on the foundation; with `modulus` one plane of points on the boundary")
+         "set on the foundation; with `modulus` one plane of points on the boundary")
            .written_if([](auto& of, auto&) { return !of.set.empty(); })
            .default_words("required, except for `modulus` with a `side`"),
        K("side", &Spec::side, optional_side(),
@@ -121,9 +123,9 @@ Table<FoundationSpecification> foundation_keys() {
 Table<SymmetryPlane> symmetry_keys() {
   using K = Key<SymmetryPlane>;
   return {"symmetry",
-          {K("axis", &SymmetryPlane::axis, axis(), "axis that the plane is normal to").required(),
+          {K("axis", &SymmetryPlane::axis, axis(), "axis normal to the plane").required(),
            K("at", &SymmetryPlane::at, number(any_number, "a number", "m"),
-             "where the plane crosses the axis, half a spacing before the first points")}};
+             "coordinate of the plane on the axis, half a spacing before the first points")}};
 }
 
 Table<PeriodSpecification> period_keys() {

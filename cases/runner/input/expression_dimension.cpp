@@ -30,7 +30,7 @@ Measured common_dimension(const Measured& a, const Measured& b) {
   if (*a == *b) return a;
   throw InputError("", "",
                    "adds or compares " + dimension_words(*a) + " and " + dimension_words(*b) +
-                       "; beside a unit every number needs one");
+                       "; if one number has a unit, every number needs one");
 }
 
 void require_plain(const Measured& argument, const std::string& where) {
@@ -148,7 +148,7 @@ class DimensionReader {
     const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
     constexpr int largest = 20;
     if (at_ != begin + 1 || parsed.ptr != text.data() + text.size() || number > largest)
-      throw InputError("", "", "a number with a unit may only have a whole number as its exponent");
+      throw InputError("", "", "a number with a unit needs a whole number as exponent");
     const Dimension value = Unit{*base}.power(2 * number).dimension;
     constexpr int remote = 1000;  // keeps powers of powers from overflow
     if (std::ranges::any_of(value, [](int e) { return std::abs(e) > remote; })) refuse_form();

@@ -67,7 +67,7 @@ Token number_or_quantity(std::string_view rest, std::size_t number) {
   const auto parsed = parse_unit(name, why_not);
   if (!parsed) {
     throw InputError("", "",
-                     why_not + ". A word behind a number is its unit; a product is written with *");
+                     why_not + ". A word after a number is its unit; write a product with *");
   }
   return {Token::Kind::quantity, rest.substr(0, number + blanks + unit), rest.substr(0, number),
           *parsed};

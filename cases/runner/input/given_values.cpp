@@ -186,7 +186,7 @@ void refuse_idle_tables(const Case& from) {
     if (is_used[k] || !from.locations.contains(key)) continue;
     throw InputError(key, "",
                      "gives values of " + parameters[k] +
-                         ", which no displacement and no load uses; use it in one, as in \"1e-3*" +
+                         ", but no displacement and no load uses it; use it in one, as in \"1e-3*" +
                          parameters[k] + "\", or leave the table out");
   }
 }

@@ -23,8 +23,9 @@ void require_givens(const std::string& lines, const Givens& givens) {
     missing += (missing.empty() ? "" : ", ") + line.substr(mark_of_given.size());
   }
   if (missing.empty()) return;
-  throw InputError(
-      "", "", "this run used what a program gave it: " + missing + ". Resume it in that program");
+  throw InputError("", "",
+                   "this run used functions or points of a program: " + missing +
+                       ". Resume it in a program that gives them");
 }
 
 }  // namespace peristat

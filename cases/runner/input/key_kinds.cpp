@@ -283,7 +283,8 @@ Kind<Coordinates> stiffnesses(const std::string& unit) {
     for (std::size_t c = 0; c < stiffness.size(); ++c) {
       if (stiffness[c] < 0.0) at.from.refuse(at.key, c, "must be 0 or positive");
     }
-    if (stiffness == Coordinates{}) at.refuse("is zero in every component, so it holds nothing");
+    if (stiffness == Coordinates{})
+      at.refuse("is zero in every component, so the spring has no effect");
     return stiffness;
   };
   const auto text = [any](const Coordinates& stiffness, const Case& from) {
@@ -373,8 +374,8 @@ Kind<LoadTable> load_table() {
     if (at.so_far.dynamics.is_asked_for) {
       if (at.from.is_string(at.key)) {
         at.refuse(
-            "in mode dynamics a table has pairs [time, value]; an expression of t may stand "
-            "in the supports and loads themselves");
+            "in mode dynamics a table has pairs [time, value]; write expressions of t in the "
+            "supports and loads themselves");
       }
       return LoadTable{{}, {}, at.from.pairs(at.key)};
     }
@@ -410,7 +411,7 @@ Kind<std::array<std::optional<std::string>, 3>> prescribed_components() {
       all_free = false;
       prescribed[c] = checked_component(at, c, components[c], at.so_far.dimension);
     }
-    if (all_free) at.refuse("every component is \"free\", so this supports nothing");
+    if (all_free) at.refuse("every component is \"free\", so the support has no effect");
     return prescribed;
   };
   return {read,

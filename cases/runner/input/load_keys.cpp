@@ -69,23 +69,24 @@ Table<LoadSpecification> load_keys() {
            .on_ranks(),
        load_value(Kind::body_force, "N/m3", "force density per component"),
        load_value(Kind::total_force, "N",
-                  "force on the whole set per component, distributed in proportion to the volume"),
+                  "force on the whole set per component, distributed in proportion to the volumes "
+                  "of the points"),
        load_value(Kind::gravity, "m/s2",
-                  "acceleration per component, multiplied by `material.density`; layers have no "
-                  "weight unless `set` names them"),
+                  "acceleration per component. It is multiplied by `material.density`. Layers have "
+                  "no weight unless `set` names them"),
        load_value(Kind::traction, "Pa",
-                  "force per area per component on a flat part of the boundary, or on facets of "
-                  "a mesh; its direction stays fixed; on a lattice or mesh"),
+                  "force per area per component on a flat part of the boundary, or on facets of a "
+                  "mesh. Its direction is fixed. For a lattice or a mesh"),
        K("pressure", pressure, scalar_field("Pa"),
-         "pressure on the exposed faces of the cells of the set's points, or of a side; it follows "
-         "the faces as they deform, and pushes if it is positive; on a lattice or mesh")
+         "pressure on the exposed faces of the cells of the set's points, or of a side. It follows "
+         "the faces as they deform. Positive values push. For a lattice or a mesh")
            .then([](auto&, auto& load) { load.kind = Kind::pressure; })
            .written_if([](auto& load, auto&) { return load.kind == Kind::pressure; })
            .one_of()
            .on_ranks(),
        K("stress", &Spec::stress, stress_components(),
-         "model `lps`: stress of the surroundings, [xx, yy, xy] or [xx, yy, zz, xy, yz, xz]; it "
-         "loads the surface by its traction, the stress times the outward normal")
+         "model `lps`: stress outside the surface, [xx, yy, xy] or [xx, yy, zz, xy, yz, xz]. It "
+         "loads the surface with the traction stress · outward normal")
            .then([](auto&, auto& load) { load.kind = Kind::stress; })
            .written_if([](auto& load, auto&) { return load.kind == Kind::stress; })
            .one_of()
@@ -119,11 +120,11 @@ Table<EigenstrainSpecification> eigenstrain_keys() {
   using Spec = EigenstrainSpecification;
   using K = Key<Spec>;
   return {"eigenstrain",
-          {K("set", &Spec::set, known_set(), "set that is strained")
+          {K("set", &Spec::set, known_set(), "set with the strain")
                .written_if([](auto& strained, auto&) { return !strained.set.empty(); })
                .default_words("all points"),
            K("strain", &Spec::strain, scalar_field("1"),
-             "strain that a part would have if nothing held it, the same in all directions: its "
+             "strain that a part would have if it were not held, the same in all directions: its "
              "length relative to that in the reference, minus 1")
                .moreover("above −1")
                .required()}};
@@ -142,8 +143,8 @@ Table<Eigenstrains> temperature_keys() {
   };
   return {"temperature",
           {K("change", change, scalar_field("K"),
-             "change of the temperature from that of the reference; with "
-             "`material.thermal_expansion` it gives all points an eigenstrain α ΔT")
+             "change of the temperature from the reference. With `material.thermal_expansion` all "
+             "points get the eigenstrain α ΔT")
                .written_if([](auto& of, auto&) { return of.temperature_change.has_value(); })
                .default_words("no change; required in the table")}};
 }
@@ -159,8 +160,8 @@ Table<ControlTerm> control_keys() {
       "control",
       {K("set", &ControlTerm::set, known_set(), "set whose mean displacement is taken").required(),
        K("weights", &ControlTerm::weights, coordinates(""),
-         "weights of the mean displacement's components; the weighted displacements of all these "
-         "tables add up to the controlled one")
+         "weights of the mean displacement's components. The controlled displacement is the sum of "
+         "the weighted displacements of all these tables")
            .moreover("not all zero")
            .required()}};
 }

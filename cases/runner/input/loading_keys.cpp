@@ -83,7 +83,7 @@ Table<LoadingSpecification> loading_keys() {
   using Spec = LoadingSpecification;
   using K = Key<Spec>;
   constexpr const char* for_steps =
-      "does not go with solver.mode = \"dynamics\", where [loading] has only tables over time";
+      "is not allowed with solver.mode = \"dynamics\", where [loading] has only tables over time";
   const auto moves = [](auto&, auto& from) { return from.dynamics.is_asked_for; };
   Table<Spec> keys{"loading",
                    {K("steps", &Spec::steps, integer(1, 1'000'000),
@@ -103,14 +103,12 @@ Table<LoadingSpecification> loading_keys() {
         return loading.tables.size() > k ? loading.tables[k] : none;
       }
     };
-    K key(
-        load_table_key(k), member, load_table(),
-        k == 0
-            ? "values of `load` that the path goes through, linearly from one to the next: it may "
-              "rise, fall and rest; with `[[control]]` values of the controlled displacement in m; "
-              "in "
-              "mode `dynamics` pairs of a time in s and the value of `load` then"
-            : "likewise for a further load parameter, `" + parameter + "`");
+    K key(load_table_key(k), member, load_table(),
+          k == 0
+              ? "values of `load` along the path, linear from one to the next. They may rise, fall "
+                "and stay constant. With `[[control]]`: values of the controlled displacement in "
+                "m. In mode `dynamics`: pairs of a time in s and the value of `load` at it"
+              : "likewise for a further load parameter, `" + parameter + "`");
     key.written_if([k](auto& loading, auto&) { return loading.tables.size() > k; })
         .default_words(k == 0 ? "`[0, 1]`; required with `[[control]]`" : "no `" + parameter + "`")
         .extends();
@@ -122,12 +120,12 @@ Table<LoadingSpecification> loading_keys() {
   const auto takes_steps = [](auto&, auto& from) { return from.solver.mode != Mode::path; };
   for (K key :
        {K("adaptive", &Spec::adaptive, boolean(),
-          "whether a step that does not converge is cut, after which steps grow again; otherwise "
-          "it ends the run")
+          "whether a step that does not converge is cut; steps then grow again. Otherwise such a "
+          "step ends the run")
             .extends()
             .on_ranks(),
         K("smallest_step", &Spec::smallest_step, between(1e-12, 1.0),
-          "smallest step of the stage (the load factor, without a table); the run ends when it "
+          "smallest step of the stage (the load factor, without a table). The run ends when it "
           "needs a smaller one")
             .extends()
             .moreover("at most the first step")
@@ -152,24 +150,23 @@ Table<LoadingSpecification> loading_keys() {
             .moreover("at least the first step")
             .on_ranks(),
         K("max_broken_bonds", &Spec::max_broken_bonds, count_from(0, "bonds"),
-          "mode `newton`: most bonds that may break in one step; a step with more is cut. 0: no "
-          "limit")
+          "mode `newton`: largest number of bonds that may break in one step. A step with more is "
+          "cut. 0: no limit")
             .written_if(takes_steps)
             .extends()
             .on_ranks(),
         K("stop_below", &Spec::stop_below, between(0.0, 1.0),
-          "share of the largest support reaction so far: the run is complete when the largest "
-          "reaction falls below this share of it, as that of a specimen that tears. 0: only the "
-          "load ends the run")
+          "the run is complete when the largest support reaction falls below this share of its "
+          "maximum so far, as when a specimen tears. 0: only the end of the load ends the run")
             .extends()
             .on_ranks(),
         K("event_tolerance", in(&Spec::events, &EventOptions::tolerance), between(0.0, 0.5),
-          "mode `path`: bonds whose utilisation is within this share of the largest one break with "
-          "it; 0: only bonds that tie with it")
+          "mode `path`: bonds whose utilisation is within this share of the largest one break "
+          "together with it. 0: only bonds with equal utilisation")
             .written_if(follows_events),
         K("teeth", &Spec::teeth, integer(1, 1000),
-          "mode `path`: most teeth of the saw-tooth that stands for a law of damage whose force "
-          "falls smoothly")
+          "mode `path`: largest number of teeth of the saw-tooth law that replaces a law of damage "
+          "with smooth softening")
             .written_if(follows_events)}) {
     key.unless(moves, for_steps);
     keys.add(key);
@@ -193,8 +190,8 @@ Table<InitialSpecification> initial_keys() {
                .written_if([](auto& initial, auto&) { return !initial.set.empty(); })
                .default_words("all points"),
            K("displacement", &Spec::displacement, components_of_place("m"),
-             "displacement at time 0, per component; where a support prescribes another value, the "
-             "support wins"),
+             "displacement at time 0, per component. Where a support prescribes another value, "
+             "that value is used"),
            K("velocity", &Spec::velocity, components_of_place("m/s"),
              "velocity at time 0, per component, where no support prescribes the displacement")}};
 }
@@ -255,7 +252,7 @@ Table<DynamicsSpecification> dynamics_keys() {
        K("scheme", &Spec::scheme,
          choice<MotionScheme>(
              {{"verlet", MotionScheme::verlet}, {newmark_name, MotionScheme::newmark}}),
-         "`\"verlet\"`: explicit steps; `\"newmark\"`: implicit steps, each of which searches an "
+         "`\"verlet\"`: explicit steps; `\"newmark\"`: implicit steps, each of which finds an "
          "equilibrium with inertia by Newton's method, for motions that are slow compared with the "
          "stable step")
            .early(),
@@ -263,24 +260,24 @@ Table<DynamicsSpecification> dynamics_keys() {
          choice<MotionStart>(
              {{"rest", MotionStart::rest}, {equilibrium_name, MotionStart::equilibrium}}),
          "`\"rest\"`: undeformed, except for initial displacements; `\"equilibrium\"`: in "
-         "equilibrium with supports and loads at t = 0, which is searched by Newton's method and "
-         "may damage nothing")
+         "equilibrium with supports and loads at t = 0, which Newton's method finds; it must not "
+         "damage anything")
            .early(),
        K("spectral_radius", &Spec::spectral_radius, between(0.0, 1.0),
-         "implicit steps: factor that a step leaves of the highest frequencies. 1: average "
+         "implicit steps: factor by which a step multiplies the highest frequencies. 1: average "
          "acceleration, which conserves the energy; below 1: the generalised alpha method, which "
          "damps frequencies that the steps do not resolve")
            .written_if(is_implicit),
        K("time_step", &Spec::time_step, positive("s"),
-         "constant time step. Explicit: the run ends where it is longer than the stable step. "
+         "constant time step. Explicit: the run ends if it is longer than the stable step. "
          "Implicit: a step that does not converge is halved, down to a thousandth. The last step "
-         "is shorter where it has to be")
+         "is shorter if necessary")
            .written_if(is_given)
            .early()
            .moreover("explicit: at most the stable step")
            .default_words("a share of the stable step"),
        K("step_share", &Spec::step_share, between(1e-6, 0.99),
-         "time step as a share of the stable one, which is found anew as the stiffness changes")
+         "time step as a share of the stable one, which is updated as the stiffness changes")
            .unless(has_no_share, "is for explicit steps without a time_step; give time_step alone"),
        K("history_every", &Spec::history_every, count_from(1, "time steps"),
          "number of steps from one row of the history to the next")
@@ -299,10 +296,11 @@ void check_dynamics(const Entry& at, const Case& result) {
     return;
   }
   refuse("crack_tip",
-         "does not go with solver.mode = \"dynamics\": its integrals leave out the inertia");
+         "is not allowed with solver.mode = \"dynamics\", because its integrals leave out the "
+         "inertia");
   for (const char* key : {"control", "relaxation", "arc_length"}) {
     refuse(key,
-           "does not go with solver.mode = \"dynamics\", whose supports and loads depend on the "
+           "is not allowed with solver.mode = \"dynamics\", whose supports and loads depend on the "
            "time t; give their values as expressions of t");
   }
   const TomlTable solver = at.from.table("solver");
@@ -324,8 +322,8 @@ void check_dynamics(const Entry& at, const Case& result) {
                           "relative_tolerance", "linear_tolerance", "max_iterations"}) {
     if (solver.has(key)) {
       solver.refuse(key,
-                    "has no effect on explicit time steps, which search no equilibrium; it is for "
-                    "dynamics.scheme = \"newmark\" or dynamics.start = \"equilibrium\"");
+                    "has no effect on explicit time steps, which do not search for an equilibrium; "
+                    "it is for dynamics.scheme = \"newmark\" or dynamics.start = \"equilibrium\"");
     }
   }
 }

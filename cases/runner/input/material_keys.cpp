@@ -38,8 +38,8 @@ void require_law(const Entry& at, DamageSpecification&) {
                           "peak", "hardening", "rate", "stretches", "forces"}) {
     if (!at.from.has(key)) continue;
     at.from.refuse(key,
-                   "needs a law in the same table, such as law = \"linear\"; without a law there "
-                   "is no damage, which law = \"none\" states");
+                   "needs a law in the same table, such as law = \"linear\"; write law = \"none\" "
+                   "for no damage");
   }
 }
 
@@ -80,25 +80,25 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "`\"none\"`: no damage, and the other keys of the table have no effect; "
          "`\"critical_stretch\"`: a bond is undamaged up to `critical` and then broken; "
          "`\"tanh\"`: softening from `onset` to `critical` as published in [ADAPT], with jumps of "
-         "(1 − tanh `rate`)/2 at both ends; `\"tanh_continuous\"`: the same law, rescaled so that "
-         "it does not jump; `\"linear\"`: the force falls linearly from `onset` to zero at "
-         "`critical`; `\"exponential\"`: it falls exponentially, without a jump at `critical`; "
-         "`\"blended\"`: it rises on a lower slope from `onset` to `peak`, and then falls "
-         "linearly; `\"table\"`: the force is the curve of `stretches` and `forces`; "
-         "`\"energy_density\"`: a point fails at once and for good where its energy "
-         "density exceeds `fracture_energy` / (2 δ); this law is for `kinematics = \"linear\"`, "
-         "and with `solver.operator = \"fft\"` for all models")
+         "(1 − tanh `rate`)/2 at both ends; `\"tanh_continuous\"`: the same law, rescaled to have "
+         "no jumps; `\"linear\"`: the force falls linearly from `onset` to zero at `critical`; "
+         "`\"exponential\"`: it falls exponentially, without a jump at `critical`; `\"blended\"`: "
+         "it rises on a lower slope from `onset` to `peak`, and then falls linearly; `\"table\"`: "
+         "the force is the curve of `stretches` and `forces`; `\"energy_density\"`: a point fails "
+         "at once and irreversibly where its energy density exceeds `fracture_energy` / (2 δ). "
+         "This law is for `kinematics = \"linear\"`, and with `solver.operator = \"fft\"` for all "
+         "models")
            .early(),
        K("fracture_energy", &Spec::fracture_energy, positive("J/m2"),
          "$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` follows "
-         "from it. `cpd` takes it at horizon ratios up to 12 in 2D, 3.2 in 3D")
+         "from it. `cpd` accepts it at horizon ratios up to 12 in 2D, 3.2 in 3D")
            .unless(is_whole, "")
            .by_rules(damage_rules)
            .early(),
        K("fracture_toughness", &Spec::fracture_toughness, positive("Pa*sqrt(m)"),
-         "$K_{Ic}$, another way to give `fracture_energy`, $G_c = K_{Ic}^2/E'$, with $E' = E$ in "
-         "plane stress (and with `cpd` in 2D) and $E/(1 - \\nu^2)$ in plane strain and 3D, by the "
-         "moduli of the model")
+         "$K_{Ic}$, can be given instead of `fracture_energy`: $G_c = K_{Ic}^2/E'$, with $E' = E$ "
+         "in plane stress (and with `cpd` in 2D) and $E/(1 - \\nu^2)$ in plane strain and 3D, with "
+         "the moduli of the model")
            .unless(is_whole, "")
            .unless(in_dimension<1>, "is for dimension 2 and 3; give fracture_energy")
            .by_rules(damage_rules)
@@ -106,9 +106,9 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
        K("strength", &Spec::strength, positive("Pa"),
          "$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the "
          "mean over directions ([theory](theory.md#strength)); `onset` follows from it, for "
-         "`blended` the `peak`, for `critical_stretch` the value of `critical`. `cpd` takes it at "
-         "the horizon ratios of `fracture_energy`, in 3D at smaller ones, where it does not take "
-         "minutes")
+         "`blended` the `peak`, for `critical_stretch` the value of `critical`. `cpd` accepts it "
+         "at the horizon ratios of `fracture_energy`, in 3D only at smaller ones, where the "
+         "computation takes less than minutes")
            .unless(is_whole, "")
            .by_rules(damage_rules)
            .early(),
@@ -145,22 +145,22 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
            .unless(is_whole, "")
            .by_rules(damage_rules),
        K("rate", &Spec::rate, between(0.1, 50.0, "1"),
-         "tanh laws: $\\beta$, how strongly the softening is concentrated midway between the two "
-         "stretches; `exponential`: how much more steeply the force falls at first")
+         "tanh laws: $\\beta$; a larger value concentrates the softening midway between the two "
+         "stretches. `exponential`: a larger value makes the force fall more steeply at first")
            .unless(is_whole, "")
            .by_rules(damage_rules),
        K("stretches", &Spec::stretches, numbers_of_curve(),
-         "`table`: stretches, ascending; the first ends the elastic part, at the last one the bond "
-         "breaks")
+         "`table`: stretches, ascending. The first one ends the elastic part. At the last one the "
+         "bond breaks")
            .unless(is_whole, "")
            .by_rules(damage_rules)
            .written_if([](auto& damage, auto&) { return !damage.stretches.empty(); })
            .moreover("1e-9 to 1000")
            .default_words("required with law `table`"),
        K("forces", &Spec::forces, numbers_of_curve(),
-         "`table`: force of a bond at each of the `stretches` over its constant $c$, so that the "
-         "first is the first stretch; linear in between. Force over stretch must not grow. The "
-         "last may be 0")
+         "`table`: force of a bond at each of the `stretches`, divided by its constant $c$, and "
+         "linear in between. So the first force equals the first stretch. Force over stretch must "
+         "not grow. The last force may be 0")
            .unless(is_whole, "")
            .by_rules(damage_rules)
            .written_if([](auto& damage, auto&) { return !damage.forces.empty(); })
@@ -191,24 +191,25 @@ Table<FibreSpecification> fibre_keys(const std::string& material) {
       material + ".fibre",
       {K("angle", &Spec::angle, between(-360.0, 360.0, "degrees"),
          "2D: angle of the fibres against the x axis, towards y")
-           .unless(in_dimension<3>, "is for dimension 2; 3D has a direction")
+           .unless(in_dimension<3>, "is for dimension 2; in 3D give direction")
            .required("required in 2D"),
        K("direction", &Spec::direction, coordinates("1"),
          "3D: direction of the fibres, a vector of any length")
-           .unless(in_dimension<2>, "is for dimension 3; 2D has an angle")
+           .unless(in_dimension<2>, "is for dimension 3; in 2D give angle")
            .moreover("not all zero")
            .required("required in 3D"),
        K("transverse_modulus", &Spec::transverse_modulus, positive("Pa"),
          "Young's modulus $E_2$ across the fibres; `youngs_modulus` is $E_1$, along them")
            .required(),
        K("shear_modulus", &Spec::shear_modulus, positive("Pa"),
-         "$G$ of planes that contain the fibres; Poisson's ratio follows from it")
+         "$G$ in planes that contain the fibres. Poisson's ratio follows from it")
            .moreover("such that no bond has a negative constant")
            .default_words("$\\sqrt{E_1E_2}/(2 + 2\\nu)$ with the $\\nu$ of isotropic bonds, 1/3 or "
                           "1/4"),
        K("transverse_critical", &Spec::transverse_critical, between(1e-9, 1e3, "1"),
-         "`critical` of bonds across the fibres; that of `[material.damage]` then holds along "
-         "them. In between, `critical` varies with the square of the cosine, and `onset` with it")
+         "`critical` of bonds across the fibres. `critical` of `[material.damage]` then holds "
+         "along the fibres. In between, `critical` varies with the square of the cosine, and "
+         "`onset` in proportion to it")
            .default_words("as along the fibres")}};
 }
 
@@ -217,7 +218,7 @@ Table<ScatterSpecification> scatter_keys(const std::string& material) {
   using K = Key<Spec>;
   constexpr auto field = [](auto& scatter) -> auto& { return scatter.field; };
   const auto is_given = [](auto& scatter, auto&) { return !scatter.factor.empty(); };
-  const char* const is_random = "is for a random factor; leave it out with factor";
+  const char* const is_random = "is for a random factor; leave it out if factor is given";
   return {material + ".scatter",
           {K("of", &Spec::of,
              choice<Spec::Quantity>({{"stiffness", Spec::Quantity::stiffness},
@@ -226,7 +227,7 @@ Table<ScatterSpecification> scatter_keys(const std::string& material) {
              "stretches of the law of damage")
                .required(),
            K("factor", &Spec::factor, field_of_place("1"),
-             "the factor at each point, in the place of a random one; that of a bond is the mean "
+             "the factor at each point, instead of a random one. The factor of a bond is the mean "
              "of its ends")
                .written_if(is_given)
                .moreover("from 1e-6 to 1e6 at each point")
@@ -237,12 +238,12 @@ Table<ScatterSpecification> scatter_keys(const std::string& material) {
              "distribution of the factor, whose mean is 1")
                .unless(is_given, is_random),
            K("weibull_modulus", in(field, &WeibullField::modulus), between(1.0, 1e3, "1"),
-             "shape $m$: the larger, the less scatter")
+             "shape $m$; a larger value gives less scatter")
                .unless(is_given, is_random)
                .required("required without `factor`"),
            K("correlation_length", in(field, &WeibullField::correlation_length),
              number({0.0, 1e30, "must be 0 or a positive number [m]"}, "0 or positive", "m"),
-             "length $\\ell$ over which the field changes; 0: every point has a value of its own")
+             "length $\\ell$ over which the field changes; 0: the points have independent values")
                .unless(is_given, is_random),
            K("seed", in(field, &WeibullField::seed),
              count_from(0, "", std::numeric_limits<std::int64_t>::max()),
@@ -290,7 +291,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
       return *material.fibre;
     }
   };
-  const std::string with_moduli = "goes with youngs_modulus, not with c1";
+  const std::string with_moduli = "needs youngs_modulus and cannot be combined with c1";
   return {
       name,
       {K("model", &Spec::model, choice_of_models(),
@@ -303,7 +304,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "lengths](theory.md#materials-of-convolutions-at-finite-deformation), at any deformation, "
          "like `bond` at small strains; `\"correspondence\"`: a correspondence material of St. "
          "Venant and Kirchhoff of any Poisson ratio, at any deformation, dimension 2 and 3. The "
-         "last two are summed by `solver.operator = \"fft\"` alone")
+         "last two need `solver.operator = \"fft\"`")
            .then([name](auto& at, auto& material) {
              const bool tells_body = name == "material" || (!at.so_far.material.has_constants() &&
                                                             at.so_far.regions.empty());
@@ -319,18 +320,18 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .on_ranks(),
        K("plane", &Spec::plane,
          choice<PlaneState>({{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}),
-         "state of a plane body, dimension 2 only (`cpd` in 2D is purely two-dimensional and has "
-         "neither)")
+         "plane stress or plane strain, dimension 2 only (`cpd` in 2D is purely two-dimensional "
+         "and has neither)")
            .unless(without(Option::plane), is_for(Option::plane))
            .unless(in_dimension<1>, "is for dimension 2 only")
            .unless(in_dimension<3>, "is for dimension 2 only")
            .on_ranks(),
        K("kinematics", &Spec::kinematics,
          choice<Kinematics>({{"finite", Kinematics::finite}, {"linear", Kinematics::linear}}),
-         "stretch of a `bond`. `\"finite\"`: by its length, at any deformation; `\"linear\"`: by "
-         "the displacements along it, for small ones, so that forces are linear. `\"linear\"` goes "
-         "without eigenstrains, with `potential = \"harmonic\"` and with damage by "
-         "`energy_density` alone. `lps` is always linear")
+         "stretch of a `bond`. `\"finite\"`: from its length, for any deformation; `\"linear\"`: "
+         "from the displacements along it, for small displacements, so that forces are linear. "
+         "`\"linear\"` is only for `potential = \"harmonic\"`, damage by `energy_density`, and no "
+         "eigenstrains. `lps` is always linear")
            .then(make_linear_if_lps)
            .written_if(
                [](auto& material, auto&) { return takes(material.model, Option::kinematics); })
@@ -339,8 +340,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "influence function $\\omega(r/\\delta)$: [GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, "
          "$e^{-(r/\\delta)^2}$, or $\\delta/r$. The force density of a bond is $c\\,\\omega s$; "
          "constants, moduli and fracture energy account for it. `cpd`: a triangle or tetrahedron "
-         "has the product of its sides' functions, and constants of the lattice. `lps` as an "
-         "energy: the kernel K(r); by collocation the inverse one alone")
+         "has the product of its sides' functions, and the constants are those of the lattice. "
+         "`lps` as an energy: the kernel K(r); by collocation only `inverse`")
            .default_words("`\"constant\"`; `\"inverse\"` with `lps`")
            .on_ranks(),
        K("youngs_modulus", &Spec::youngs_modulus, positive("Pa"), "Young's modulus, for all models")
@@ -361,9 +362,9 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
            .on_ranks(),
        K("stabilisation", &Spec::stabilisation, positive("-"),
          "`correspondence`: stiffness of the "
-         "[springs](theory.md#materials-of-convolutions-at-finite-deformation) that resist motions "
-         "the deformation gradients do not see (zero-energy modes), relative to bonds of the same "
-         "bulk modulus")
+         "[springs](theory.md#materials-of-convolutions-at-finite-deformation) against zero-energy "
+         "modes, which do not change the deformation gradients; relative to bonds of the same bulk "
+         "modulus")
            .unless(without(Option::stabilisation), is_for(Option::stabilisation)),
        K("c1", &Spec::c1, positive("N/m6", 1e200), "`cpd`: one-neighbour constant")
            .unless(without(Option::constants), is_for(Option::constants))
@@ -377,7 +378,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
                [](auto& material, const Case& so_far) {
                  return material.youngs_modulus && so_far.dimension == 2;
                },
-               "follows from youngs_modulus and poisson_ratio in 2D; give c1 for a free c2")
+               "follows from youngs_modulus and poisson_ratio in 2D; to choose c2, give c1 instead "
+               "of the moduli")
            .moreover("a negative one is refused with damage, and where it makes the body "
                      "[unstable at rest](theory.md#stability-at-rest)")
            .on_ranks(),
@@ -385,7 +387,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "`cpd`: three-neighbour constant, 3D; it follows from `youngs_modulus` if that is given")
            .unless(without(Option::constants), is_for(Option::constants))
            .unless(has_moduli,
-                   "follows from youngs_modulus and poisson_ratio; give c1 for a free c3")
+                   "follows from youngs_modulus and poisson_ratio; to choose c3, give c1 instead "
+                   "of the moduli")
            .then([](auto& at, auto& material) {
              if (at.so_far.dimension == 2 && material.c3 != 0.0)
                at.refuse("must be 0 in 2D: three neighbours of a point in a plane span no volume");
@@ -395,11 +398,12 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
        K("calibration", &Spec::calibration,
          choice<Calibration>(
              {{"lattice", Calibration::lattice}, {"continuum", Calibration::continuum}}),
-         "with `youngs_modulus`: where the constants reproduce the moduli. `\"lattice\"`: in the "
+         "with `youngs_modulus`: how the constants follow from the moduli. `\"lattice\"`: by the "
          "sums of this lattice with their corrections (`bond`: in the mean over all directions); "
-         "`\"continuum\"`: in the integrals")
+         "`\"continuum\"`: by integrals")
            .unless(has_constants, with_moduli)
-           .unless(has_micromodulus, "goes with youngs_modulus, not with micromodulus")
+           .unless(has_micromodulus,
+                   "needs youngs_modulus and cannot be combined with micromodulus")
            .unless(without(Option::calibration), is_for(Option::calibration))
            .default_words("`\"lattice\"` with `cpd`, `\"continuum\"` with `bond`")
            .on_ranks(),
@@ -407,7 +411,7 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "coefficient α of linear expansion, for `[temperature]`")
            .on_ranks(),
        K("density", &Spec::density, positive("kg/m3"),
-         "mass density, for gravity and mode `dynamics`; dynamic relaxation has a pseudo density "
+         "mass density, for gravity and mode `dynamics`. Dynamic relaxation has a pseudo density "
          "of its own")
            .on_ranks(),
        K("damage", &Spec::damage, damage_keys(name), "table `[material.damage]`")
@@ -505,14 +509,14 @@ Table<InterfaceSpecification> interface_keys() {
          choice<InterfaceRule>({{"harmonic", InterfaceRule::harmonic},
                                 {"arithmetic", InterfaceRule::arithmetic},
                                 {"weaker", InterfaceRule::weaker}}),
-         "how the constants of a bond between them, or of an interaction of points of both, follow "
-         "from those of its points, and likewise the stretches of like laws of damage: their "
-         "harmonic or arithmetic mean, or the smallest value")
+         "rule for the constants of a bond or other interaction between points of the two "
+         "materials: the harmonic or arithmetic mean of the values of its points, or the smallest "
+         "value. The stretches of damage laws of the same kind follow by the same rule")
            .unless([](auto& interface, auto&) { return interface.material.has_value(); },
                    "can't be given together with material; give one of them"),
        K("material", own, material_of_body_keys("interface.material"),
-         "table `[interface.material]`, with the keys of [`[material]`](#material) but "
-         "`density` and `scatter`: constants and damage of its own")
+         "table `[interface.material]`, with the keys of [`[material]`](#material) except "
+         "`density` and `scatter`: constants and damage of the interface")
            .written_if([](auto& interface, auto&) { return interface.material.has_value(); })
            .early()
            .otherwise([](auto&, auto&) {}, "none: the `rule` holds")}};

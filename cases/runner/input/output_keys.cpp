@@ -56,8 +56,8 @@ Table<OutputSpecification> output_keys() {
            .extends()
            .on_ranks(),
        K("count_cracks", &Spec::count_cracks, boolean(),
-         "whether bonds that a `[[crack]]` has cut count as lost in `damage` and `max_damage`, "
-         "so that the crack shows in the pictures from the start")
+         "whether `damage` and `max_damage` count the bonds that a `[[crack]]` has cut. If they "
+         "do, pictures show the crack from the start")
            .on_ranks(),
        K("stress", &Spec::stress, boolean(),
          "whether strain and stress are among the fields: deformation gradient, strain, first "
@@ -116,41 +116,41 @@ void check_expected(const Entry& at, const ProbeSpecification& probe) {
 Table<CrackTipSpecification> crack_tip_keys() {
   using Spec = CrackTipSpecification;
   using K = Key<Spec>;
-  return {
-      "crack_tip",
-      {K("name", &Spec::name, name(), "name with which its columns begin")
-           .then([](auto& at, auto& tip) {
-             for (const auto& other : at.so_far.crack_tips)
-               if (other.name == tip.name) at.refuse("another crack tip has this name");
-           })
-           .moreover("no other crack tip has it")
-           .required(),
-       K("at", &Spec::at, coordinates(), "position of the tip; 3D: any place on its straight front")
-           .required(),
-       K("direction", &Spec::direction, coordinates(""),
-         "direction in which the crack would go on, a vector of any length")
-           .moreover("not all zero")
-           .required(),
-       K("front", &Spec::front, coordinates(""),
-         "3D: direction of the front, a vector of any length; the front goes through the whole "
-         "body")
-           .moreover("at a right angle to `direction`")
-           .unless(in_dimension<2>, "is for dimension 3")
-           .default_words("`[0, 0, 1]`"),
-       K("inner", &Spec::inner, positive("m"), "inner radius of the ring of the integrals")
-           .moreover("at least 2 horizons")
-           .written_if([](auto& tip, auto&) { return tip.inner > 0.0; })
-           .default_words("2 horizons"),
-       K("outer", &Spec::outer, positive("m"), "outer radius of the ring")
-           .moreover("at least a horizon more than `inner`")
-           .written_if([](auto& tip, auto&) { return tip.outer > 0.0; })
-           .default_words("4 horizons, or twice `inner`"),
-       K("cut", &Spec::cut, positive("m"),
-         "length of a cut ahead of the tip, which also gives energy release rates; every step then "
-         "solves one more system of equations")
-           .moreover("at least a horizon")
-           .written_if([](auto& tip, auto&) { return tip.cut > 0.0; })
-           .default_words("none")}};
+  return {"crack_tip",
+          {K("name", &Spec::name, name(), "first part of the names of its columns")
+               .then([](auto& at, auto& tip) {
+                 for (const auto& other : at.so_far.crack_tips)
+                   if (other.name == tip.name) at.refuse("another crack tip has this name");
+               })
+               .moreover("no other crack tip has it")
+               .required(),
+           K("at", &Spec::at, coordinates(),
+             "position of the tip; 3D: any position on its straight front")
+               .required(),
+           K("direction", &Spec::direction, coordinates(""),
+             "direction in which the crack would continue, a vector of any length")
+               .moreover("not all zero")
+               .required(),
+           K("front", &Spec::front, coordinates(""),
+             "3D: direction of the front, a vector of any length. The front extends through the "
+             "whole body")
+               .moreover("at a right angle to `direction`")
+               .unless(in_dimension<2>, "is for dimension 3")
+               .default_words("`[0, 0, 1]`"),
+           K("inner", &Spec::inner, positive("m"), "inner radius of the ring of the integrals")
+               .moreover("at least 2 horizons")
+               .written_if([](auto& tip, auto&) { return tip.inner > 0.0; })
+               .default_words("2 horizons"),
+           K("outer", &Spec::outer, positive("m"), "outer radius of the ring")
+               .moreover("at least a horizon more than `inner`")
+               .written_if([](auto& tip, auto&) { return tip.outer > 0.0; })
+               .default_words("4 horizons, or twice `inner`"),
+           K("cut", &Spec::cut, positive("m"),
+             "length of a cut ahead of the tip, from which energy release rates follow. Every step "
+             "then solves one more system of equations")
+               .moreover("at least a horizon")
+               .written_if([](auto& tip, auto&) { return tip.cut > 0.0; })
+               .default_words("none")}};
 }
 
 Table<ProbeSpecification> probe_keys() {
@@ -172,21 +172,22 @@ Table<ProbeSpecification> probe_keys() {
            .moreover("no other probe has it")
            .required()
            .early(),
-       K("set", &Spec::set, known_set(), "set over whose points the value is taken")
+       K("set", &Spec::set, known_set(), "set whose points give the value")
            .written_if([](auto& probe, auto&) { return !probe.set.empty(); })
            .one_of(),
-       K("at", &Spec::at, coordinates(), "place whose nearest point gives the value")
-           .unless(is_whole, "is for a field that every point has")
+       K("at", &Spec::at, coordinates(), "position; the nearest point gives the value")
+           .unless(is_whole, "is for a field with a value at every point")
            .one_of(),
        K("from", &Spec::from, coordinates(),
-         "start of a line; the points within half a spacing of the line make a table, "
+         "start of a line. The points within half a spacing of the line are written to "
          "`line_NAME.csv`")
-           .unless(is_whole, "is for a field that every point has")
+           .unless(is_whole, "is for a field with a value at every point")
            .one_of(),
        K("field", &Spec::field, one_of(quantities()),
-         "displacement, opening, length and place in m, area in m², force in N, energy densities "
-         "in J/m³, velocity in m/s, stress in Pa, angles in degrees, work of fracture and crack "
-         "resistance in J/m²; `stress` is the Cauchy stress, `strain` the Green–Lagrange strain")
+         "field. Units: displacement, opening, length and position in m, area in m², force in N, "
+         "energy densities in J/m³, velocity in m/s, stress in Pa, angles in degrees, work of "
+         "fracture and crack resistance in J/m²; `stress` is the Cauchy stress, `strain` the "
+         "Green–Lagrange strain")
            .then([](auto& at, auto& probe) {
              if (probe.field == "poisson_ratio" && at.so_far.dimension == 1)
                at.refuse("there is no Poisson's ratio in dimension 1");
@@ -220,7 +221,7 @@ Table<ProbeSpecification> probe_keys() {
          "component of a vector (`x`), of a tensor (`xy`; for a stress or a deformation gradient "
          "first the component, then the reference direction) or of `principal_stress` (`1`: the "
          "largest)")
-           .unless(is_whole, "is for a field that every point has")
+           .unless(is_whole, "is for a field with a value at every point")
            .default_words(
                "all components of a vector; for other fields required with `set` and `at`")
            .written_if([](auto& probe, auto&) { return !probe.component.empty(); })

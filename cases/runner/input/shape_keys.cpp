@@ -32,13 +32,13 @@ Key<Rectangular> upper_corner() {
 }
 
 constexpr const char* meaning_of_file =
-    "polygon (in place of `vertices`), image, stl: file with corners x, y, with a PNG or TIFF "
-    "picture, with an STL surface; its path is relative to the case file's folder";
+    "polygon (instead of `vertices`): file with corners x, y; image: PNG or TIFF picture; stl: STL "
+    "surface. The path is relative to the case file's folder";
 
 template <class FromFile>
 Key<FromFile> scale_of_file() {
   return Key<FromFile>("scale", &FromFile::scale, positive("m"),
-                       "polygon, stl: length that 1 in the file stands for")
+                       "polygon, stl: length of 1 in the file")
       .otherwise(
           [](auto& shape, auto& from) { shape.scale = unit_system(from.units).length.size(); },
           "1, or the `length` of `[units]`");
@@ -104,7 +104,7 @@ const Table<Polygon>& keys_of(const Polygon&) {
   static const Table<Polygon> table{
       "set.shape.polygon",
       {K("vertices", &Polygon::vertices, pairs(),
-         "polygon: corners in order; the last is joined to the first")
+         "polygon: corners in order. The last corner is joined to the first")
            .moreover("around an area")
            .written_if([](auto& polygon, auto&) { return polygon.file.empty(); })
            .one_of(),
@@ -131,7 +131,7 @@ const Table<PixelImage>& keys_of(const PixelImage&) {
       {K("file", &PixelImage::file, file_beside_the_case(), meaning_of_file).required(),
        lower_corner<PixelImage>(), upper_corner<PixelImage>(),
        K("grey", &PixelImage::grey, range_of_numbers(),
-         "image: least and largest value of grey of the pixels that are inside, 0 (black) to 255, "
+         "image: smallest and largest grey value of the pixels inside the shape, 0 (black) to 255, "
          "or to 65535 in files with 16 bits")
            .required()},
       {},

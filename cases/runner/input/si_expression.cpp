@@ -84,8 +84,8 @@ void check_units(const Tokens& tokens, const std::optional<UnitOfValue>& of_valu
   throw InputError("", "",
                    "has a value that is " + words(*found) + "; must be " +
                        words(of_value->si.dimension) +
-                       ". Beside a unit, x, y, z and spacing are lengths, t is a time, and a plain "
-                       "number has no unit");
+                       ". In an expression with units x, y, z and spacing are lengths, t is a "
+                       "time, and a plain number has no unit");
 }
 
 }  // namespace

@@ -50,13 +50,13 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
   if (solver.tangent != TangentStorage::matrix_free) return;
   if (!can_be_matrix_free({solver.linear, solver.preconditioner}))
     at.refuse(
-        "does not go with this solver.linear or solver.preconditioner, which need the stored "
+        "is not allowed with this solver.linear or solver.preconditioner, which need the stored "
         "tangent");
   if (!at.so_far.foundations.empty())
-    at.refuse("does not go with a [[foundation]], which needs the stored tangent");
+    at.refuse("is not allowed with a [[foundation]], which needs the stored tangent");
   for (const LoadSpecification& load : at.so_far.loads) {
     if (load.kind == LoadSpecification::Kind::pressure)
-      at.refuse("does not go with a [[load]] pressure, whose stiffness has to be stored");
+      at.refuse("is not allowed with a [[load]] pressure, whose stiffness has to be stored");
   }
 }
 
@@ -64,15 +64,15 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
 void check_fragments(const Entry& at, const SolverSpecification& solver) {
   if (solver.fragments == FragmentRemedy::remove && at.so_far.eigenstrains.are_there())
     at.refuse(
-        "does not go with eigenstrains or a temperature: a piece that has left the equations can't "
-        "grow or shrink; take \"hold\"");
+        "is not allowed with eigenstrains or a temperature: a piece that has left the equations "
+        "can't grow or shrink; take \"hold\"");
 }
 
 void check_stand_in(const Entry& at, const SolverSpecification& solver) {
   if (solver.elastic_horizon_ratio > 0.0 && !may_fail(at.so_far))
     at.refuse(
-        "is for bodies with damage: the stand-in replaces the body until damage begins, and "
-        "without damage it would replace it to the end");
+        "is for bodies with damage: the stand-in replaces the body until damage begins, so without "
+        "damage it would replace the body to the end");
   const auto* const points = std::get_if<PointSource>(&at.so_far.body);
   if (solver.elastic_horizon_ratio > 0.0 && points != nullptr && points->horizon.ratio > 0.0)
     at.refuse("gives the stand-in one horizon, but points.horizon gives every point its own");
@@ -104,11 +104,12 @@ Table<SolverSpecification> solver_keys() {
   return {
       "solver",
       {K("mode", &Spec::mode, mode(),
-         "`\"newton\"`: implicit throughout; `\"relaxation\"`: by dynamic relaxation throughout; "
-         "`\"adaptive\"`: implicit while no damage grows, by relaxation while it does; "
-         "`\"arc_length\"`: along the path itself, through limit points and bifurcations, without "
-         "damage; `\"path\"`: sequentially linear analysis, from one breaking bond to the next; "
-         "`\"dynamics\"`: the motion in time, by explicit or implicit steps")
+         "`\"newton\"`: all steps implicit; `\"relaxation\"`: all steps by dynamic relaxation; "
+         "`\"adaptive\"`: implicit steps while no damage grows, relaxation while it does; "
+         "`\"arc_length\"`: steps along the equilibrium path, through limit points and "
+         "bifurcations, without damage; `\"path\"`: sequentially linear analysis, from one "
+         "breaking bond to the next; `\"dynamics\"`: the motion in time, by explicit or implicit "
+         "steps")
            .extends()
            .on_ranks(),
        K("linear", &Spec::linear,
@@ -120,9 +121,9 @@ Table<SolverSpecification> solver_keys() {
                                {"lu", LinearMethod::lu},
                                {"bicgstab", LinearMethod::bicgstab}}),
          "solver of the linear systems ([linear-solvers.md](linear-solvers.md)); `\"auto\"` "
-         "chooses, says why, and falls back where it fails. `\"lu\"` and `\"bicgstab\"` are for "
-         "models whose tangent is not symmetric, `\"gmres\"` is for all models, the others are for "
-         "symmetric tangents")
+         "chooses one, reports why, and takes another one if it fails. `\"lu\"` and `\"bicgstab\"` "
+         "are for models whose tangent is not symmetric, `\"gmres\"` is for all models, the others "
+         "are for symmetric tangents")
            .written_if(searches)
            .extends()
            .then(check_linear)
@@ -167,9 +168,9 @@ Table<SolverSpecification> solver_keys() {
          "`\"bonds\"`: bond by bond; `\"fft\"`: by fast Fourier transforms, which store no bonds "
          "and take the same time whatever the horizon, for one material on points of a lattice "
          "with equal volumes, without a `surface_correction`. Both give the same results to "
-         "round-off. `\"auto\"` takes the faster one: where possible `fft` for motions by explicit "
-         "steps with a horizon of 2.5 spacings or more. Models `green_bond` and `correspondence`, "
-         "and `lps` as printed, have `fft` alone")
+         "round-off. `\"auto\"` chooses the faster one: where possible `fft` for motions by "
+         "explicit steps with a horizon of 2.5 spacings or more. Models `green_bond` and "
+         "`correspondence`, and `lps` as printed, have only `fft`")
            .on_ranks(),
        K("predictor", &Spec::predictor,
          choice<Predictor>({{"consistent", Predictor::consistent}, {"none", Predictor::none}}),
@@ -182,8 +183,8 @@ Table<SolverSpecification> solver_keys() {
          choice<Projection>({{"auto", Projection::automatic},
                              {"never", Projection::never},
                              {"always", Projection::always}}),
-         "projection of interactions to their positive semidefinite part. `\"auto\"`: when the "
-         "exact tangent has negative pivots or the search fails with it")
+         "when the tangents of interactions are projected to their positive semidefinite part. "
+         "`\"auto\"`: if the exact tangent has negative pivots or the search fails with it")
            .written_if(searches)
            .on_ranks(),
        K("relative_tolerance", &Spec::relative_tolerance, between(1e-14, 1e-2),
@@ -195,7 +196,7 @@ Table<SolverSpecification> solver_keys() {
            .written_if(searches)
            .on_ranks(),
        K("max_iterations", &Spec::max_iterations, integer(1, 1000),
-         "most iterations of Newton's method in one step")
+         "largest number of iterations of Newton's method in one step")
            .written_if(searches)
            .extends()
            .on_ranks(),
@@ -203,8 +204,8 @@ Table<SolverSpecification> solver_keys() {
          choice<FragmentRemedy>({{"hold", FragmentRemedy::hold},
                                  {"remove", FragmentRemedy::remove},
                                  {"stop", FragmentRemedy::stop}}),
-         "what happens to pieces that come off. `\"hold\"`: just enough of their degrees of "
-         "freedom are pinned that they cannot move freely; `\"remove\"`: they leave the equations "
+         "what happens to pieces that come off. `\"hold\"`: as many of their degrees of freedom "
+         "are pinned as are needed to prevent free motions; `\"remove\"`: they leave the equations "
          "and stay where they are; `\"stop\"`: the run ends with outcome `fragmented`")
            .written_if(is_static)
            .then(check_fragments)
@@ -226,17 +227,17 @@ Table<SolverSpecification> arc_length_keys() {
   constexpr auto arc_length = &Spec::arc_length;
   return {"arc_length",
           {K("steps", in(arc_length, &ArcLengthOptions::steps), count_from(0, "steps"),
-             "number of steps after which the path ends, unless the load has reached its end "
-             "before; 0: the load has to reach its end within 10 000 steps")
+             "number of steps after which the path ends, unless the load reaches its end before. "
+             "0: the load must reach its end within 10 000 steps")
                .extends(),
            K("largest_step", in(arc_length, &ArcLengthOptions::largest_step), between(1e-12, 1e6),
-             "largest step of the arc length; steps grow up to it where the path is straight. The "
-             "first step is 1/`loading.steps`, and is initially a step of the load factor")
+             "largest step of the arc length. Steps grow up to it where the path is straight. The "
+             "first step is 1/`loading.steps`; at first this is a step of the load factor")
                .extends(),
            K("bifurcation", in(arc_length, &ArcLengthOptions::branches_off),
              choice<bool>({{"branch", true}, {"straight", false}}),
-             "where another path leaves a stable one. `\"branch\"`: follow the other path; "
-             "`\"straight\"`: go straight on, where states are unstable")}};
+             "what to do at a bifurcation of a stable path. `\"branch\"`: follow the other path; "
+             "`\"straight\"`: continue on the same path, where states are unstable")}};
 }
 
 namespace {
@@ -268,8 +269,8 @@ void check_found_loads(const Entry& at, const Case& result) {
                      "must be \"newton\" with [[control]]");
   if (is_controlled && (!at.from.has("loading") || !at.from.table("loading").has("table")))
     throw InputError("control", "",
-                     "needs loading.table, the values of the controlled displacement [m] that the "
-                     "path goes through: [0, 1e-4], for example");
+                     "needs loading.table, the values of the controlled displacement [m] along the "
+                     "path, such as [0, 1e-4]");
   if (is_arc_length && !tables.empty() && tables.front().entries.size() != 2)
     throw InputError(
         "loading.table", "",
@@ -339,7 +340,7 @@ Table<RelaxationSpecification> relaxation_keys() {
       "relaxation",
       {K("steps", &Spec::steps, count_from(1),
          "number of equal steps of the *whole* load, or from one entry of `loading.table` to the "
-         "next; the first step is 1/steps, however much of the load the implicit steps have left")
+         "next; the first step is 1/steps, whatever part of the load the implicit steps have left")
            .extends()
            .otherwise([](auto& relaxation,
                          auto& from) { relaxation.steps = default_relaxation_steps(from); },
@@ -350,10 +351,11 @@ Table<RelaxationSpecification> relaxation_keys() {
          choice<RelaxationMethod>(
              {{"dynamic", RelaxationMethod::dynamic}, {"flow", RelaxationMethod::flow}}),
          "`\"dynamic\"`: dynamic relaxation, a motion with a pseudo inertia; `\"flow\"`: the flow "
-         "without inertia, whose directions are solved for")
+         "without inertia, whose directions are solutions of linear systems")
            .early(),
        K("flow_tolerance", in(options, &Options::flow_tolerance), between(1e-3, 0.5),
-         "method `flow`: how far a step may deviate from the flow's path, relative to its length")
+         "method `flow`: largest deviation of a step from the path of the flow, relative to the "
+         "length of the step")
            .unless(is_dynamic, "is for method = \"flow\""),
        K("peak_tolerance", &Spec::peak_tolerance, between(0.0, 1.0),
          "mode `adaptive`: a relaxed step in which the force begins to fall is halved until it is "
@@ -363,8 +365,8 @@ Table<RelaxationSpecification> relaxation_keys() {
                    "is for mode \"adaptive\"")
            .extends(),
        K("load", &Spec::moving, choice<bool>({{"fixed", false}, {"moving", true}}),
-         "`\"fixed\"`: the load rests after the ramp until the body is in equilibrium; "
-         "`\"moving\"`: it never rests")
+         "`\"fixed\"`: the load is constant after the ramp until the body is in equilibrium; "
+         "`\"moving\"`: it changes in every iteration")
            .unless(flows, for_dynamic)
            .early(),
        K("iterations", &Spec::iterations, count_from(1),
@@ -384,7 +386,7 @@ Table<RelaxationSpecification> relaxation_keys() {
        K("breaking", in(options, &Options::breaking),
          choice<Breaking>(
              {{"at_equilibrium", Breaking::at_equilibrium}, {"transient", Breaking::transient}}),
-         "when damage becomes permanent. `\"at_equilibrium\"`: in accepted states alone, so that "
+         "when damage becomes permanent. `\"at_equilibrium\"`: only in accepted states, so an "
          "overshoot breaks nothing; `\"transient\"`: in every iteration, as published")
            .otherwise(
                [](auto& relaxation, auto&) {
@@ -394,8 +396,8 @@ Table<RelaxationSpecification> relaxation_keys() {
        K("damping", in(options, &Options::damping),
          choice<Damping>({{"adaptive", Damping::adaptive}, {"kinetic", Damping::kinetic}}),
          "`\"adaptive\"`: a coefficient from the Rayleigh quotient of the present motion, as "
-         "published; `\"kinetic\"`: none, but all motion stops whenever the kinetic energy has "
-         "passed a peak")
+         "published; `\"kinetic\"`: no damping coefficient, but all motion is stopped whenever the "
+         "kinetic energy has passed a peak")
            .unless(flows, for_dynamic)
            .otherwise(
                [](auto& relaxation, auto&) {
@@ -412,7 +414,8 @@ Table<RelaxationSpecification> relaxation_keys() {
                },
                "2; 1 with adaptive damping"),
        K("max_iterations", in(options, &Options::max_iterations), count_from(1),
-         "load `fixed`: most iterations after the ramp; a step that needs more fails and is cut")
+         "load `fixed`: largest number of iterations after the ramp. A step that needs more fails "
+         "and is cut")
            .extends(),
        K("displacement_tolerance", in(options, &Options::displacement_tolerance), between(0.0, 1.0),
          "load `fixed`: also accepts a state whose displacements changed by less than this in an "

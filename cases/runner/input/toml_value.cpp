@@ -278,7 +278,8 @@ void apply_override(TomlValue& document, const std::string& key, const std::stri
       if (!part.indices.empty()) at->kind = TomlValue::Kind::array;
     }
     for (const std::size_t index : part.indices) {
-      if (at->kind != TomlValue::Kind::array) refuse(path + " is no array but " + kind_name(*at));
+      if (at->kind != TomlValue::Kind::array)
+        refuse(path + " is not an array but " + kind_name(*at));
       if (index > at->items.size())
         refuse(path + " has " + std::to_string(at->items.size()) + " elements, counted from 0");
       if (index == at->items.size()) mark(at->items.emplace_back(), text);

@@ -21,27 +21,26 @@ std::string suggestion(Outcome outcome, Mode mode) {
   const std::string adaptive =
       mode == Mode::newton ? "Run it with solver.mode = \"adaptive\": relaxation follows the crack "
                              "from here, and Newton's method takes over again afterwards."
-                           : "Give relaxation more room: take smaller steps (relaxation.steps) or "
-                             "more iterations (relaxation.max_iterations).";
+                           : "Take smaller relaxed steps (relaxation.steps) or allow more "
+                             "iterations (relaxation.max_iterations).";
   switch (outcome) {
     case Outcome::limit_point:
     case Outcome::damage_limit:
       return adaptive +
-             " Controlling displacements instead of forces moves a limit point further "
-             "away.";
+             " If displacements are prescribed instead of forces, a limit point comes later.";
     case Outcome::not_positive_definite:
-      return "The state is unstable: it buckles, wrinkles, or the material is beyond its stable "
-             "range (./peristat calibrate prints that of cpd). A small imperfection "
-             "(lattice.perturbation) lets the body leave a symmetric state.";
+      return "The state is unstable: the body buckles or wrinkles, or the material is beyond its "
+             "stable range (./peristat calibrate prints the range for cpd). With a small "
+             "imperfection (lattice.perturbation) the body can leave a symmetric state.";
     case Outcome::iteration_limit:
       return mode == Mode::relaxation
                  ? adaptive
                  : "Take smaller steps (loading.steps, loading.smallest_step), allow more "
-                   "iterations (solver.max_iterations), and look at iterations.csv: residuals that "
-                   "fall slowly and then stall need a looser solver.relative_tolerance.";
+                   "iterations (solver.max_iterations), and look at iterations.csv: if residuals "
+                   "fall slowly and then stall, increase solver.relative_tolerance.";
     case Outcome::singular_tangent:
-      return "Look at the worst points below: they have too few bonds, or the supports leave them "
-             "free to move. ./peristat check lists parts that may move freely; a larger "
+      return "Look at the worst points below: they have too few bonds, or supports do not hold "
+             "them. ./peristat check lists parts that may move freely; a larger "
              "lattice.horizon_ratio gives points more bonds.";
     case Outcome::no_descent:
     case Outcome::line_search_failed:
@@ -64,16 +63,16 @@ std::string suggestion(Outcome outcome, Mode mode) {
       return "Correct the expression of the support or load that is named above.";
     case Outcome::no_answer:
       return "Control another displacement that grows throughout, such as the opening of a crack "
-             "mouth, or a sum of several. Where bonds break and the path snaps back in every "
-             "displacement, run it without a control and with solver.mode = \"path\", which "
+             "mouth, or a sum of several. If bonds break and the path snaps back in every "
+             "displacement, run the case without a control and with solver.mode = \"path\", which "
              "unloads the body before the next bond breaks.";
     case Outcome::sharp_turn:
       return "Take smaller steps (loading.steps, loading.smallest_step). Where several pivots "
              "vanish together (decisions.csv), a small load or a lattice.perturbation selects a "
              "branch.";
     case Outcome::step_limit:
-      return "Look at history.csv: if the path goes where you want it, end it with "
-             "arc_length.steps; if it is long, allow longer steps (arc_length.largest_step).";
+      return "Look at history.csv. If the path has reached the states that you need, end it with "
+             "arc_length.steps. If it is long, allow longer steps (arc_length.largest_step).";
     case Outcome::damage_begins:
       if (mode == Mode::dynamics) {
         return "Start with smaller loads at t = 0, and let them grow with time, or take "
@@ -81,11 +80,11 @@ std::string suggestion(Outcome outcome, Mode mode) {
       }
       return "Follow the damage by a [[control]] in mode newton, or in mode adaptive.";
     case Outcome::unstable_step:
-      return "Take a smaller dynamics.time_step, or give dynamics.step_share, with which the step "
-             "follows the stable one.";
+      return "Take a smaller dynamics.time_step, or give dynamics.step_share: then the step stays "
+             "below the stable one.";
     case Outcome::inconsistent:
       if (mode == Mode::dynamics) {
-        return "The motion gains energy that was not put in: take smaller time steps "
+        return "The motion gains energy that was not supplied: take smaller time steps "
                "(dynamics.time_step, dynamics.step_share).";
       }
       return "The result is not a valid state of this body. Take smaller steps (loading.steps, "

@@ -726,7 +726,7 @@ std::string Results::what_is_left() const {
   const ResultsFolder folder = sender_ ? ResultsFolder{sender_->directory} : files_->folder;
   std::error_code error;
   if (!std::filesystem::exists(folder.results(), error)) {
-    return folder.directory.string() + " has been removed: nothing of this run is left there";
+    return folder.directory.string() + " has been removed, and the results of this run with it";
   }
   const int steps = sender_ ? sender_->totals.steps : files_->totals.steps;
   return (steps == 1 ? "1 accepted step is in "

@@ -52,7 +52,7 @@ bool has_ranks(const std::string& key) {
 
 /// Refuses convolutions: their transforms need the whole body, which no rank has.
 void refuse_convolutions(const Case& from) {
-  const std::string why = "is for one rank, since convolutions need the whole body; ";
+  const std::string why = "is for one rank, because convolutions need the whole body; ";
   if (needs_convolutions(from)) {
     const bool is_by_form = from.form == SolidForm::printed;
     throw InputError(is_by_form ? "quadrature.form" : "material.model", "",

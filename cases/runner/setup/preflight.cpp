@@ -388,8 +388,8 @@ void refuse_idle_cracks(const Case& from, const std::vector<Preflight::CutByCrac
         });
     if (cracks[k].bonds > 0 || is_in_air) continue;
     throw InputError("cracks[" + std::to_string(k) + "]", "",
-                     "cuts no bond: it lies outside of the body, or where no points interact; "
-                     "coordinates are in metres");
+                     "cuts no bond: it lies outside the body, or where no points interact; check "
+                     "that its coordinates are in metres");
   }
 }
 

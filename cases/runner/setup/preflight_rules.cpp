@@ -31,8 +31,8 @@ void add_cross_section(const Preflight& of, Warnings& warnings) {
   const char* const what = of.dimension == 1 ? "area" : "thickness";
   if (!of.cross_section_is_given) {
     warnings.push_back(
-        fmt::format("{} is not given and taken as 1 {}: all forces and energies are those of a "
-                    "body that {}; give the {}, or 1 if that is intended",
+        fmt::format("{} is not given, so it is 1 {}: all forces and energies are those of a body "
+                    "that {}; give the {}, or give 1 if that is intended",
                     of.cross_section_key, of.dimension == 1 ? "m2" : "m",
                     of.dimension == 1 ? "has this area" : "is a metre thick", what));
     return;
@@ -41,8 +41,8 @@ void add_cross_section(const Preflight& of, Warnings& warnings) {
   const double largest = *std::max_element(of.extents.begin(), of.extents.end());
   if (of.dimension == 2 && of.cross_section != 1.0 && of.cross_section > largest) {
     warnings.push_back(
-        fmt::format("{} = {:g} m is more than the length of the body ({:g} m), which is not a "
-                    "plate in plane stress; lengths are in metres",
+        fmt::format("{} = {:g} m is more than the length of the body ({:g} m), so the body is not "
+                    "a plate in plane stress; check that lengths are in metres",
                     of.cross_section_key, of.cross_section, largest));
   }
 }
@@ -52,8 +52,8 @@ void add_horizon(const Preflight& of, Warnings& warnings) {
     const FeatureLength* const least = of.shortest(kind);
     if (least == nullptr || of.horizon <= least->size) continue;
     warnings.push_back(fmt::format(
-        "the horizon, {:g} m, is larger than the {}, {:g} m: every point there sees a surface; a "
-        "spacing of {:.2g} m or less gives it three horizons",
+        "the horizon, {:g} m, is larger than the {}, {:g} m: a surface cuts the neighbourhood of "
+        "every point there; with a spacing of {:.2g} m or less it is three horizons wide",
         of.horizon, least->what, least->size, least->size * of.spacing / (3.0 * of.horizon)));
   }
 }
@@ -91,8 +91,8 @@ void add_constant_values(const Preflight& of, Warnings& warnings) {
     if (value.changes || value.largest == 0.0) continue;
     if (grows && !is_displacement) continue;  // a dead load under one that grows
     warnings.push_back(
-        fmt::format("{} = {} does not depend on load: it is applied in full at load 0, and no step "
-                    "increases it; write \"{}*load\" if it should grow with the load",
+        fmt::format("{} = {} does not depend on load: it is applied in full at load 0 and stays "
+                    "constant; write \"{}*load\" if it should grow with the load",
                     value.key, value.text, value.text));
   }
 }
@@ -103,8 +103,8 @@ void add_nothing_applied(const Preflight& of, Warnings& warnings) {
       std::ranges::any_of(of.applied, [](const auto& value) { return value.largest > 0.0; });
   if (is_any) return;
   warnings.emplace_back(
-      "nothing is applied: every prescribed displacement and load is 0 throughout, so that nothing "
-      "moves; give a [[support]] a displacement, or add a [[load]]");
+      "nothing is applied: every prescribed displacement and load is always 0, so nothing moves; "
+      "give a [[support]] a displacement, or add a [[load]]");
 }
 
 void add_stiffnesses(const Preflight& of, Warnings& warnings) {
@@ -112,11 +112,10 @@ void add_stiffnesses(const Preflight& of, Warnings& warnings) {
   constexpr double no_dimension = 2.5;  // moduli of problems without units are about 1
   for (const auto& [key, modulus] : of.stiffnesses) {
     if (modulus <= no_dimension || modulus >= softest_gel) continue;
-    warnings.push_back(
-        fmt::format("{} = {:g} Pa is softer than any solid; numbers without a unit are in SI "
-                    "units, or in those of [units]: in Pa, {:g} GPa is {:g}e9, "
-                    "{:g} MPa is {:g}e6",
-                    key, modulus, modulus, modulus, modulus, modulus));
+    warnings.push_back(fmt::format(
+        "{} = {:g} Pa is softer than any solid; check its unit: numbers without a unit are in SI "
+        "units, or in those of [units]; {:g} GPa is {:g}e9, {:g} MPa is {:g}e6 in Pa",
+        key, modulus, modulus, modulus, modulus, modulus));
   }
 }
 
@@ -127,10 +126,11 @@ void add_fracture(const Preflight& of, const Preflight::Fracture& fracture, Warn
     return stiffness.youngs_modulus >= 1e3 && stiffness.youngs_modulus < 1e6;
   });
   if (is_soft && fracture.critical > too_stretched) {
-    warnings.push_back(fmt::format(
-        "bonds{} break at a stretch of {:.3g}: youngs_modulus and strength are in Pa (30 GPa is "
-        "30e9, 30000 MPa as well), fracture_energy is in J/m2",
-        name, fracture.critical));
+    warnings.push_back(
+        fmt::format("bonds{} break only at a stretch of {:.3g}, which is large for a solid; check "
+                    "the units: youngs_modulus and strength are in Pa (30 GPa and 30000 MPa are "
+                    "30e9), fracture_energy is in J/m2",
+                    name, fracture.critical));
   }
   if (!fracture.softens) return;
   // docs/trustworthy-peaks.md: the default law has a length of 2.4 horizons. With bonds 1.6 times
@@ -141,17 +141,17 @@ void add_fracture(const Preflight& of, const Preflight::Fracture& fracture, Warn
   if (fracture.is_data && zone < shortest_zone * of.horizon) {
     warnings.push_back(
         fmt::format("the spacing is coarse for the process zone{}: E G/ft^2 = {:.3g} m is {:.2g} "
-                    "horizons, and below {:g} the lattice traps a crack as it does with brittle "
-                    "bonds; a spacing of {:.2g} m or less resolves it",
+                    "horizons, and below {:g} horizons the lattice traps a crack as it does with "
+                    "brittle bonds; a spacing of {:.2g} m or less resolves the zone",
                     name, zone, zone / of.horizon, shortest_zone,
                     of.spacing * zone / (shortest_zone * of.horizon)));
   }
   if (!fracture.has_strength && !of.has_notch) {
-    warnings.push_back(
-        fmt::format("{}.damage.strength is missing, and there is no crack, notch or hole to start "
-                    "from: the horizon sets a strength of {:.4g} MPa, and the peak grows with each "
-                    "refinement; give the strength of the material",
-                    fracture.key, fracture.strength * 1e-6));
+    warnings.push_back(fmt::format(
+        "{}.damage.strength is missing, and there is no crack, notch or hole from which a crack "
+        "could start: the strength of {:.4g} MPa follows from the horizon, and the peak grows with "
+        "each refinement; give the strength of the material",
+        fracture.key, fracture.strength * 1e-6));
   }
 }
 

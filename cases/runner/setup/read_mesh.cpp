@@ -72,7 +72,7 @@ class AnswerReader {
   template <class Value>
   std::vector<Value> values(std::size_t count) {
     if (count > (text_.size() - at_) / sizeof(Value))
-      refuse_mesh_file(file_, "reading it by meshio has ended early");
+      refuse_mesh_file(file_, "meshio ended before it had read the file");
     std::vector<Value> read(count);
     if (count > 0) std::memcpy(read.data(), text_.data() + at_, count * sizeof(Value));
     at_ += count * sizeof(Value);
@@ -119,7 +119,7 @@ Mesh read_mesh(const fs::path& file, double length_unit) {
   const std::string answer = answer_of_script(file);
   const std::string mesh = "mesh\n", refused = "refused\n";
   if (answer.starts_with(refused)) refuse_mesh_file(file, answer.substr(refused.size()));
-  if (!answer.starts_with(mesh)) refuse_mesh_file(file, "meshio has answered nothing");
+  if (!answer.starts_with(mesh)) refuse_mesh_file(file, "meshio gave no answer");
   Mesh read = mesh_of(AnswerReader(answer, mesh.size(), file));
   for (double& at : read.nodes) at = in_metres(at, length_unit);
   return read;

@@ -45,15 +45,15 @@ class Keys:
     def number(self, key: str) -> float | int:
         """@raises WrongInput if there is none"""
         if key in self._later:
-            raise WrongInput(f"{key} is computed later, or from itself: give what it needs before it")
+            raise WrongInput(f"{key} is computed later, or from itself: give the keys that it needs before it")
         value = self._case
         for part in _parts(key):
             try:
                 value = value[part]
             except (KeyError, IndexError, TypeError):
-                raise WrongInput(f"{key} stands neither in the case file nor on the command line") from None
+                raise WrongInput(f"{key} is neither in the case file nor on the command line") from None
         if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise WrongInput(f"{key} is no number; a number with a unit in quotes can't be computed with")
+            raise WrongInput(f"{key} is not a number; a number with a unit in quotes can't be used in an expression")
         return value
 
     def length_unit(self) -> float:
@@ -110,7 +110,7 @@ def compute(expression: str, keys: Keys) -> str:
     try:
         tree = ast.parse(expression.replace("^", "**"), mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise WrongInput("is no expression of numbers and keys") from None
+        raise WrongInput("is not an expression of numbers and keys") from None
     try:
         value = _value(tree.body, keys)
         is_finite = not isinstance(value, complex) and math.isfinite(value)
@@ -149,4 +149,4 @@ def _key(node: ast.expr) -> str:
         return f"{_key(node.value)}.{node.attr}"
     if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Constant) and type(node.slice.value) is int:
         return f"{_key(node.value)}[{node.slice.value}]"
-    raise WrongInput("may only hold numbers, keys, pi, + - * / ^, brackets and functions")
+    raise WrongInput("may only contain numbers, keys, pi, + - * / ^, brackets and functions")

@@ -24,11 +24,11 @@ def require_own(path: Path, sign: bytes) -> None:
     except FileNotFoundError:
         return
     if not stat.S_ISREG(status.st_mode):
-        raise ForeignFile(f"{path} is no plain file but a link, a folder or a device: remove it or name another place")
+        raise ForeignFile(f"{path} is a link, a folder or a device instead of a file: remove it or name another folder")
     with open(path, "rb") as file:
         head = file.read(HEAD)
     if head and sign not in head:
-        raise ForeignFile(f"{path} is not a file of this command and would be replaced: move it or name another place")
+        raise ForeignFile(f"{path} is not a file of this command and would be replaced: move it or name another folder")
 
 
 def write_own(path: Path, content: bytes, sign: bytes) -> None:

@@ -187,7 +187,7 @@ def say(text: str, end: str = "\n") -> None:
         print(text, end=end, flush=True)
     except OSError as error:
         sys.stdout = open(os.devnull, "w")
-        print(f"sweep: standard output can't be written ({error.strerror}): going on in silence", file=sys.stderr)
+        print(f"sweep: standard output can't be written ({error.strerror}): the sweep continues without output", file=sys.stderr)
 
 
 def _row(sweep: Sweep, combination: Combination, code: int, has_results: bool) -> dict:
@@ -321,23 +321,23 @@ class _Varied(argparse.Action):
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="peristat sweep", allow_abbrev=False,
-        description="Runs a case for every combination of the given values, skips what is done, goes on with "
-        "what was interrupted, and makes one table (DIR/sweep.csv) and one picture (DIR/sweep.png).",
+        description="Runs a case for every combination of the given values, and collects the results in one table "
+        "(DIR/sweep.csv) and one picture (DIR/sweep.png). Finished combinations are skipped, interrupted ones resumed.",
         epilog="Exit codes: 0 all completed, 2 wrong input, 3 a combination did not converge, 4 one was "
         "out of memory, 5 the machine failed (disk full, a limit of the shell), 130 interrupted, 1 a bug.",
     )  # fmt: skip
     parser.add_argument("case", metavar="CASE", help="case file (docs/case-file.md)")
     parser.add_argument("--vary", metavar="KEY=V1,V2,...", action=_Varied,
-                        help="values of a key of the case file, e.g. loading.steps=10,20; may be repeated. "
-                        "Commas in brackets and quotes separate nothing")  # fmt: skip
+                        help="values of a key of the case file, such as loading.steps=10,20; may be repeated. "
+                        "Commas within brackets and quotes do not separate values")  # fmt: skip
     parser.add_argument("--with", metavar="KEY=V1,V2,...", action=_Varied,
-                        help="values of another key, one for each of the --vary or --refine before it, with "
-                        "which it varies; or KEY:=EXPRESSION of other keys, e.g. "
+                        help="values of another key that varies together with the --vary or --refine before it, one for "
+                        "each of its values; or KEY:=EXPRESSION of other keys, such as "
                         "loading.steps:=round(0.02/lattice.spacing)")  # fmt: skip
     parser.add_argument("--refine", metavar="N", action=_Varied,
-                        help=f"{REFINED} of the case, or as it is set, on N lattices, each finer by the ratio: observed "
-                        "orders, extrapolated values and grid convergence indices of all quantities")  # fmt: skip
-    parser.add_argument("--ratio", metavar="R", type=float, default=2.0, help="of --refine (default: 2)")
+                        help=f"refine {REFINED} of the case, or of --set, on N lattices, and report observed orders, "
+                        "extrapolated values and grid convergence indices of all quantities")  # fmt: skip
+    parser.add_argument("--ratio", metavar="R", type=float, default=2.0, help="ratio of the spacings of --refine (default: 2)")
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], dest="settings",
                         help="override a key of the case file in all runs, also by KEY:=EXPRESSION; may be "
                         "repeated")  # fmt: skip
@@ -345,9 +345,9 @@ def _parser() -> argparse.ArgumentParser:
                         help="folder of the sweep (default: results/FOLDER_STEM_sweep)")  # fmt: skip
     parser.add_argument("--overwrite", action="store_true", help="replace results of another case in DIR")
     parser.add_argument("--threads", metavar="N", type=int, help="number of threads of each run (default: all "
-                        "processors, shared out among the jobs)")  # fmt: skip
-    parser.add_argument("--jobs", metavar="N", type=int, default=1, help="runs side by side, as far as processors "
-                        "and memory allow (default: 1)")  # fmt: skip
+                        "processors, divided among the jobs)")  # fmt: skip
+    parser.add_argument("--jobs", metavar="N", type=int, default=1, help="number of parallel runs, limited by "
+                        "processors and memory (default: 1)")  # fmt: skip
     return parser
 
 
@@ -365,11 +365,11 @@ def read_sweep(arguments: argparse.Namespace) -> Sweep:
         raise WrongInput(f"{case}: can't be read ({error.strerror})") from error
     directory = arguments.output or _default_directory(case)
     if directory.exists() and not directory.is_dir():
-        raise WrongInput(f"--output {directory}: is no folder")
+        raise WrongInput(f"--output {directory}: is not a folder")
     for name, sign in {"sweep.csv": TABLE, **MADE_OF_THE_TABLE}.items():
         require_own(directory / name, sign)
     if set('"\\') & set(str(directory)):
-        raise WrongInput(f"--output {directory}: must have no quotes and no backslashes")
+        raise WrongInput(f"--output {directory}: must not have quotes or backslashes")
     jobs, threads = _jobs(arguments)
     sweep = Sweep(case, text, [], [], directory, threads, arguments.overwrite, jobs)
     _find_combinations(sweep, arguments)

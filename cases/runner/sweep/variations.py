@@ -73,7 +73,7 @@ def vary(text: str) -> Axis:
     key, parts = read_variation("--vary", text)
     twice = [value for number, value in enumerate(parts) if value in parts[:number]]
     if twice:
-        raise WrongInput(f"--vary {text}: the value {twice[0]} stands twice")
+        raise WrongInput(f"--vary {text}: the value {twice[0]} is given twice")
     return Axis([key], [parts])
 
 

@@ -97,15 +97,15 @@ def _positive(text: str) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="peristat trust", allow_abbrev=False,
-        description="Runs one setting on specimens with known answers, goes on with what was interrupted, skips what is "
-        "done, and tells which agree: table.md in DIR.",
+        description="Runs one setting on specimens with known answers and writes a table of which agree (DIR/table.md). "
+        "Finished runs are skipped, interrupted ones resumed.",
         epilog=f"Entries: {', '.join(ENTRIES)}. Exit codes: 0 all pass, 3 some are red, 2 wrong input, 5 the machine failed, 130 interrupted.",
     )  # fmt: skip
-    parser.add_argument("names", metavar="NAME", nargs="*", help="entries (default: all); trapping: what lattices hold "
-                        "cracks up with, by law, horizon ratio and angle")  # fmt: skip
-    parser.add_argument("--quick", action="store_true", help="the coarsest lattice of each alone")
+    parser.add_argument("names", metavar="NAME", nargs="*", help="entries (default: all); trapping: how strongly "
+                        "lattices trap cracks, by law, horizon ratio and angle")  # fmt: skip
+    parser.add_argument("--quick", action="store_true", help="run only the coarsest lattice of each entry")
     parser.add_argument("--output", metavar="DIR", type=Path, default=Path("results/trust"), help="default: results/trust")
-    parser.add_argument("--jobs", metavar="N", type=_positive, help="runs side by side (default: one per processor)")
+    parser.add_argument("--jobs", metavar="N", type=_positive, help="number of parallel runs (default: one per processor)")
     parser.add_argument("--threads", metavar="N", type=_positive, help="threads of each run (default: 1)")
     return parser
 

@@ -25,7 +25,7 @@ void check_bond_constants(const MaterialSpecification& material, const std::stri
   require(material.youngs_modulus.has_value() != material.micromodulus.has_value(), key, "",
           "needs a youngs_modulus or a micromodulus, and not both");
   require_absent(material.calibration && !material.youngs_modulus, key + ".calibration",
-                 "goes with youngs_modulus");
+                 "needs youngs_modulus");
 }
 
 void require_lattice_to_calibrate_on(const BodySpecification& of, const Points& points) {

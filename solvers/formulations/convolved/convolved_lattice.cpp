@@ -46,17 +46,18 @@ LatticeBox box_of(const BodySpecification& from, const Points& points, OtherOper
                        "stiffness of a bond does not depend on its lattice vector alone");
   }
   if (from.surface_correction != SurfaceCorrection::none) {
-    refuse_convolution(other,
-                       "does not go with a surface_correction, which has a factor for each bond");
+    refuse_convolution(
+        other, "is not allowed with a surface_correction, which has a factor for each bond");
   }
   if (points.own() < points.count()) {
     if (!from.cracks.empty()) {
-      refuse_convolution(other, "does not go with pre-cracks beside planes of symmetry or periods");
+      refuse_convolution(other,
+                         "is not allowed with pre-cracks beside planes of symmetry or periods");
     }
     if (from.form == SolidForm::printed) {
       refuse_convolution(other,
-                         "with the form printed does not go with planes of symmetry and periods, "
-                         "across which forces without a potential have no image");
+                         "with the form printed is not allowed with planes of symmetry and "
+                         "periods, across which forces without a potential have no image");
     }
   }
   if (!points.neighbours.empty()) refuse_convolution(other, "finds its neighbours by itself");

@@ -31,8 +31,8 @@ FractureScale scale_of_cpd(const MaterialSpecification& material, const std::str
     scale.pull.reset();
     if (!material.damage.strength) return scale;
     throw InputError(key + ".damage.strength", number_text(*material.damage.strength),
-                     "takes minutes to turn into stretches of cpd at this horizon ratio in 3D; "
-                     "give a shorter horizon, or onset");
+                     "would take minutes to convert into stretches of cpd at this horizon ratio in "
+                     "3D; give a shorter horizon, or onset");
   } else if (material.damage.is_by_data()) {
     const bool by_energy = material.damage.fracture_energy.has_value();
     throw InputError(
@@ -61,7 +61,7 @@ void check_cpd_material(const MaterialSpecification& material, const std::string
   require(material.youngs_modulus.has_value() != material.c1.has_value(), key, "",
           "needs a youngs_modulus with a poisson_ratio, or c1, and not both");
   require(material.poisson_ratio.has_value() == material.youngs_modulus.has_value(),
-          key + ".poisson_ratio", "", "goes with youngs_modulus");
+          key + ".poisson_ratio", "", "needs youngs_modulus");
   require(std::isfinite(material.c2), key + ".c2", number_text(material.c2), "must be finite");
   require(std::isfinite(material.c3), key + ".c3", number_text(material.c3), "must be finite");
   const bool has_moduli = material.youngs_modulus.has_value();

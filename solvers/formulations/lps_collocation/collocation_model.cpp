@@ -60,8 +60,8 @@ void refuse_thin_bodies(const Points& points, const CollocationNetwork& network,
                    "needs bodies thicker than two horizons: no point within four bonds of the one "
                    "at " +
                        place_text(*at, points.dimension) +
-                       " m has a whole ball; take a smaller spacing or horizon_ratio, or "
-                       "quadrature.form = \"energy\"");
+                       " m has a complete neighbourhood; take a smaller spacing or horizon_ratio, "
+                       "or quadrature.form = \"energy\"");
 }
 
 /// Normals of the face above a point that has a single face and no cut bonds; zero elsewhere.

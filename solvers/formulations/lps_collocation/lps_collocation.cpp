@@ -16,9 +16,9 @@ void check_collocated_material(const MaterialSpecification& material, const std:
 }
 
 void require_square_lattice(const BodySpecification&, const Points& points) {
-  require(
-      points.lattice && points.spacing.is_square(), "material.model", "lps",
-      "needs a lattice of squares or cubes: its sites fill up balls that reach over the surface");
+  require(points.lattice && points.spacing.is_square(), "material.model", "lps",
+          "needs a lattice of squares or cubes, whose sites fill the neighbourhoods beyond the "
+          "surface");
 }
 
 double energy_of_inverse_kernel(const MaterialSpecification& material, const std::string&,

@@ -15,7 +15,7 @@ namespace {
 
 void check_form(const BodySpecification& of, const Points&) {
   require(of.form != SolidForm::printed || of.is_convolved(), "force_operator", "bonds",
-          "does not go with the form \"printed\" of lps; take \"fft\"");
+          "is not allowed with the form \"printed\" of lps; take \"fft\"");
 }
 
 /// Makes a solid by convolutions. Its springs have the solid's Young's modulus and influence.

@@ -39,10 +39,10 @@ Coordinates direction_of(const FibreSpecification& fibre, int dimension) {
       "bonds of some directions would have a negative constant: with a fourth-order harmonic, "
       "youngs_modulus = " +
           number_text(moduli.along) + ", transverse_modulus = " + number_text(moduli.across) +
-          " and shear_modulus = " + number_text(moduli.shear) + " do not go together; " +
+          " and shear_modulus = " + number_text(moduli.shear) + " are not possible together; " +
           (least > 0.0 ? "the first two allow a shear_modulus from about " +
                              fmt::format("{:.3g}", least) + " to " + fmt::format("{:.3g}", most)
-                       : "no shear_modulus goes with the first two"));
+                       : "no shear_modulus is possible with the first two"));
 }
 
 /// True if laws differ at most in their onset and critical stretch; blended ones must also have the

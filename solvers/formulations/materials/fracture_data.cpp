@@ -158,11 +158,12 @@ class Search {
   /// @param least work of the law that breaks as soon as it softens
   [[noreturn]] void refuse_unresolved(const std::string& datum, double least) const {
     throw InputError(key_ + datum, "",
-                     "bonds of this horizon break before they soften: up to softening they take " +
+                     "bonds of this horizon would break before they soften: up to the onset of "
+                     "softening they take up " +
                          short_text(least * scale_.micromodulus * scale_.crossing) +
-                         " J/m2, which leaves nothing of the fracture energy, " +
+                         " J/m2, but the fracture energy is only " +
                          short_text(work_ * scale_.micromodulus * scale_.crossing) +
-                         " J/m2. Refine: at this horizon ratio a spacing below " +
+                         " J/m2. Take a finer lattice: at this horizon ratio a spacing below " +
                          short_text(scale_.spacing * work_ / least) + " m resolves it" +
                          remark_on_units(work_ / least));
   }
@@ -171,7 +172,8 @@ class Search {
   [[nodiscard]] std::string remark_on_units(double refinement) const {
     constexpr double far = 1e-3;
     if (refinement > far) return "";
-    return ". Are all in SI units? youngs_modulus is " + short_text(scale_.youngs_modulus) +
+    return ". Check that all are in SI units: youngs_modulus is " +
+           short_text(scale_.youngs_modulus) +
            " Pa (30 GPa is 30e9), strength is in Pa, fracture_energy in J/m2";
   }
 
@@ -260,7 +262,7 @@ class TearSearch {
     const double ratio = scale_.energy(brittle) / total_work(brittle);
     static_cast<void>(Search(damage_, key_, with_ratio(std::log(ratio)), peak_).found());
     throw InputError(key_ + "fracture_energy", number_text(*damage_.fracture_energy),
-                     "gives no stretches with this onset or strength; give other values");
+                     "is not possible with this onset or strength; give other values");
   }
 
   const DamageSpecification& damage_;
@@ -377,9 +379,10 @@ class StrengthSearch {
 void require_quick(const DamageSpecification& damage, const std::string& key, const CpdTear& tear) {
   const AnyLaw law = law_of(damage.softens() ? shape(damage, 0.5) : damage);
   if (tear.quadrature_points(law) <= most_quadrature_points_of_tear) return;
-  throw InputError(key + "fracture_energy", number_text(*damage.fracture_energy),
-                   "takes minutes to turn into stretches of cpd at this horizon ratio and rate, " +
-                       short_text(damage.rate) + "; give a lower rate, or critical");
+  throw InputError(
+      key + "fracture_energy", number_text(*damage.fracture_energy),
+      "would take minutes to convert into stretches of cpd at this horizon ratio and rate, " +
+          short_text(damage.rate) + "; give a lower rate, or critical");
 }
 
 void require_range(const DamageSpecification& found, const DamageSpecification& given,

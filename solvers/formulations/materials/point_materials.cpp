@@ -40,9 +40,10 @@ std::vector<double> given_factors(const Points& points, const std::string& text,
       const Index i = members[k];
       const double factor = values[k];
       if (!(factor >= least && factor <= most)) {
-        throw InputError("", '"' + text + '"',
-                         "is " + number_text(factor) + " at " + place_of(points, i) +
-                             "; a factor must be from 1e-6 to 1e6, and is no modulus or strength");
+        throw InputError(
+            "", '"' + text + '"',
+            "is " + number_text(factor) + " at " + place_of(points, i) +
+                "; a factor must be from 1e-6 to 1e6: it multiplies the modulus or strength");
       }
       factors[std::size_t(i)] = factor;
     }

@@ -46,18 +46,18 @@ void check_table(const DamageSpecification& damage, const std::string& table) {
     constexpr double round_off = 1e-9;
     require(k == 0 || f[k] * s[k - 1] <= f[k - 1] * s[k] * (1.0 + round_off),
             table + "forces" + number, number_text(f[k]),
-            "is more than in proportion to the stretch: a bond does not regain stiffness, so force "
-            "over stretch must not grow; here it may be at most " +
+            "grows more than the stretch: a bond does not regain stiffness, so force over stretch "
+            "must not grow; here the force may be at most " +
                 number_text(k == 0 ? 0.0 : f[k - 1] / s[k - 1] * s[k]));
   }
   require(std::abs(f[0] - s[0]) <= round_off_of_elastic_pairs * s[0], table + "forces[0]",
           number_text(f[0]),
           "must be the first stretch, " + number_text(s[0]) +
-              ": forces are over the constant c of the undamaged bond, and the first pair ends the "
-              "elastic part");
+              ": forces are divided by the constant c of the undamaged bond, and the first pair "
+              "ends the elastic part");
   require(ForceCurve(s, f).onset() < 1.0 - 1e-9, table + "forces", "",
-          "never fall below the stretches; a bond that breaks at once has law "
-          "\"critical_stretch\"");
+          "are never below the stretches, so the bond would not soften; for a bond that breaks at "
+          "once take law \"critical_stretch\"");
 }
 
 /// Refuses a law with too little or too much data to find its stretches.

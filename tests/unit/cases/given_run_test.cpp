@@ -117,10 +117,10 @@ TEST_F(GivenRun, IsRefusedWithoutWhatWasGiven) {
     return "accepted";
   };
   EXPECT_NE(refused(std::make_shared<const Givens>())
-                .find("this run used what a program gave it: function pulled, points. Resume it in "
-                      "that program"),
+                .find("this run used functions or points of a program: function pulled, points. "
+                      "Resume it in a program that gives them"),
             std::string::npos);
-  EXPECT_NE(refused(givens_with(0.999e-3)).find("its points are not those"), std::string::npos);
+  EXPECT_NE(refused(givens_with(0.999e-3)).find("its points differ from those"), std::string::npos);
   EXPECT_EQ(refused(givens_with()), "accepted");
 }
 

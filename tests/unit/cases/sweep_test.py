@@ -197,10 +197,10 @@ class Computed(unittest.TestCase):
 
     def test_what_has_no_value_is_refused(self):
         for expression, why in {
-            "0.02/lattice.spaceing": "stands neither",
-            "lattice.shape[1].max[0]": "stands neither",
-            "material.model": "no number",
-            "lattice": "no number",
+            "0.02/lattice.spaceing": "is neither in the case file",
+            "lattice.shape[1].max[0]": "is neither in the case file",
+            "material.model": "not a number",
+            "lattice": "not a number",
             "1/0": "no value",
             "(-1)^0.5": "no finite value",
             "9^9^9": "no value",
@@ -210,11 +210,11 @@ class Computed(unittest.TestCase):
             "1" + "+1" * 5000: "no",
             "open('x')": "no function open",
             "__import__('os')": "no function",
-            "'a'*3": "may only hold",
-            "[1][0]": "may only hold",
-            "1 +": "no expression",
-            "(" * 500: "no expression",
-            "": "no expression",
+            "'a'*3": "may only contain",
+            "[1][0]": "may only contain",
+            "1 +": "not an expression",
+            "(" * 500: "not an expression",
+            "": "not an expression",
             "max()": "no value",
         }.items():
             with self.assertRaisesRegex(WrongInput, why, msg=expression):

@@ -122,7 +122,7 @@ void EarlierRun::choose() {
   const std::string loss = "the run can't be resumed: " + *fault;
   if (!fs::exists(folder_.safe_results()) || fault_of(Generation::safe)) throw refusal(loss);
   read(Generation::safe);
-  remark_ = loss + "; an older state, which is safe on the disk, is used instead";
+  remark_ = loss + "; an older state, which is on the disk, is used instead";
 }
 
 InputError EarlierRun::refusal(const std::string& reason) const {

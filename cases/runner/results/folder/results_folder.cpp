@@ -125,8 +125,8 @@ void require_no_foreign(const ResultsFolder& folder, const Leftovers& old,
     const bool is_left = std::find(old.files.begin(), old.files.end(), name) != old.files.end();
     if (!is_left && fs::exists(fs::symlink_status(folder.directory / name))) {
       throw RefusedFolder("holds a " + name +
-                          " that no earlier run has written, but this run writes a file of that "
-                          "name; move it or name another folder");
+                          " that no earlier run has written, but this run would write a file of "
+                          "that name; move it or name another folder");
     }
   }
 }

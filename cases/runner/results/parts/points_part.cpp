@@ -87,9 +87,9 @@ void write_image_kinds(Hdf5File& file, const Points& points) {
   const Hdf5File::Shape shape{kinds.size(), std::uint64_t(points.dimension)};
   file.make_group("/points/images");
   file.write("/points/images/mirror", mirror, shape,
-             {"1", "of each kind of images: an image of X stands at mirror X + shift"});
+             {"1", "of each kind of images: the image of X is at mirror X + shift"});
   file.write("/points/images/shift", shift, shape,
-             {"m", "of each kind of images: an image of X stands at mirror X + shift"});
+             {"m", "of each kind of images: the image of X is at mirror X + shift"});
 }
 
 }  // namespace

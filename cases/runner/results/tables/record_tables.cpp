@@ -80,7 +80,7 @@ const std::vector<Column>& later_step_columns() {
   static const std::vector<Column> columns{
       {number, "numerical_work", "J",
        "work of relaxation since the start in addition to the external work: against its pseudo "
-       "inertia, and along the way between two accepted steps"},
+       "inertia, and on the path between two accepted steps"},
       {number, "pin_force", "N",
        "2-norm of the forces that hold pinned fragments; reactions do not include them"},
       {integer, "settled", "1",
@@ -112,7 +112,7 @@ std::vector<Column> iteration_columns() {
        "0 is the state right after the step's jump of supports and loads"},
       {number, "residual", "N", "2-norm of the residual over the free degrees of freedom"},
       {number, "relative_residual", "1", "residual over the norm that the tolerance refers to"},
-      {number, "energy", "J", "stored energy minus work of the present dead loads"},
+      {number, "energy", "J", "stored energy minus work of the current dead loads"},
       {number, "step_length", "1", "step length of the line search"},
       {integer, "linear_iterations", "1", "iterations of the linear solver, 0 for a direct solve"},
       {integer, "changed_bonds", "1",

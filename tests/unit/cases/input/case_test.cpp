@@ -319,7 +319,7 @@ const std::vector<BadInput> bad_inputs{
      "[[probe]]",
      "[loading]\ntable = [0, 1]\ntable2 = [0, 1]\n[[probe]]",
      27,
-     {"loading.table2", "gives values of load2, which no displacement and no load uses"}},
+     {"loading.table2", "gives values of load2, but no displacement and no load uses it"}},
     {"LongName",
      "name = \"tip\"",
      "name = \"" + std::string(300, 't') + "\"",
@@ -638,7 +638,7 @@ const std::vector<BadInput> bad_inputs{
      24,
      {"load[0].total_force[0] = \"1e6*x\"", "x"}},
     {"FreeForce", "\"1e6*load\"", "\"free\"", 24, {"write 0 for no force"}},
-    {"EverythingFree", "[0, \"1e-3*load\"]", "[\"free\", \"free\"]", 21, {"supports nothing"}},
+    {"EverythingFree", "[0, \"1e-3*load\"]", "[\"free\", \"free\"]", 21, {"has no effect"}},
 };
 
 INSTANTIATE_TEST_SUITE_P(BadInput, CaseRefusal, testing::ValuesIn(bad_inputs),
@@ -786,7 +786,7 @@ TEST_F(CaseOverride, RefusesKeysThatCanNotBeFollowed) {
             std::string::npos);
   EXPECT_NE(refusal(plate, {{"dimension.x", "1"}}).find("dimension is a whole number"),
             std::string::npos);
-  EXPECT_NE(refusal(plate, {{"material[0].model", "bond"}}).find("no array but a table"),
+  EXPECT_NE(refusal(plate, {{"material[0].model", "bond"}}).find("not an array but a table"),
             std::string::npos);
 }
 

@@ -199,8 +199,9 @@ TEST(Givens, AreRefusedWithTheirNames) {
   EXPECT_NE(unknown.find("did you mean field?"), std::string::npos) << unknown;
   Givens bad;
   bad.functions["sin"] = givens->functions.at("field");
-  EXPECT_NE(refusal(as_text, std::make_shared<const Givens>(bad)).find("is taken"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal(as_text, std::make_shared<const Givens>(bad)).find("already has another meaning"),
+      std::string::npos);
 }
 
 TEST(Givens, PassExceptionsOn) {
@@ -225,9 +226,10 @@ TEST(Givens, AreNamedInTheInputsOfARun) {
     require_givens(lines + "0123456789abcdef /a/file\n", {});
     ADD_FAILURE();
   } catch (const InputError& error) {
-    EXPECT_EQ(error.allowed(),
-              "this run used what a program gave it: function factor, function field, function "
-              "total, function upper. Resume it in that program");
+    EXPECT_EQ(
+        error.allowed(),
+        "this run used functions or points of a program: function factor, function field, function "
+        "total, function upper. Resume it in a program that gives them");
   }
 }
 
@@ -322,7 +324,7 @@ TEST(GivenPoints, GoWithNoOtherPoints) {
     EXPECT_NE(refusal(replaced_all(cloud, "FILE", line), points).find("points."),
               std::string::npos);
   }
-  EXPECT_NE(refusal(as_text, points).find("goes with no points that a program gives"),
+  EXPECT_NE(refusal(as_text, points).find("cannot be combined with points that a program gives"),
             std::string::npos);
   EXPECT_NE(refusal(text, std::make_shared<const Givens>()).find("points.file"), std::string::npos);
   EXPECT_NE(refusal(replaced_all(text, "dimension = 2", "dimension = 3"), points).find("dimension"),
@@ -347,9 +349,9 @@ TEST(GivenPoints, AreCheckedLikeThoseOfAFile) {
   expect(refused([](Points& p) { p.sets["held"].clear(); }), "has no point");
   expect(refused([](Points& p) { p.sets[""] = {1}; }), "1 to 100 characters");
   expect(refused([](Points& p) { p.columns["heat"].pop_back(); }), "must have 144");
-  expect(refused([](Points& p) { p.columns["x"] = p.volume; }), "is taken");
+  expect(refused([](Points& p) { p.columns["x"] = p.volume; }), "already has another meaning");
   expect(refused([](Points& p) { std::copy_n(p.reference.begin(), 2, p.reference.begin() + 10); }),
-         "points 0 and 5 (from 0) stand at one place");
+         "points 0 and 5 (from 0) have the same position");
 }
 
 }  // namespace

@@ -203,9 +203,9 @@ TEST(DimensionOfExpression, RefusesUnitsThatDoNotFit) {
       {"x*y > 10 mm", "adds or compares an area and a length"},
       {"1 mm * sin(t)", "the argument of sin must have no unit; this one is a time"},
       {"2^(1 mm)", "an exponent must have no unit"},
-      {"(1 mm)^load", "may only have a whole number as its exponent"},
+      {"(1 mm)^load", "needs a whole number as exponent"},
       {"5 furlongs", "there is no unit \"furlongs\""},
-      {"2 x", "a product is written with *"}};
+      {"2 x", "write a product with *"}};
   for (const auto& [text, reason] : reasons)
     EXPECT_NE(dimension_of(text).find(reason), std::string::npos)
         << text << ": " << dimension_of(text);

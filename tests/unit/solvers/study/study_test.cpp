@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](auto&, auto& of) { of.material.potential = "harmonik"; }},
         Refusal{"PoissonRatioOfBonds", "material.poisson_ratio", "is for models \"cpd\"",
                 [](auto&, auto& of) { of.material.poisson_ratio = 0.3; }},
-        Refusal{"CpdWithoutPoissonRatio", "material.poisson_ratio", "goes with youngs_modulus",
+        Refusal{"CpdWithoutPoissonRatio", "material.poisson_ratio", "needs youngs_modulus",
                 [](auto&, auto& of) { of.material.model = MaterialModel::cpd; }},
         Refusal{"DamageWithoutALaw", "material.damage.critical", "needs a law",
                 [](auto&, auto& of) { of.material.damage.critical = 0.01; }},

@@ -159,8 +159,9 @@ TEST(Expression, NamesTheColumnsThatAreAllowed) {
   EXPECT_EQ(refused("temprature", 1),
             "unknown variable temprature; allowed are x, load, pi, spacing, spacing_x, "
             "temperature, v_1; did you mean temperature?");
-  EXPECT_EQ(refused("2*temperature", 0),
-            "column temperature has a value at each point, but this one number is for none");
+  EXPECT_EQ(
+      refused("2*temperature", 0),
+      "column temperature has a value at each point, but this number does not belong to a point");
 }
 
 TEST(Expression, KnowsWhichNamesColumnsCanHave) {
@@ -229,7 +230,7 @@ TEST(Expression, RefusesTextThatIsNoExpression) {
   }
   EXPECT_NE(refusal("x + * y").find("character"), std::string::npos);
   EXPECT_EQ(refusal("x + * y").find("position"), std::string::npos) << refusal("x + * y");
-  EXPECT_NE(refusal("load ** 2").find("character 6 is no operator; a power is written with ^"),
+  EXPECT_NE(refusal("load ** 2").find("character 6 is not an operator; write a power with ^"),
             std::string::npos);
   const std::string longest = std::string(19'998, ' ') + "1";
   EXPECT_EQ(refusal(longest), "accepted");

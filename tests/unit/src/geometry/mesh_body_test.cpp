@@ -192,7 +192,7 @@ TEST(MeshBody, RefusesNodesAtOnePlace) {
   mesh.nodes.insert(mesh.nodes.end(), {1, 0, 0, 1, 1, 0});
   mesh.blocks[1].nodes[4] = 6;
   mesh.blocks[1].nodes[7] = 7;
-  expect_refusal(mesh, {"at the place of node 2", "[[crack]]"});
+  expect_refusal(mesh, {"has the position of node 2", "[[crack]]"});
 }
 
 TEST(MeshBody, RefusesHangingNodes) {
