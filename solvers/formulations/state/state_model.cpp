@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "solvers/formulations/solid/solid_constants.hpp"
+#include "solvers/formulations/specification/require.hpp"
 #include "src/materials/bulk_bonds.hpp"
+#include "src/parallel/index_map.hpp"
 
 namespace peristat {
 BondSetting state_setting(BondSetting setting) {
@@ -24,6 +26,15 @@ double micromodulus_of_states(const MaterialSpecification& material, const BondS
 }
 
 namespace {
+
+/// Damage goes from bond to bond in one order, which ranks do not have.
+void refuse_damage_of_parts(const ModelSetting& setting) {
+  if (setting.index_map.is_whole()) return;
+  for (const auto& material : all_materials(setting.of, setting.materials)) {
+    require(material.of->damage.law == DamageLaw::none, material.key + ".damage.law", "",
+            "is for one rank with model \"state\"");
+  }
+}
 
 /// Weights with which bonds take kappa r^2 (q_i + q_j) times the work of their law, q = V d (d + 2)
 /// mu / M, by a potential of this modulus.
@@ -46,6 +57,7 @@ MadeModel make_state_model(const ModelSetting& setting, Bonds bonds, StateRules 
   const BodySpecification& from = setting.of;
   const Points& points = setting.points;
   const bool is_by_release = rules.drive == DamageDrive::release;
+  if (is_by_release) refuse_damage_of_parts(setting);
   const BondSetting of_states = state_setting(setting.bonds);
   std::vector<DirectedConstant> moduli;
   for (const auto& material : all_materials(from, setting.materials)) {
