@@ -58,14 +58,12 @@ struct ReleaseBody {
 
   [[nodiscard]] std::size_t dofs() const { return points.reference.size(); }
 
-  /// Moves the points beyond x apart by an opening and a slip.
-  [[nodiscard]] std::vector<double> torn(double x, double opening, double slip = 0.0) const {
+  /// Moves the points beyond x apart.
+  [[nodiscard]] std::vector<double> torn(double x, double opening) const {
     const auto d = std::size_t(points.dimension);
     std::vector<double> u(dofs(), 0.0);
     for (Index i = 0; i < points.count(); ++i) {
-      if (points.position(i)[0] < x) continue;
-      u[std::size_t(i) * d] = opening;
-      u[std::size_t(i) * d + 1] = slip;
+      if (points.position(i)[0] >= x) u[std::size_t(i) * d] = opening;
     }
     return u;
   }
@@ -162,28 +160,27 @@ TEST_P(ReleaseOfPoisson, ATearTakesWhatItsBondsTake) {
     const ReleaseBody body(box, nu, law);
     Assembler assembler(body.points, body.model, 1);
     const double middle = 0.5 * box.extent[0] * box.spacing;
+    const double work = softens ? 0.25 * critical * critical : 0.5 * critical * critical;
+    const double expected = body.taken_across(middle, work);
     History history = assembler.initial_history();
     double taken = 0.0, drained = 0.0;
-    for (int step = 1; step <= 60; ++step) {
-      const double opening = 0.06 * box.spacing * box.horizon_ratio * step / 60;
-      const std::vector<double> u = body.torn(middle, opening, 0.5 * opening);
+    const double last = 3.0 * box.spacing;  // stretches bonds along the plane, too
+    for (int step = 1; step <= 100; ++step) {
+      const std::vector<double> u = body.torn(middle, last * std::pow(1.08, step - 100));
       double before = assembler.energy({u, history}).energy;
       for (int pass = 0; pass < 200; ++pass) {  // at fixed displacements
         const Evaluation after = assembler.commit(u, history, {});
         if (!after.moves_equilibrium) break;
         const double now = dissipated(assembler, history);
-        EXPECT_GE(before - after.energy, now - taken - 1e-13 * before);
+        EXPECT_GE(before - after.energy, now - taken - 1e-13 * expected);
         drained += before - after.energy - (now - taken);
         taken = now;
         before = after.energy;
       }
       EXPECT_EQ(assembler.growth({u, history}).degrading, 0);
     }
-    const double work = softens ? 0.25 * critical * critical : 0.5 * critical * critical;
-    const double expected = body.taken_across(middle, work);
     EXPECT_NEAR(taken, expected, 1e-12 * expected);
     EXPECT_GT(drained, 0.0);
-    EXPECT_LT(drained, 0.5 * expected);
   }
 }
 
