@@ -69,7 +69,7 @@ class StatePasses : public TermPasses, BlockTangent {
   DamageGrowth growth(const StateView& at) override {
     if (!failure_.can_fail()) return {};
     if (!failure_.fails_in_avalanches()) return stretches_->growth(at);
-    return driven_bonds(at, [](int, const Driven&) {});
+    return visit_driven(at, [](int, const Driven&) {});
   }
 
   [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
@@ -131,7 +131,7 @@ class StatePasses : public TermPasses, BlockTangent {
   using Driven = typename StateKernels<D, Measure>::Driven;
 
   template <class Visit>
-  DamageGrowth driven_bonds(const StateView& at, const Visit& visit) {
+  DamageGrowth visit_driven(const StateView& at, const Visit& visit) {
     if (!are_found(at)) find_states(at);
     DamageGrowth found;
     failure_.with_damage_law([&](const auto& law) {
@@ -144,36 +144,47 @@ class StatePasses : public TermPasses, BlockTangent {
   }
 
   /// Commits damage by release, one bond after another, each with the dilatations that those before
-  /// it have left, in the order of their utilisation: bonds share dilatations, and all at once
-  /// would count these more than once.
+  /// it have left, in the order of their utilisation, until none is driven: bonds share
+  /// dilatations, and all at once would count these more than once.
   Evaluation release(const StateView& at, History& history, std::span<double> gradient, Write how) {
-    std::vector<std::vector<Driven>> of_thread;
-    of_thread.resize(std::size_t(threads_));
-    driven_bonds(at, [&](int thread, const Driven& driven) {
-      of_thread[std::size_t(thread)].push_back(driven);
-    });
-    std::vector<Driven> all;
-    for (const auto& some : of_thread) all.insert(all.end(), some.begin(), some.end());
-    if (all.empty()) return this->gradient(at, gradient, how);
-    std::ranges::sort(all, [](const Driven& a, const Driven& b) {
-      return a.utilisation != b.utilisation ? a.utilisation > b.utilisation : a.bond < b.bond;
-    });
     DamageGrowth growth;
-    const std::span<double> stretches = history.change(slot_);
-    failure_.with_damage_law([&](const auto& law) {
-      for (const Driven& driven : all) {
-        const auto& of_bond = law.of_bond(driven.bond);
-        double& stretch = stretches[std::size_t(driven.bond)];
-        if (!kernels_.damage_by_release(driven, of_bond, stretch)) continue;
-        ++growth.degrading;
-        growth.breaking += of_bond.is_broken(stretch);
-      }
-    });
+    std::vector<Driven> driven = driven_bonds(at);
+    if (driven.empty()) return this->gradient(at, gradient, how);
+    while (!driven.empty()) {
+      const std::span<double> stretches = history.change(slot_);
+      const Index before_pass = growth.degrading;
+      failure_.with_damage_law([&](const auto& law) {
+        for (const Driven& one : driven) {
+          const auto& of_bond = law.of_bond(one.bond);
+          double& stretch = stretches[std::size_t(one.bond)];
+          if (!kernels_.damage_by_release(one, of_bond, stretch)) continue;
+          ++growth.degrading;
+          growth.breaking += of_bond.is_broken(stretch);
+        }
+      });
+      if (growth.degrading == before_pass) break;  // round-off alone has driven them
+      driven = driven_bonds({at.displacement, history, Damage::grows, at.environment});
+    }
     Evaluation found =
         this->gradient({at.displacement, history, Damage::grows, at.environment}, gradient, how);
     found.growth = growth;
     found.moves_equilibrium = growth.degrading > 0;
     return found;
+  }
+
+  /// Bonds that are driven beyond what they bear, the most utilised first.
+  std::vector<Driven> driven_bonds(const StateView& at) {
+    std::vector<std::vector<Driven>> of_thread;
+    of_thread.resize(std::size_t(threads_));
+    visit_driven(at, [&](int thread, const Driven& driven) {
+      of_thread[std::size_t(thread)].push_back(driven);
+    });
+    std::vector<Driven> all;
+    for (const auto& some : of_thread) all.insert(all.end(), some.begin(), some.end());
+    std::ranges::sort(all, [](const Driven& a, const Driven& b) {
+      return a.utilisation != b.utilisation ? a.utilisation > b.utilisation : a.bond < b.bond;
+    });
+    return all;
   }
 
   /// True if the kernels have the states of `at`: solvers multiply many times at one state.
