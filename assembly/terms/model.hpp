@@ -60,10 +60,8 @@ class Model {
   }
 
   [[nodiscard]] bool has_history() const { return failure_->can_fail(); }
-  /// True if points fail instead of bonds: there is no bond strength that a load could be scaled
-  /// to, and all points that exceed what they bear fail together under the same load.
   [[nodiscard]] bool fails_in_avalanches() const {
-    return has_history() && failure_->parts() == FailingParts::points;
+    return has_history() && failure_->fails_in_avalanches();
   }
 
   /// Position of a term's array in a History, and of that of the term that fails by a model.

@@ -12,6 +12,7 @@
 #include "solvers/formulations/lps_collocation/lps_collocation.hpp"
 #include "solvers/formulations/lps_energy/lps_energy.hpp"
 #include "solvers/formulations/specification/for_each_material.hpp"
+#include "solvers/formulations/state/state.hpp"
 
 namespace peristat {
 namespace {
@@ -19,9 +20,9 @@ namespace {
 /// The one list of formulations.
 const std::vector<const Formulation*>& all_formulations() {
   static const std::vector<const Formulation*> all{
-      &bond_formulation(),          &linear_bond_formulation(),     &cpd_formulation(),
-      &lps_energy_formulation(),    &lps_collocation_formulation(), &green_bond_formulation(),
-      &correspondence_formulation()};
+      &bond_formulation(),       &linear_bond_formulation(),   &cpd_formulation(),
+      &state_formulation(),      &lps_energy_formulation(),    &lps_collocation_formulation(),
+      &green_bond_formulation(), &correspondence_formulation()};
   return all;
 }
 
@@ -54,6 +55,7 @@ std::vector<std::string> names_with(Option option) {
 const std::vector<ModelName>& model_names() {
   static const std::vector<ModelName> names{{MaterialModel::bond, "bond"},
                                             {MaterialModel::cpd, "cpd"},
+                                            {MaterialModel::state, "state"},
                                             {MaterialModel::lps, "lps"},
                                             {MaterialModel::green_bond, "green_bond"},
                                             {MaterialModel::correspondence, "correspondence"}};

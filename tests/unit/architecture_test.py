@@ -42,6 +42,7 @@ ROOMS = [
     "solvers/formulations/linear_bond",
     "solvers/formulations/green_bond",
     "solvers/formulations/cpd",
+    "solvers/formulations/state",
     "solvers/formulations/lps_energy",
     "solvers/formulations/lps_collocation",
     "solvers/formulations/correspondence",

@@ -11,18 +11,27 @@
 
 namespace peristat {
 
-/// Bonds that fail by their stretch, if their potential is one of damage.
+/// What drives the damage of a bond.
+enum class DamageDrive {
+  stretch,  ///< its stretch s
+  release   ///< what its loss would set free, as an equivalent stretch: see StateTerm
+};
+
+/// Bonds that fail by their stretch, if their potential is one of damage, or by an equivalent one.
 ///
-/// The history is the largest stretch of each bond over the committed states, as far as it has
-/// damaged the bond: 0 before, Degraded::never_fails where that is said.
+/// The history is the largest (equivalent) stretch of each bond over the committed states, as far
+/// as it has damaged the bond: 0 before, Degraded::never_fails where that is said.
 class BondFailure final : public FailureModel {
  public:
   /// @param never_fails per bond, 1: no damage whatever the stretch; empty: none
   BondFailure(std::shared_ptr<const Bonds> bonds, BondPotential potential,
-              std::vector<char> never_fails = {})
+              std::vector<char> never_fails = {}, DamageDrive drive = DamageDrive::stretch)
       : FailureModel(std::move(bonds)),
         potential_(std::move(potential)),
-        never_fails_(std::move(never_fails)) {}
+        never_fails_(std::move(never_fails)),
+        drive_(drive) {}
+
+  [[nodiscard]] DamageDrive drive() const { return drive_; }
 
   [[nodiscard]] const BondPotential& potential() const { return potential_; }
 
@@ -51,6 +60,7 @@ class BondFailure final : public FailureModel {
     return std::visit([]<class P>(const P&) { return PotentialWithHistory<P>; }, potential_);
   }
   [[nodiscard]] FailingParts parts() const override { return FailingParts::bonds; }
+  [[nodiscard]] bool fails_in_avalanches() const override { return drive_ == DamageDrive::release; }
   [[nodiscard]] std::vector<double> initial_history() const override;
   [[nodiscard]] std::vector<char> broken(const Bonds& bonds,
                                          std::span<const double> history) const override;
@@ -61,6 +71,7 @@ class BondFailure final : public FailureModel {
  private:
   BondPotential potential_;
   std::vector<char> never_fails_;
+  DamageDrive drive_;
 };
 
 }  // namespace peristat

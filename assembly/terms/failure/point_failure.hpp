@@ -37,6 +37,7 @@ class PointFailure final : public FailureModel {
   [[nodiscard]] Offset count_of_bonds() const override { return count_; }
   [[nodiscard]] bool can_fail() const override { return bearable_.has_value(); }
   [[nodiscard]] FailingParts parts() const override { return FailingParts::points; }
+  [[nodiscard]] bool fails_in_avalanches() const override { return true; }
   [[nodiscard]] std::vector<double> initial_history() const override;
   [[nodiscard]] std::vector<char> broken(const Bonds& bonds,
                                          std::span<const double> history) const override;

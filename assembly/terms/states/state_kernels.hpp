@@ -1,157 +1,209 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "assembly/operators/block_pattern.hpp"
+#include "assembly/terms/bonds/bond_kernels.hpp"
+#include "assembly/terms/bonds/bond_workspace.hpp"
 #include "assembly/terms/states/state_network.hpp"
+#include "src/core/aligned_vector.hpp"
 #include "src/core/threads.hpp"
+#include "src/measures/linear_length.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
 
-/// The sums of StateTerm. Every point gathers its own contributions in one order: results are the
-/// same for any number of threads.
-template <int D>
+/// The sums of StateTerm over bonds. Measure is Length or LinearLength; s is the stretch that it
+/// finds, n its gradient, and g = T kappa r the share that integrity leaves of a bond. A field of
+/// displacements is passed over twice: the first pass finds the dilatations theta_i = b_i sum g r s
+/// of all points, the second the forces f n of bonds, f = g [p_i + p_j + (q_i + q_j) s].
+template <int D, class Measure>
 class StateKernels {
  public:
-  using V = Vector<D, double>;
+  using Span = std::span<const double>;
 
   StateKernels(const Points& points, const Bonds& bonds, const StateShares& shares,
-               const StateNetwork& network, int threads)
-      : reference_(points.reference),
-        bonds_(bonds),
-        shares_(shares),
-        network_(network),
-        threads_(threads),
-        kernel_(shares.kernel) {
-    const auto count = points.volume.size();
+               const StateNetwork& network, Workspace& workspace)
+      : buffers_(points, bonds, workspace), network_(network) {
+    const auto count = points.volume.size(), bond_count = std::size_t(bonds.count());
+    whole_.assign(bond_count + lane_count, 0.0);
+    for (std::size_t b = 0; b < bond_count; ++b) {
+      whole_[b] = shares.kernel[b] * bonds.length(Offset(b));
+    }
+    share_ = whole_;
+    ends_.assign(2 * count, 0.0);
     for (std::vector<double>* per_point :
-         {&dilatational_, &deviatoric_, &inverse_moment_, &pressure_, &energy_}) {
+         {&dilatational_, &per_moment_, &stiffness_, &energy_, &rate_}) {
       per_point->assign(count, 0.0);
     }
     for (std::size_t i = 0; i < count; ++i) {
       const auto& [lambda, mu] = shares.constants[i];
       // A point without neighbours has no states.
-      inverse_moment_[i] = shares.moment[i] > 0.0 ? 1.0 / shares.moment[i] : 0.0;
+      per_moment_[i] = shares.moment[i] > 0.0 ? D / shares.moment[i] : 0.0;
       dilatational_[i] = points.volume[i] * (lambda - mu);
-      deviatoric_[i] = points.volume[i] * D * (D + 2) * mu * inverse_moment_[i];
+      stiffness_[i] = dilatational_[i] * per_moment_[i] * per_moment_[i];
+      ends_[2 * i] = points.volume[i] * (D + 2) * mu * per_moment_[i];
     }
   }
 
-  /// Multiplies the kernel's shares by integrity(bond).
+  /// Leaves integrity(bond) of each bond.
   template <class Integrity>
   void scale(const Integrity& integrity) {
-    if (left_.empty()) left_.resize(shares_.kernel.size());
-    const auto count = Offset(left_.size());
-    for_ranges(count, [&](Offset bond) {
-      left_[std::size_t(bond)] = shares_.kernel[std::size_t(bond)] * integrity(bond);
-    });
-    kernel_ = left_;
-  }
-
-  /// Finds the pressure V (lambda - mu) theta d / M and the energy of each point; returns the sum
-  /// of the energies.
-  double find_states(std::span<const double> u) {
-    for_ranges(Index(energy_.size()), [&](Index i) {
-      const V here = of(u, i);
-      double sum = 0.0, squares = 0.0;
-      for_neighbours(i, [&](Index j, Offset bond) {
-        const V xi = arm(i, j);
-        const double along = dot<D>(xi, minus<D>(of(u, j), here));
-        const double share = kernel_[std::size_t(bond)] * along;
-        sum += share;
-        squares += share * along / dot<D>(xi, xi);
-      });
-      const double theta = D * inverse_moment_[i] * sum;
-      pressure_[i] = dilatational_[i] * theta * D * inverse_moment_[i];
-      energy_[i] = 0.5 * (dilatational_[i] * theta * theta + deviatoric_[i] * squares);
-    });
-    double total = 0.0;
-    for (const double energy : energy_) total += energy;
-    return total;
-  }
-
-  [[nodiscard]] std::span<const double> energies() const { return energy_; }
-
-  /// State before bonds fail, which their losses depend on.
-  struct Before {
-    std::vector<double> kernel, pressure;
-  };
-  [[nodiscard]] Before remembered() const { return {{kernel_.begin(), kernel_.end()}, pressure_}; }
-
-  /// Returns what Pi loses with bonds: the sum of delta kappa [(b_i + b_j) (xi . eta)^2 / (2 r^2) +
-  /// (p_i + p_j) xi . eta], b = V d (d + 2) mu / M and p the mean of the pressures before and
-  /// after, each bond weighted by share(i, bond, stretch). After find_states of the same field.
-  template <class Share>
-  [[nodiscard]] double losses(std::span<const double> u, const Before& before,
-                              const Share& share) const {
-    double sum = 0.0;
-    for (Index i = 0; i < bonds_.points(); ++i) {
-      for (Offset bond = bonds_.offset[i]; bond < bonds_.offset[i + 1]; ++bond) {
-        const double lost = before.kernel[std::size_t(bond)] - kernel_[std::size_t(bond)];
-        if (lost == 0.0) continue;
-        const Index j = bonds_.partner[bond];
-        const V xi = arm(i, j), eta = minus<D>(of(u, j), of(u, i)), now = plus<D>(xi, eta);
-        const double squared = dot<D>(xi, xi), along = dot<D>(xi, eta);
-        const double pressure = 0.5 * (before.pressure[std::size_t(i)] + pressure_[i] +
-                                       before.pressure[std::size_t(j)] + pressure_[j]);
-        const double density = 0.5 * (deviatoric_[i] + deviatoric_[j]) * along * along / squared;
-        const double stretch = std::sqrt(dot<D>(now, now) / squared) - 1.0;
-        sum += lost * (density + pressure * along) * share(i, bond, stretch);
-      }
+    const auto count = Offset(whole_.size()) - lane_count;
+#pragma omp parallel for num_threads(threads())
+    for (Offset b = 0; b < count; ++b) {
+      share_[std::size_t(b)] = whole_[std::size_t(b)] * integrity(b);
     }
-    return sum;
   }
+
+  /// Finds p_i = V (lambda - mu) b theta and the energy of each point. Returns the sum of the
+  /// energies, and whether a bond has no length.
+  template <class E>
+  Evaluation find_states(Span u, const E& eigenstretch) {
+    buffers_.template pack<D>(buffers_.points.reference, u);
+    std::vector<Lanes> shortest(std::size_t(threads()), std::numeric_limits<double>::infinity());
+    const auto body = [&](int thread, RowRange range, double* sums) {
+      Lanes least = std::numeric_limits<double>::infinity();
+      for (Index i = range.first; i < range.last; ++i) {
+        Vector<2, Lanes> own{Lanes(0.0), Lanes(0.0)};
+        for_each_bond(
+            i, [&](const Batch<D>& batch, const Lanes& share) __attribute__((always_inline)) {
+              const auto measure = strained(batch, eigenstretch, i);
+              const Lanes part = share * measure.relative_change / batch.inverse_length;
+              const Vector<2, Lanes> parts{part, part * measure.relative_change};
+              least = min(least, measure.current);
+              own[0] += parts[0];
+              own[1] += parts[1];
+              add_to_partners<2>(sums, batch.partner, parts);
+            });
+        sums[std::ptrdiff_t(i) * 2] += sum(own[0]);
+        sums[std::ptrdiff_t(i) * 2 + 1] += sum(own[1]);
+      }
+      shortest[std::size_t(thread)] = least;
+    };
+    buffers_.threads.template sum_rows<2>(body, [&](Index point, const double* total) {
+      const auto i = std::size_t(point);
+      const double theta = per_moment_[i] * total[0];
+      ends_[2 * i + 1] = stiffness_[i] * total[0];
+      energy_[i] = 0.5 * (dilatational_[i] * theta * theta + ends_[2 * i] * total[1]);
+    });
+    Evaluation found;
+    for (const double energy : energy_) found.energy += energy;
+    found.degenerate = !std::isfinite(found.energy);
+    for (const Lanes& least : shortest) found.degenerate |= !(smallest(least) > 0.0);
+    return found;
+  }
+
+  [[nodiscard]] Span energies() const { return energy_; }
 
   /// dPi/du, after find_states of the same field.
-  void write_forces(std::span<const double> u, std::span<double> force, bool onto) const {
-    for_ranges(Index(energy_.size()), [&](Index i) {
-      const V here = of(u, i);
-      V sum{};
-      for_neighbours(i, [&](Index j, Offset bond) {
-        const V xi = arm(i, j);
-        const double stretch = dot<D>(xi, minus<D>(of(u, j), here)) / dot<D>(xi, xi);
-        const double pull =
-            kernel_[std::size_t(bond)] *
-            (pressure_[i] + pressure_[j] + (deviatoric_[i] + deviatoric_[j]) * stretch);
-        for (int c = 0; c < D; ++c) sum[c] -= pull * xi[c];
-      });
-      double* to = &force[std::size_t(i) * D];
-      for (int c = 0; c < D; ++c) to[c] = onto ? to[c] + sum[c] : sum[c];
+  template <class E>
+  void write_forces(const E& eigenstretch, std::span<double> force, Write how) {
+    sum_forces(
+        force, how,
+        [&](const Batch<D>& batch, const Lanes& share, Index i) __attribute__((always_inline)) {
+          const auto measure = strained(batch, eigenstretch, i);
+          const auto [q, p] = of_ends(i, batch);
+          return scaled<D>(share * (p + q * measure.relative_change), measure.gradient[0]);
+        });
+  }
+
+  /// Adds d2Pi/du2 v after find_states of the displacements u.
+  template <class E>
+  void write_product(Span u, const E& eigenstretch, Span v, double projection,
+                     std::span<double> product, Write how) {
+    pack_current(u, v);
+    const auto rates = [&](int, RowRange range, double* sums) {
+      for (Index i = range.first; i < range.last; ++i) {
+        Lanes own = 0.0;
+        for_each_bond(
+            i, [&](const Batch<D>& batch, const Lanes& share) __attribute__((always_inline)) {
+              const auto measure = current(batch);
+              const Lanes part = share * dot<D>(measure.gradient[0], batch.vector1);
+              own += part;
+              add_to_partners<1>(sums, batch.partner, Vector<1, Lanes>{part});
+            });
+        sums[i] += sum(own);
+      }
+    };
+    buffers_.threads.template sum_rows<1>(rates, [&](Index point, const double* total) {
+      const auto i = std::size_t(point);
+      rate_[i] = stiffness_[i] * *total;
     });
+    sum_forces(
+        product, how,
+        [&](const Batch<D>& batch, const Lanes& share, Index i) __attribute__((always_inline)) {
+          auto measure = current(batch);
+          const auto [q, p] = of_ends(i, batch);
+          const double own = rate_[std::size_t(i)];
+          const Lanes rate([&](int l) { return own + rate_[std::size_t(batch.partner[l])]; });
+          const Vector<D, Lanes>& n = measure.gradient[0];
+          const Lanes along = dot<D>(n, batch.vector1);
+          Vector<D, Lanes> force = scaled<D>(share * (rate + q * along * batch.inverse_length), n);
+          if constexpr (bends) {
+            relieve(measure, eigenstretch, i, batch);
+            const Lanes pull =
+                projected_pull(share * (p + q * measure.relative_change), projection);
+            const Lanes across = pull * measure.inverse;
+            for (int c = 0; c < D; ++c) force[c] += across * (batch.vector1[c] - along * n[c]);
+          }
+          return force;
+        });
   }
 
   /// Adds V dw/dH of the points, w their energy densities and H a displacement gradient that is
-  /// uniform in a neighbourhood, after find_states of the same field.
-  void add_virials(std::span<const double> u, std::span<double> virials) const {
-    for_ranges(Index(energy_.size()), [&](Index i) {
-      const V here = of(u, i);
-      double* to = &virials[std::size_t(i) * D * D];
-      for_neighbours(i, [&](Index j, Offset bond) {
-        const V xi = arm(i, j);
-        const double stretch = dot<D>(xi, minus<D>(of(u, j), here)) / dot<D>(xi, xi);
-        const double pull = kernel_[std::size_t(bond)] * (pressure_[i] + deviatoric_[i] * stretch);
-        for (int r = 0; r < D; ++r) {
-          for (int c = 0; c < D; ++c) to[r * D + c] += pull * xi[r] * xi[c];
+  /// uniform in a neighbourhood, after find_states of the same field: each end of a bond takes
+  /// g (p_i + q_i s) n (x) xi.
+  template <class E>
+  void add_virials(const E& eigenstretch, std::span<double> virials) {
+    constexpr int width = vector_width(D);
+    for (int row = 0; row < D; ++row) {
+      const auto body = [&](int, RowRange range, double* sums) {
+        for (Index i = range.first; i < range.last; ++i) {
+          Vector<D, Lanes> own;
+          own.fill(Lanes(0.0));
+          for_each_bond(
+              i, [&](const Batch<D>& batch, const Lanes& share) __attribute__((always_inline)) {
+                const auto measure = strained(batch, eigenstretch, i);
+                const Lanes& s = measure.relative_change;
+                const Lanes along = share * measure.gradient[0][row];
+                const double* const end = &ends_[2 * std::size_t(i)];
+                const Lanes q([&](int l) { return ends_[2 * std::size_t(batch.partner[l])]; });
+                const Lanes p([&](int l) { return ends_[2 * std::size_t(batch.partner[l]) + 1]; });
+                const auto here = scaled<D>(along * (end[1] + end[0] * s), batch.vector0);
+                for (int c = 0; c < D; ++c) own[c] += here[c];
+                add_to_partners<D>(sums, batch.partner,
+                                   scaled<D>(along * (p + q * s), batch.vector0));
+              });
+          for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
         }
+      };
+      buffers_.threads.template sum_rows<width>(body, [&](Index i, const double* total) {
+        put<D>(Write::onto, total, &virials[std::size_t(i) * D * D + std::size_t(row) * D]);
       });
-    });
+    }
   }
 
-  /// Adds d2Pi/du2, row by row: two points j and k with a common neighbour i get the block
-  /// V (lambda - mu) g_j g_k from it, g_j = (d/M_i) kappa_ij xi and minus the sum of these for i
-  /// itself.
-  void add_tangent(const BlockPattern& pattern, std::span<double> off_diagonal,
-                   std::span<double> diagonal) const {
+  /// Adds d2Pi/du2 after find_states of the displacements u, row by row: two points j and k with a
+  /// common neighbour i get the block V (lambda - mu) G_j G_k^T from it, G the gradient of theta_i:
+  /// b_i g n for a neighbour and minus the sum of these for i itself.
+  template <class E>
+  void add_tangent(Span u, const E& eigenstretch, double projection, const BlockPattern& pattern,
+                   std::span<double> off_diagonal, std::span<double> diagonal) {
+    const BondBlocks bonds = bond_blocks(u, eigenstretch, projection);
+    const std::vector<double> own = own_gradients(bonds);
     const Index count = Index(energy_.size());
-    const std::vector<double> own = own_gradients();
-    run_on_threads(threads_, [&](int thread) {
+    run_on_threads(threads(), [&](int thread) {
       std::vector<Offset> place(std::size_t(count), -1);
-      const Index first = Index(std::int64_t(count) * thread / threads_);
-      const Index last = Index(std::int64_t(count) * (thread + 1) / threads_);
+      const Index first = Index(std::int64_t(count) * thread / threads());
+      const Index last = Index(std::int64_t(count) * (thread + 1) / threads());
       for (Index j = first; j < last; ++j) {
         for (Offset b = pattern.offset[j]; b < pattern.offset[j + 1]; ++b) {
           place[std::size_t(pattern.partner[b])] = b;
@@ -161,37 +213,252 @@ class StateKernels {
           return k == j ? block_of_point
                         : &off_diagonal[std::size_t(place[std::size_t(k)]) * D * D];
         };
-        add_centre(j, j, of(own, j), own, block_with);
+        add_centre(j, j, of(own, j), own, bonds, block_with);
         for_neighbours(j, [&](Index i, Offset bond) {
-          const V xi = arm(i, j);
-          const double share = kernel_[std::size_t(bond)];
-          if (share == 0.0) return;
-          add_centre(i, j, scaled<D>(D * inverse_moment_[i] * share, xi), own, block_with);
-          const double stiffness = share * (deviatoric_[i] + deviatoric_[j]) / dot<D>(xi, xi);
-          add_outer(stiffness, xi, xi, block_of_point);
-          if (i > j) add_outer(-stiffness, xi, xi, block_with(i));
+          if (share_[std::size_t(bond)] == 0.0) return;
+          const double b_i = per_moment_[std::size_t(i)];
+          add_centre(i, j, scaled<D>(i < j ? b_i : -b_i, of(bonds.direction, bond)), own, bonds,
+                     block_with);
+          const double* const block = &bonds.block[std::size_t(bond) * D * D];
+          double* const between = i > j ? block_with(i) : nullptr;
+          for (int c = 0; c < D * D; ++c) {
+            block_of_point[c] += block[c];
+            if (between != nullptr) between[c] -= block[c];
+          }
         });
       }
     });
   }
 
- private:
-  template <class Count, class Body>
-  void for_ranges(Count count, const Body& body) const {
-    run_on_threads(threads_, [&](int thread) {
-      const auto first = Count(std::int64_t(count) * thread / threads_);
-      const auto last = Count(std::int64_t(count) * (thread + 1) / threads_);
-      for (Count i = first; i < last; ++i) body(i);
-    });
+  /// A bond that is driven beyond what it bears.
+  struct Driven {
+    double utilisation;
+    Index point;  ///< its first
+    Offset bond;
+    double stretch;  ///< s
+  };
+
+  /// Damage that committing the state would do by release, after find_states of it.
+  /// @param visit(thread, Driven) called for each bond whose damage would grow
+  template <class P, class E, class Visit>
+  DamageGrowth growth_by_release(Span u, const P& law, const E& eigenstretch, const double* history,
+                                 const Visit& visit) {
+    buffers_.template pack<D>(buffers_.points.reference, u);
+    const auto body = [&](int thread, RowRange range, double*) {
+      DamageGrowth found;
+      for (Index i = range.first; i < range.last; ++i) {
+        for_each_bond(i, [&](const Batch<D>& batch, const Lanes&) {
+          const Lanes s = strained(batch, eigenstretch, i).relative_change;
+          const auto range_of_law = law.ranges(batch.first);
+          const Lanes drop = chosen(Lanes(range_of_law.onset) < Lanes(range_of_law.critical),
+                                    Lanes(0.0), Lanes(1.0));
+          const Lanes driving = equivalent_stretch(batch, i, s, drop);
+          for (int l = 0; l < batch.count; ++l) {
+            const Offset bond = batch.first + l;
+            const auto& of_bond = law.of_bond(bond);
+            const double utilisation = of_bond.utilisation(driving[l], history[bond]);
+            found.utilisation = std::max(found.utilisation, utilisation);
+            if (!grows(of_bond, driving[l], history[bond])) continue;
+            ++found.degrading;
+            found.breaking += of_bond.is_broken(driving[l]);
+            visit(thread, Driven{utilisation, i, bond, s[l]});
+          }
+        });
+      }
+      buffers_.threads.evaluations[std::size_t(thread)] = {0.0, false, found};
+    };
+    buffers_.threads.template sum_rows<1>(body, [](Index, const double*) {});
+    return buffers_.threads.total_evaluation().growth;
   }
 
-  [[nodiscard]] static V of(std::span<const double> field, Index i) {
-    V at;
+  /// Damages a bond, if what the ones before it have left of the dilatations still drives it.
+  /// Returns true if it has. The states are those of the present displacements and histories.
+  template <class OfBond>
+  bool damage_by_release(const Driven& driven, const OfBond& of_bond, double& history) {
+    const auto bond = std::size_t(driven.bond);
+    const auto i = std::size_t(driven.point), j = std::size_t(buffers_.bonds.partner[driven.bond]);
+    const double s = driven.stretch, r = buffers_.bonds.length(driven.bond);
+    const double q = ends_[2 * i] + ends_[2 * j], p = ends_[2 * i + 1] + ends_[2 * j + 1];
+    const double drop = of_bond.law.onset() < of_bond.law.critical() ? 0.0 : 1.0;
+    const double stiffness = stiffness_[i] + stiffness_[j];
+    const double squared = s * (s + 2.0 * p / q - drop * whole_[bond] * r * s * stiffness / q);
+    // The digits that rounding of another order takes must not keep a bond from its damage.
+    const double driving =
+        s > 0.0 && squared > 0.0 ? std::sqrt(squared) * (1.0 + 0.5 * least_growth) : 0.0;
+    if (!of_bond.is_loading(driving, history)) return false;
+    const double lost = of_bond.integrity_after(history) - of_bond.integrity_after(driving);
+    history = driving;
+    share_[bond] -= lost * whole_[bond];
+    for (const std::size_t end : {i, j}) {
+      ends_[2 * end + 1] -= stiffness_[end] * lost * whole_[bond] * r * s;
+    }
+    return true;
+  }
+
+  /// State before bonds fail, which their losses depend on.
+  struct Before {
+    std::vector<double> share, pressure;
+  };
+  [[nodiscard]] Before remembered() const {
+    Before before{{share_.begin(), share_.end()}, std::vector<double>(energy_.size())};
+    for (std::size_t i = 0; i < energy_.size(); ++i) before.pressure[i] = ends_[2 * i + 1];
+    return before;
+  }
+
+  /// Returns what Pi loses with bonds: the sum of delta g r [(q_i + q_j) s / 2 + p_i + p_j] s,
+  /// p the mean of the pressures before and after, each bond weighted by weight(i, bond, stretch).
+  /// After find_states of the same field.
+  template <class Weight>
+  [[nodiscard]] double losses(Span u, const Before& before, const Weight& weight) const {
+    const Bonds& bonds = buffers_.bonds;
+    double total = 0.0;
+    for (Index i = 0; i < bonds.points(); ++i) {
+      for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+        const double lost = before.share[std::size_t(bond)] - share_[std::size_t(bond)];
+        if (lost == 0.0) continue;
+        const Index j = bonds.partner[bond];
+        const std::span<const double> reference = buffers_.points.reference;
+        const Arms<1, D, double> xi{minus<D>(of(reference, j), of(reference, i))};
+        const Arms<1, D, double> eta{minus<D>(of(u, j), of(u, i))};
+        const double inverse_length = 1.0 / bonds.length(bond);
+        const double s = Measure::template at<D>(inverse_length, xi, eta).relative_change;
+        const double true_s = Length::at<D>(inverse_length, xi, eta).relative_change;
+        const double pressure = 0.5 * (before.pressure[std::size_t(i)] + ends_[2 * i + 1] +
+                                       before.pressure[std::size_t(j)] + ends_[2 * j + 1]);
+        const double density = 0.5 * (ends_[2 * i] + ends_[2 * j]) * s;
+        total += lost * bonds.length(bond) * (density + pressure) * s * weight(i, bond, true_s);
+      }
+    }
+    return total;
+  }
+
+ private:
+  /// Relative growth of a history below which it counts as none: solving and damaging in turns
+  /// would never end otherwise.
+  static constexpr double least_growth = 1e-9;
+
+  /// True if a driving stretch would damage a bond noticeably.
+  template <class OfBond>
+  [[nodiscard]] static bool grows(const OfBond& of_bond, double driving, double history) {
+    return of_bond.is_loading(driving, history) && driving > history * (1.0 + least_growth);
+  }
+
+  /// Equivalent stretches of bonds that would lose `drop` of their integrity,
+  ///
+  ///   s_eq^2 = s^2 + 2 (p_i + p_j) s / (q_i + q_j)
+  ///            - drop kappa r^2 s^2 (D_i b_i^2 + D_j b_j^2) / (q_i + q_j)  if s > 0, else 0.
+  [[gnu::always_inline]] Lanes equivalent_stretch(const Batch<D>& batch, Index i, const Lanes& s,
+                                                  const Lanes& drop) const {
+    const auto [q, p] = of_ends(i, batch);
+    const double own = stiffness_[std::size_t(i)];
+    const Lanes stiffness([&](int l) { return own + stiffness_[std::size_t(batch.partner[l])]; });
+    const Lanes whole(&whole_[std::size_t(batch.first)]);
+    const Lanes zero = 0.0;
+    const Lanes squared =
+        s * (s + 2.0 * p / q - drop * whole * s * stiffness / (q * batch.inverse_length));
+    return sqrt(max(chosen(s > zero, squared, zero), zero));
+  }
+
+  /// Whether the direction of a bond changes with displacements.
+  static constexpr bool bends = std::is_same_v<Measure, Length>;
+
+  /// Of each bond from its first to its second point: g n, and the block of the bond alone,
+  /// g (q_i + q_j) / r n n^T + f / l (I - n n^T).
+  struct BondBlocks {
+    std::vector<double> direction, block;
+  };
+
+  [[nodiscard]] int threads() const { return buffers_.threads.threads(); }
+
+  template <class Field>
+  [[nodiscard]] static Vector<D, double> of(const Field& field, std::int64_t i) {
+    Vector<D, double> at;
     for (int c = 0; c < D; ++c) at[c] = field[std::size_t(i) * D + std::size_t(c)];
     return at;
   }
-  [[nodiscard]] V arm(Index i, Index j) const {
-    return minus<D>(of(reference_, j), of(reference_, i));
+
+  /// Calls visit(batch, g) for the bonds of row i; g is zero in lanes past the last bond.
+  template <class Visit>
+  [[gnu::always_inline]] void for_each_bond(Index i, const Visit& visit) const {
+    for_each_batch<D>(
+        buffers_.bonds, buffers_.rows.data(),
+        i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
+          Lanes share(&share_[std::size_t(batch.first)]);
+          if (batch.count < lane_count) {
+            share = Lanes([&](int l) { return l < batch.count ? share[l] : 0.0; });
+          }
+          visit(batch, share);
+        });
+  }
+
+  /// Measure of rows with the reference and the displacement, less the eigenstretch.
+  template <class E>
+  [[gnu::always_inline]] static auto strained(const Batch<D>& batch, const E& eigenstretch,
+                                              Index i) {
+    auto measure =
+        Measure::template at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+    relieve(measure, eigenstretch, i, batch);
+    return measure;
+  }
+
+  /// Measure of rows by pack_current.
+  [[gnu::always_inline]] static auto current(const Batch<D>& batch) {
+    if constexpr (bends) {
+      return Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
+    } else {
+      return LinearLength::from_reference<D, Lanes>(batch.inverse_length, {batch.vector0});
+    }
+  }
+
+  /// Packs the vectors that directions follow from, and v.
+  void pack_current(Span u, Span v) {
+    buffers_.template pack<D>(buffers_.points.reference, v);
+    if constexpr (!bends) return;
+    const Index count = buffers_.points.count();
+#pragma omp parallel for num_threads(threads())
+    for (Index i = 0; i < count; ++i) {
+      for (int c = 0; c < D; ++c) {
+        buffers_.rows[std::size_t(i) * row_width(D) + std::size_t(c)] +=
+            u[std::size_t(i) * D + std::size_t(c)];
+      }
+    }
+  }
+
+  /// q_i + q_j and p_i + p_j of the bonds of a batch.
+  [[gnu::always_inline]] std::array<Lanes, 2> of_ends(Index i, const Batch<D>& batch) const {
+    std::array<const double*, lane_count> of_partner;
+#pragma GCC unroll 4
+    for (int l = 0; l < lane_count; ++l) of_partner[l] = &ends_[2 * std::size_t(batch.partner[l])];
+    Lanes q, p;
+    load_transposed_pairs(of_partner, q, p);
+    return {q + ends_[2 * std::size_t(i)], p + ends_[2 * std::size_t(i) + 1]};
+  }
+
+  /// f moved by a share towards being no compression, in which a bond tends to turn aside.
+  [[gnu::always_inline]] static Lanes projected_pull(const Lanes& pull, double projection) {
+    return projection > 0.0 ? pull - projection * min(pull, Lanes(0.0)) : pull;
+  }
+
+  /// Sums force(batch, g, i) of bonds: plus at the partner, minus at i.
+  template <class Force>
+  void sum_forces(std::span<double> result, Write how, const Force& force_of) {
+    constexpr int width = vector_width(D);
+    const auto body = [&](int, RowRange range, double* sums) {
+      for (Index i = range.first; i < range.last; ++i) {
+        Vector<D, Lanes> own;
+        own.fill(Lanes(0.0));
+        for_each_bond(
+            i, [&](const Batch<D>& batch, const Lanes& share) __attribute__((always_inline)) {
+              const Vector<D, Lanes> force = force_of(batch, share, i);
+              for (int c = 0; c < D; ++c) own[c] -= force[c];
+              add_to_partners<D>(sums, batch.partner, force);
+            });
+        for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
+      }
+    };
+    buffers_.threads.template sum_rows<width>(body, [&](Index i, const double* total) {
+      put<D>(how, total, &result[std::size_t(i) * D]);
+    });
   }
 
   /// Calls visit(neighbour, bond), neighbours ascending.
@@ -200,56 +467,85 @@ class StateKernels {
     for (Offset e = network_.offset[i]; e < network_.offset[i + 1]; ++e) {
       visit(network_.lower[e], network_.bond[e]);
     }
-    for (Offset b = bonds_.offset[i]; b < bonds_.offset[i + 1]; ++b) visit(bonds_.partner[b], b);
+    const Bonds& bonds = buffers_.bonds;
+    for (Offset b = bonds.offset[i]; b < bonds.offset[i + 1]; ++b) visit(bonds.partner[b], b);
   }
 
-  static void add_outer(double factor, const V& a, const V& b, double* block) {
-    for (int r = 0; r < D; ++r) {
-      for (int c = 0; c < D; ++c) block[r * D + c] += factor * a[r] * b[c];
+  template <class E>
+  [[nodiscard]] BondBlocks bond_blocks(Span u, const E& eigenstretch, double projection) {
+    const Bonds& bonds = buffers_.bonds;
+    BondBlocks of_bonds{std::vector<double>(std::size_t(bonds.count()) * D),
+                        std::vector<double>(std::size_t(bonds.count()) * D * D)};
+    pack_current(u, u);
+#pragma omp parallel for num_threads(threads())
+    for (Index i = 0; i < bonds.points(); ++i) {
+      for_each_bond(i, [&](const Batch<D>& batch, const Lanes& share) {
+        auto measure = current(batch);
+        const auto [q, p] = of_ends(i, batch);
+        const Vector<D, Lanes>& n = measure.gradient[0];
+        relieve(measure, eigenstretch, i, batch);
+        const Lanes across =
+            projected_pull(share * (p + q * measure.relative_change), projection) * measure.inverse;
+        const Lanes along = share * q * batch.inverse_length - across;
+        for (int l = 0; l < batch.count; ++l) {
+          const auto bond = std::size_t(batch.first + l);
+          for (int r = 0; r < D; ++r) {
+            of_bonds.direction[bond * D + std::size_t(r)] = share[l] * n[r][l];
+            for (int c = 0; c < D; ++c) {
+              of_bonds.block[(bond * D + std::size_t(r)) * D + std::size_t(c)] =
+                  along[l] * n[r][l] * n[c][l] + (r == c ? across[l] : 0.0);
+            }
+          }
+        }
+      });
     }
+    return of_bonds;
   }
 
   /// Adds the blocks of theta_i between j and the points k >= j.
   template <class BlockWith>
-  void add_centre(Index i, Index j, const V& g_j, const std::vector<double>& own,
-                  const BlockWith& block_with) const {
-    const double stiffness = dilatational_[i];
+  void add_centre(Index i, Index j, const Vector<D, double>& g_j, const std::vector<double>& own,
+                  const BondBlocks& bonds, const BlockWith& block_with) const {
+    const double stiffness = dilatational_[std::size_t(i)];
     if (stiffness == 0.0) return;
-    if (i >= j) add_outer(stiffness, g_j, of(own, i), block_with(i));
+    const auto add = [&](double factor, const Vector<D, double>& g_k, double* block) {
+      for (int r = 0; r < D; ++r) {
+        for (int c = 0; c < D; ++c) block[r * D + c] += factor * g_j[r] * g_k[c];
+      }
+    };
+    if (i >= j) add(stiffness, of(own, i), block_with(i));
+    const double share = stiffness * per_moment_[std::size_t(i)];
     for_neighbours(i, [&](Index k, Offset bond) {
-      if (k < j || kernel_[std::size_t(bond)] == 0.0) return;
-      const double share = stiffness * D * inverse_moment_[i] * kernel_[std::size_t(bond)];
-      add_outer(share, g_j, arm(i, k), block_with(k));
+      if (k < j || share_[std::size_t(bond)] == 0.0) return;
+      add(k > i ? share : -share, of(bonds.direction, bond), block_with(k));
     });
   }
 
   /// dtheta_i/du_i
-  [[nodiscard]] std::vector<double> own_gradients() const {
-    std::vector<double> own(energy_.size() * D);
-    for_ranges(Index(energy_.size()), [&](Index i) {
-      V sum{};
-      for_neighbours(i, [&](Index j, Offset bond) {
-        const V xi = arm(i, j);
-        for (int c = 0; c < D; ++c) sum[c] -= kernel_[std::size_t(bond)] * xi[c];
+  [[nodiscard]] std::vector<double> own_gradients(const BondBlocks& bonds) const {
+    std::vector<double> own(energy_.size() * D, 0.0);
+#pragma omp parallel for num_threads(threads())
+    for (Index i = 0; i < Index(energy_.size()); ++i) {
+      Vector<D, double> total{};
+      for_neighbours(i, [&](Index k, Offset bond) {
+        const Vector<D, double> part = of(bonds.direction, bond);
+        for (int c = 0; c < D; ++c) total[c] += k > i ? -part[c] : part[c];
       });
       for (int c = 0; c < D; ++c) {
-        own[std::size_t(i) * D + std::size_t(c)] = D * inverse_moment_[i] * sum[c];
+        own[std::size_t(i) * D + std::size_t(c)] = per_moment_[std::size_t(i)] * total[c];
       }
-    });
+    }
     return own;
   }
 
-  const std::vector<double>& reference_;
-  const Bonds& bonds_;
-  const StateShares& shares_;
+  BondWorkspace buffers_;
   const StateNetwork& network_;
-  int threads_;
-  std::span<const double> kernel_;  // reduced by damage
-  std::vector<double> left_;
-  std::vector<double> dilatational_;  // V (lambda - mu) [J]
-  std::vector<double> deviatoric_;    // V d (d + 2) mu / M
-  std::vector<double> inverse_moment_;
-  std::vector<double> pressure_, energy_;
+  AlignedVector<double> whole_, share_;  // per bond kappa r, and g = T kappa r; padded by a batch
+  AlignedVector<double> ends_;           // per point q = V d (d + 2) mu / M and p, side by side
+  std::vector<double> dilatational_;     // V (lambda - mu) [J]
+  std::vector<double> per_moment_;       // b = d / M
+  std::vector<double> stiffness_;        // V (lambda - mu) b^2
+  std::vector<double> energy_, rate_;
 };
 
 }  // namespace peristat

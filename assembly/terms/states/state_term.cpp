@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "assembly/energy/kept_state.hpp"
 #include "assembly/terms/bonds/bond_passes.hpp"
 #include "assembly/terms/model.hpp"
 #include "assembly/terms/states/state_kernels.hpp"
@@ -17,7 +18,7 @@
 namespace peristat {
 namespace {
 
-template <int D>
+template <int D, class Measure>
 class StatePasses : public TermPasses, BlockTangent {
  public:
   StatePasses(const StateTerm& term, const TermSetting& setting)
@@ -28,22 +29,22 @@ class StatePasses : public TermPasses, BlockTangent {
         points_(setting.points),
         index_map_(setting.index_map),
         pattern_(setting.pattern),
-        kernels_(setting.points, term.bonds(), term.shares(), term.network(),
-                 setting.workspace.threads()) {}
+        threads_(setting.workspace.threads()),
+        kernels_(setting.points, term.bonds(), term.shares(), term.network(), setting.workspace) {}
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
-    take_integrities(at);
-    const double energy = kernels_.find_states(at.displacement);
-    if (!gradient.empty()) kernels_.write_forces(at.displacement, gradient, how == Write::onto);
-    Evaluation found;
-    found.energy = energy;
-    found.degenerate = !std::isfinite(energy);
+    const Evaluation found = find_states(at);
+    if (!gradient.empty()) {
+      with_eigenstretch(at,
+                        [&](const auto& relief) { kernels_.write_forces(relief, gradient, how); });
+    }
     return found;
   }
 
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
                     History& history, std::span<double> gradient, Write how) override {
     const StateView now{displacement, history, Damage::grows, environment};
+    if (failure_.fails_in_avalanches()) return release(now, history, gradient, how);
     // On all ranks: a bond that is damaged here may be counted by another rank.
     if (!failure_.can_fail() || !any_of_all(index_map_.ranks(), growth(now).degrading > 0)) {
       return this->gradient(now, gradient, how);
@@ -66,31 +67,35 @@ class StatePasses : public TermPasses, BlockTangent {
   }
 
   DamageGrowth growth(const StateView& at) override {
-    return failure_.can_fail() ? stretches_->growth(at) : DamageGrowth{};
+    if (!failure_.can_fail()) return {};
+    if (!failure_.fails_in_avalanches()) return stretches_->growth(at);
+    return visit_driven(at, [](int, const Driven&) {});
   }
 
   [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
 
-  /// @param projection changes nothing: Pi is convex
-  void tangent(const StateView& at, Tangent& tangent, double /*projection*/, Write how) override {
+  void tangent(const StateView& at, Tangent& tangent, double projection, Write how) override {
     if (tangent.blocks != Tangent::Blocks::whole) {
       throw std::logic_error("the blocks of states are not symmetric");
     }
     if (how == Write::over) tangent.clear();
-    take_integrities(at);
-    kernels_.add_tangent(pattern_, tangent.off_diagonal, tangent.diagonal);
+    find_states(at);
+    with_eigenstretch(at, [&](const auto& relief) {
+      kernels_.add_tangent(at.displacement, relief, projection, pattern_, tangent.off_diagonal,
+                           tangent.diagonal);
+    });
   }
 
-  void product(const StateView& at, std::span<const double> v, double /*projection*/,
+  void product(const StateView& at, std::span<const double> v, double projection,
                std::span<double> product, Write how) override {
-    take_integrities(at);
-    kernels_.find_states(v);
-    kernels_.write_forces(v, product, how == Write::onto);
+    if (!are_found(at)) find_states(at);
+    with_eigenstretch(at, [&](const auto& relief) {
+      kernels_.write_product(at.displacement, relief, v, projection, product, how);
+    });
   }
 
   void point_energies(const StateView& at, std::span<double> energies, Write how) override {
-    take_integrities(at);
-    kernels_.find_states(at.displacement);
+    if (!are_found(at)) find_states(at);
     const std::span<const double> found = kernels_.energies();
     for (std::size_t i = 0; i < found.size(); ++i) {
       energies[i] = how == Write::over ? found[i] : energies[i] + found[i];
@@ -98,18 +103,105 @@ class StatePasses : public TermPasses, BlockTangent {
   }
 
   void add_virials(const StateView& at, std::span<double> virials) override {
-    take_integrities(at);
-    kernels_.find_states(at.displacement);
-    kernels_.add_virials(at.displacement, virials);
+    find_states(at);
+    with_eigenstretch(at, [&](const auto& relief) { kernels_.add_virials(relief, virials); });
   }
 
  private:
+  /// Calls visit with the eigenstretch of the points, if there is one.
+  template <class Visit>
+  static void with_eigenstretch(const StateView& at, const Visit& visit) {
+    const std::span<const double> of_point = at.eigenstretch();
+    if (of_point.empty()) {
+      visit(NoEigenstretch{});
+    } else {
+      visit(Eigenstretch{of_point.data()});
+    }
+  }
+
+  Evaluation find_states(const StateView& at) {
+    take_integrities(at);
+    Evaluation found;
+    with_eigenstretch(
+        at, [&](const auto& relief) { found = kernels_.find_states(at.displacement, relief); });
+    found_.keep(at);
+    return found;
+  }
+
+  using Driven = typename StateKernels<D, Measure>::Driven;
+
+  template <class Visit>
+  DamageGrowth visit_driven(const StateView& at, const Visit& visit) {
+    if (!are_found(at)) find_states(at);
+    DamageGrowth found;
+    failure_.with_damage_law([&](const auto& law) {
+      with_eigenstretch(at, [&](const auto& relief) {
+        found = kernels_.growth_by_release(at.displacement, law, relief,
+                                           at.history.of(slot_).data(), visit);
+      });
+    });
+    return found;
+  }
+
+  /// Commits damage by release, one bond after another, each with the dilatations that those before
+  /// it have left, in the order of their utilisation, until none is driven: bonds share
+  /// dilatations, and all at once would count these more than once.
+  Evaluation release(const StateView& at, History& history, std::span<double> gradient, Write how) {
+    DamageGrowth growth;
+    std::vector<Driven> driven = driven_bonds(at);
+    if (driven.empty()) return this->gradient(at, gradient, how);
+    while (!driven.empty()) {
+      const std::span<double> stretches = history.change(slot_);
+      const Index before_pass = growth.degrading;
+      failure_.with_damage_law([&](const auto& law) {
+        for (const Driven& one : driven) {
+          const auto& of_bond = law.of_bond(one.bond);
+          double& stretch = stretches[std::size_t(one.bond)];
+          if (!kernels_.damage_by_release(one, of_bond, stretch)) continue;
+          ++growth.degrading;
+          growth.breaking += of_bond.is_broken(stretch);
+        }
+      });
+      if (growth.degrading == before_pass) break;  // round-off alone has driven them
+      driven = driven_bonds({at.displacement, history, Damage::grows, at.environment});
+    }
+    Evaluation found =
+        this->gradient({at.displacement, history, Damage::grows, at.environment}, gradient, how);
+    found.growth = growth;
+    found.moves_equilibrium = growth.degrading > 0;
+    return found;
+  }
+
+  /// Bonds that are driven beyond what they bear, the most utilised first.
+  std::vector<Driven> driven_bonds(const StateView& at) {
+    std::vector<std::vector<Driven>> of_thread;
+    of_thread.resize(std::size_t(threads_));
+    visit_driven(at, [&](int thread, const Driven& driven) {
+      of_thread[std::size_t(thread)].push_back(driven);
+    });
+    std::vector<Driven> all;
+    for (const auto& some : of_thread) all.insert(all.end(), some.begin(), some.end());
+    std::ranges::sort(all, [](const Driven& a, const Driven& b) {
+      return a.utilisation != b.utilisation ? a.utilisation > b.utilisation : a.bond < b.bond;
+    });
+    return all;
+  }
+
+  /// True if the kernels have the states of `at`: solvers multiply many times at one state.
+  [[nodiscard]] bool are_found(const StateView& at) const {
+    const StateView last = found_.view();
+    return last.history.of(slot_).data() == at.history.of(slot_).data() &&
+           last.environment == at.environment &&
+           std::ranges::equal(last.displacement, at.displacement);
+  }
+
   void take_integrities(const StateView& at) {
     if (!failure_.can_fail()) return;
     const std::span<const double> stretch = at.history.of(slot_);
     if (stretch.size() < std::size_t(term_.bonds().count())) {
       throw std::logic_error("bonds that can be damaged are evaluated after their history");
     }
+    if (stretch.data() == found_.view().history.of(slot_).data()) return;
     failure_.with_damage_law([&](const auto& law) {
       kernels_.scale([&](Offset bond) {
         return law.of_bond(bond).integrity_after(stretch[std::size_t(bond)]);
@@ -121,7 +213,7 @@ class StatePasses : public TermPasses, BlockTangent {
   /// that they bear broke when they passed it, and held less energy then, by the square of the
   /// ratio; the rest is overshoot, not dissipation.
   [[nodiscard]] double dissipated_of(std::span<const double> displacement,
-                                     const typename StateKernels<D>::Before& remembered,
+                                     const typename StateKernels<D, Measure>::Before& remembered,
                                      const History& before) const {
     const std::span<const double> history = before.of(slot_);
     double sum = 0.0;
@@ -146,15 +238,27 @@ class StatePasses : public TermPasses, BlockTangent {
   const Points& points_;
   const IndexMap& index_map_;
   const BlockPattern& pattern_;
-  StateKernels<D> kernels_;
+  int threads_;
+  StateKernels<D, Measure> kernels_;
+  KeptState found_;  // whose states and integrities the kernels have
 };
+
+template <int D>
+std::unique_ptr<TermPasses> passes_in(const StateTerm& term, const TermSetting& setting) {
+  if (term.extension() == Extension::linear) {
+    return std::make_unique<StatePasses<D, LinearLength>>(term, setting);
+  }
+  return std::make_unique<StatePasses<D, Length>>(term, setting);
+}
 
 }  // namespace
 
 StateTerm::StateTerm(std::shared_ptr<const Bonds> bonds, BondPotential potential,
-                     std::vector<char> never_fails, StateShares shares, int threads)
-    : failure_(std::make_shared<BondFailure>(std::move(bonds), std::move(potential),
-                                             std::move(never_fails))),
+                     std::vector<char> never_fails, StateShares shares, StateRules rules,
+                     int threads)
+    : extension_(rules.extension),
+      failure_(std::make_shared<BondFailure>(std::move(bonds), std::move(potential),
+                                             std::move(never_fails), rules.drive)),
       shares_(std::move(shares)),
       network_(this->bonds(),
                std::ranges::any_of(shares_.constants,
@@ -192,9 +296,9 @@ double StateTerm::stored_bytes() const {
 std::unique_ptr<TermPasses> StateTerm::passes(const TermSetting& setting) const {
   switch (setting.points.dimension) {
     case 2:
-      return std::make_unique<StatePasses<2>>(*this, setting);
+      return passes_in<2>(*this, setting);
     case 3:
-      return std::make_unique<StatePasses<3>>(*this, setting);
+      return passes_in<3>(*this, setting);
     default:
       throw std::logic_error("states are of dimension 2 or 3");
   }

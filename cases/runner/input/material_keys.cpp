@@ -297,7 +297,9 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
       {K("model", &Spec::model, choice_of_models(),
          "`\"bond\"`: bond-based peridynamics, whose Poisson ratio is 1/4 (3D and plane strain) or "
          "1/3 (plane stress); `\"cpd\"`: continuum-kinematics-inspired peridynamics with one-, "
-         "two- and three-neighbour interactions, dimension 2 and 3; `\"lps\"`: the [linear "
+         "two- and three-neighbour interactions, dimension 2 and 3; `\"state\"`: the [ordinary "
+         "state-based solid](theory.md#the-solid-at-finite-strain) of any Poisson ratio, at any "
+         "deformation, dimension 2 and 3; `\"lps\"`: the [linear "
          "peridynamic solid](theory.md#linear-peridynamic-solid) of any Poisson ratio, by "
          "collocation or as an energy, for small displacements, dimension 2 and 3; "
          "`\"green_bond\"`: [bonds that stretch by their squared "
@@ -341,8 +343,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "$e^{-(r/\\delta)^2}$, or $\\delta/r$. The force density of a bond is $c\\,\\omega s$; "
          "constants, moduli and fracture energy account for it. `cpd`: a triangle or tetrahedron "
          "has the product of its sides' functions, and the constants are those of the lattice. "
-         "`lps` as an energy: the kernel K(r); by collocation only `inverse`")
-           .default_words("`\"constant\"`; `\"inverse\"` with `lps`")
+         "`state`, and `lps` as an energy: the kernel K(r); `lps` by collocation: only `inverse`")
+           .default_words("`\"constant\"`; `\"inverse\"` with `state` and `lps`")
            .on_ranks(),
        K("youngs_modulus", &Spec::youngs_modulus, positive("Pa"), "Young's modulus, for all models")
            .one_of()

@@ -5,10 +5,10 @@
 
 #include "assembly/terms/linear/linear_term.hpp"
 #include "solvers/formulations/convolved/convolved_lattice.hpp"
-#include "solvers/formulations/lps_energy/state_model.hpp"
 #include "solvers/formulations/materials/bearable_energies.hpp"
 #include "solvers/formulations/solid/solid_constants.hpp"
 #include "solvers/formulations/specification/require.hpp"
+#include "solvers/formulations/state/state_model.hpp"
 
 namespace peristat {
 namespace {
@@ -71,8 +71,9 @@ const Formulation& lps_energy_formulation() {
       .setting_of_bonds = state_setting,
       .make_model =
           [](const ModelSetting& setting, Bonds bonds) {
-            return setting.of.is_convolved() ? make_convolved_solid(setting, std::move(bonds))
-                                             : make_state_model(setting, std::move(bonds));
+            return setting.of.is_convolved()
+                       ? make_convolved_solid(setting, std::move(bonds))
+                       : make_state_model(setting, std::move(bonds), {});
           },
       .moduli = moduli_of_solid,
       .describe = describe_solid,

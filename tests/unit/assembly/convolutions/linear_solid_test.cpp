@@ -98,7 +98,7 @@ TEST(LinearSolid, IsTheEnergyOfStatesWithMomentsOfTheNeighboursThatAreThere) {
     const LinearSolid::Setting setting = setting_of(body);
     shares.constants.assign(body.count(), setting.constants);
     const Model model(std::shared_ptr<Term>(std::make_shared<StateTerm>(
-        bonds, BondPotential(Harmonic{1.0}), std::vector<char>(), shares, 1)));
+        bonds, BondPotential(Harmonic{1.0}), std::vector<char>(), shares, StateRules{}, 1)));
     Assembler assembler(body.points, model, 1);
     LinearSolid solid = solid_of(body);
     const std::vector<double> u = body.random(5);

@@ -1,5 +1,5 @@
 // Bodies of model lps with the form energy, from plain values.
-#include "solvers/formulations/lps_energy/state_model.hpp"
+#include "solvers/formulations/state/state_model.hpp"
 
 #include <cmath>
 #include <string>

@@ -1,0 +1,94 @@
+#include "solvers/formulations/state/state_model.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "solvers/formulations/solid/solid_constants.hpp"
+#include "solvers/formulations/specification/require.hpp"
+#include "src/materials/bulk_bonds.hpp"
+#include "src/parallel/index_map.hpp"
+
+namespace peristat {
+BondSetting state_setting(BondSetting setting) {
+  if (!setting.influence) {
+    setting.influence = [](double x) { return x; };
+    return setting;
+  }
+  setting.influence = [kernel = std::move(setting.influence)](double x) { return x * kernel(x); };
+  return setting;
+}
+
+double micromodulus_of_states(const MaterialSpecification& material, const BondSetting& setting) {
+  const int d = setting.dimension;
+  const BondSetting of_states = state_setting(setting);
+  const double moment = of_states.lattice ? BulkBonds(of_states).moment(1) : of_states.moment(1);
+  return 2.0 * d * (d + 2) * lame_constants(material, d).mu / moment;
+}
+
+namespace {
+
+/// Damage goes from bond to bond in one order, which ranks do not have.
+void refuse_damage_of_parts(const ModelSetting& setting) {
+  if (setting.index_map.is_whole()) return;
+  for (const auto& material : all_materials(setting.of, setting.materials)) {
+    require(material.of->damage.law == DamageLaw::none, material.key + ".damage.law", "",
+            "is for one rank with model \"state\"");
+  }
+}
+
+/// Weights with which bonds take kappa r^2 (q_i + q_j) times the work of their law, q = V d (d + 2)
+/// mu / M, by a potential of this modulus.
+void weigh_by_release(Bonds& bonds, const Points& points, const StateShares& shares,
+                      double modulus) {
+  const int d = points.dimension;
+  const auto q = [&](Index point) {
+    const auto i = std::size_t(point);
+    return points.volume[i] * d * (d + 2) * shares.constants[i].mu / shares.moment[i];
+  };
+  bonds.set_weights([&](Index i, Offset bond) {
+    return shares.kernel[std::size_t(bond)] * bonds.length(bond) * (q(i) + q(bonds.partner[bond])) /
+           modulus;
+  });
+}
+
+}  // namespace
+
+MadeModel make_state_model(const ModelSetting& setting, Bonds bonds, StateRules rules) {
+  const BodySpecification& from = setting.of;
+  const Points& points = setting.points;
+  const bool is_by_release = rules.drive == DamageDrive::release;
+  if (is_by_release) refuse_damage_of_parts(setting);
+  const BondSetting of_states = state_setting(setting.bonds);
+  std::vector<DirectedConstant> moduli;
+  for (const auto& material : all_materials(from, setting.materials)) {
+    const double modulus =
+        is_by_release
+            ? micromodulus_of_states(*material.of, setting.bonds)
+            : modulus_of_crack(crack_energy_of_dilation(
+                                   lame_constants(*material.of, points.dimension), of_states),
+                               of_states);
+    moduli.push_back({{modulus, 0.0, 0.0}, {}});
+  }
+  StateShares shares;
+  shares.constants = constants_of_points(setting);
+  shares.moment = moments_of(points, bonds, kernel_of_weights(bonds));
+  const BondMaterials mixed(from, setting.materials, setting.factors, points, std::move(moduli));
+  if (!from.is_uniform()) {
+    // The kernel of the states does not depend on materials; the energy that bonds dissipate does.
+    refuse_idle_interfaces(from, setting.materials, bonds, setting.index_map.ranks());
+    Bonds plain = bonds;
+    static_cast<void>(cut_bonds(plain, points, from.cracks));
+    shares.kernel = kernel_of_weights(plain);
+    mixed.weigh(bonds);
+  }
+  CutBonds cut = cut_bonds(bonds, points, from.cracks);
+  if (from.is_uniform()) shares.kernel = kernel_of_weights(bonds);
+  if (is_by_release) weigh_by_release(bonds, points, shares, mixed.modulus());
+  auto [potential, never_fails] = mixed.potential(bonds);
+  return {Model(std::make_shared<StateTerm>(std::make_shared<const Bonds>(std::move(bonds)),
+                                            std::move(potential), std::move(never_fails),
+                                            std::move(shares), rules, setting.threads)),
+          std::move(cut)};
+}
+
+}  // namespace peristat
