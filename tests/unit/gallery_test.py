@@ -15,8 +15,8 @@ AGAIN = "docs/gallery/make.py writes it anew"
 class Gallery(unittest.TestCase):
     def test_every_case_has_been_run_as_it_is(self):
         entries = make.runs()
-        self.assertEqual(set(entries), set(make.names()), AGAIN)
-        for name in make.names():
+        self.assertEqual(set(entries), set(make.names()) - set(make.WITHOUT), AGAIN)
+        for name in entries:
             self.assertEqual(entries[name]["keys"], make.keys_of(name), f"{name} has changed: {AGAIN}")
             self.assertGreater(entries[name]["points"], 0)
             self.assertTrue(make.picture_of(name).exists(), f"{name}: {AGAIN}")
@@ -27,7 +27,7 @@ class Gallery(unittest.TestCase):
 
     def test_pictures_are_small_and_in_use(self):
         pictures = set(make.PICTURES.iterdir())
-        self.assertEqual(pictures, {make.picture_of(name) for name in make.names()})
+        self.assertEqual(pictures, {make.picture_of(name) for name in make.runs()})
         for picture in pictures:
             self.assertLessEqual(picture.stat().st_size, 40_000, picture.name)
             self.assertGreater(picture.stat().st_size, 1_000, picture.name)
