@@ -82,7 +82,7 @@ def cut(text, **changes):
 def solid(results, text, **more):
     whole, text = text, text.replace(REGION, "")
     material = {key: float(value) for key, value in re.findall(r"(?m)^(youngs_modulus|poisson_ratio) = (.*)$", text)}
-    material |= dict(re.findall(r'(?m)^(plane|influence) = "(.*)"$', text))
+    material |= dict(re.findall(r'(?m)^(model|plane|influence) = "(.*)"$', text))
     spacing = float(re.search(r"(?m)^spacing = (.*)$", text)[1])
     ratio = float(re.search(r"(?m)^horizon_ratio = (.*)$", text)[1])
     size = spacing if 'volume_correction = "linear"' in text else None

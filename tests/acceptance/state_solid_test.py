@@ -1,0 +1,141 @@
+"""Model state, the state-based solid at finite strain, from the command line: compared with the reference of
+tests/reference/states.py, elastic and through fracture, and with the bond model where both are the same."""
+
+import numpy
+
+from tests.acceptance.folder import Folder
+from tests.acceptance.motions import columns
+from tests.acceptance.states_test import CRACK, PLATE, PULL, REGION, cut, solid
+from tests.reference.case import evaluate
+from tests.reference.results import Results
+
+SOLID = PLATE.replace('[quadrature]\nform = "energy"\n', "").replace('"lps"', '"state"')
+DAMAGE = '[material.damage]\nlaw = "critical_stretch"\ncritical = 0.01\nno_fail = ["low", "high"]\n'
+SOFT = DAMAGE.replace("critical_stretch", "linear") + "onset = 0.005\n"
+HELD = "".join(f'[[support]]\nset = "{name}"\ndisplacement = [0, 0]\n' for name in ("low", "high"))
+
+
+class StateSolid(Folder):
+    def test_energy_forces_and_tangent_are_those_of_the_reference(self):
+        deformation = ["1.2*x + 0.3*y + 0.05*sin(3*x + y)", "0.9*y - 0.1*x + 0.1*x*y"]
+        cases = {"stress": SOLID, "cracked": SOLID + CRACK, "regions": SOLID + REGION,
+                 "strain": SOLID + 'plane = "strain"\n', "nearly_incompressible": cut(SOLID, poisson_ratio=0.49) + 'plane = "strain"\n',
+                 "auxetic": cut(SOLID, poisson_ratio=-0.5), "gaussian": SOLID + 'influence = "gaussian"\n',
+                 "linear_volumes": SOLID.replace("[material]", '[quadrature]\nvolume_correction = "linear"\n[material]')}  # fmt: skip
+        for name, text in cases.items():
+            with self.subTest(name):
+                small = cut(text, max="[1.0, 0.8]") if "crack" not in name and "regions" not in name else text
+                ended = self.command("check-tangent", small, words=("--deformation", "; ".join(deformation)))
+                told = self.assert_completed(ended).json()
+                results = self.results(small + HELD, name="points")
+                own = solid(results, small)
+                u = numpy.stack([evaluate(e, results.reference) for e in deformation], 1) - results.reference
+                expected = {"energy": own.energies(u).sum(), "residual_norm": numpy.linalg.norm(own.forces(u)),
+                            "tangent_frobenius_norm": numpy.linalg.norm(own.matrix(u))}  # fmt: skip
+                for key, value in expected.items():
+                    self.assertAlmostEqual(told[key] / value, 1, delta=1e-11, msg=key)
+                self.assertLess(max(told["tangent_error"], told["residual_error"]), 1e-9)
+                self.assertLess(max(told["force_sum"], told["moment_sum"]), 1e-12)
+
+    def judge(self, folder, text, law):
+        """Every state is an equilibrium of the reference, no bond is driven beyond what it bears, and what is dissipated
+        is what the bonds have taken. Returns the last row."""
+        results = Results(folder)
+        own, rows = solid(results, text), {row["step"]: row for row in results.table("history")}
+        free = numpy.ones_like(results.reference, bool)
+        free[results.sets["low"]] = False
+        free[results.sets["high"], 1] = False
+        spared = results.sets["low"] | results.sets["high"]
+        breakable = own.left & ~(spared[own.first] | spared[own.second])
+        largest = numpy.zeros(len(own.first))
+        for step in results.steps:
+            if step.history is not None:
+                names = ("first_point", "second_point", "largest_stretch")
+                for first, second, stretch in zip(*(step.history[name].tolist() for name in names)):
+                    largest[own.number[first, second]] = max(stretch, 0)
+            own.integrity = law["integrity"](largest)
+            row, u = rows[step.number], step.displacement
+            force = own.forces(u)
+            self.assertLess(numpy.linalg.norm(force[free]), 1e-8 * max(numpy.linalg.norm(force), 1e-3))
+            self.assertAlmostEqual(row["stored_energy"], own.energies(u).sum(), delta=1e-10 * (row["stored_energy"] + 1e-9))
+            driving = own.equivalent_stretches(u, law["drop"])[breakable]
+            borne = numpy.maximum(largest[breakable], law["onset"])
+            alive = largest[breakable] < law["critical"]
+            self.assertLess((driving / borne)[alive].max(), 1 + 1e-8)
+            taken = (own.taken(1.0) * law["work"](largest))[breakable].sum()
+            self.assertAlmostEqual(row["dissipated_energy"], taken, delta=1e-9 * taken)
+        return row
+
+    BRITTLE = {"onset": 0.01, "critical": 0.01, "drop": 1.0, "integrity": lambda k: (k < 0.01).astype(float),
+               "work": lambda k: 0.5e-4 * (k >= 0.01)}  # fmt: skip
+
+    @staticmethod
+    def force(s):
+        return numpy.where(s < 0.005, s, numpy.maximum(0.01 - s, 0))
+
+    @staticmethod
+    def softened(k):
+        k = numpy.minimum(k, 0.01)
+        work = numpy.where(k < 0.005, k**2 / 2, 0.5 * 0.005 * 0.01 - (0.01 - k) ** 2 / 2)
+        return work - StateSolid.force(k) * k / 2
+
+    def test_every_state_of_a_torn_plate_is_an_equilibrium(self):
+        softening = {"onset": 0.005, "critical": 0.01, "drop": 0.0, "work": self.softened,
+                     "integrity": lambda k: numpy.where(k > 0.005, self.force(k) / numpy.maximum(k, 1e-9), 1.0)}  # fmt: skip
+        for nu in (0.05, 0.45):
+            for damage, law in ((DAMAGE, self.BRITTLE), (SOFT, softening)):
+                with self.subTest(nu=nu, law=damage.split('"')[1]):
+                    text = cut(SOLID, poisson_ratio=nu) + damage + CRACK + PULL
+                    folder = self.run_case(text, "solver.mode=adaptive", name="torn")
+                    last = self.judge(folder, cut(SOLID, poisson_ratio=nu) + CRACK, law)
+                    self.assertGreater(last["broken_bonds"], 20)
+                    rows = columns(folder)
+                    self.assertTrue((numpy.diff(rows["dissipated_energy"]) >= 0).all())
+                    self.assertGreaterEqual(rows["drained_energy"].min(), 0)
+                    total = rows["stored_energy"] + rows["dissipated_energy"] + rows["drained_energy"] + rows["balance_error"]
+                    numpy.testing.assert_allclose(total, rows["external_work"] + rows["numerical_work"], rtol=1e-9, atol=1e-12)
+
+    def test_fracture_energy_is_what_a_torn_plate_takes(self):
+        """The same fracture energy at any Poisson's ratio: a crack through the plate takes it along its ligament."""
+        damage = '[material.damage]\nlaw = "linear"\nfracture_energy = 0.02\nno_fail = ["low", "high"]\n'
+        taken = {}
+        for nu in (0.0, 0.2, 0.45):
+            text = cut(SOLID, poisson_ratio=nu) + damage + CRACK + PULL.replace("steps = 6", "steps = 15")
+            rows = columns(self.run_case(text, "solver.mode=adaptive", name="torn"))
+            self.assertLess(abs(rows["reaction_y:high"][-1]), 0.02 * abs(rows["reaction_y:high"]).max())
+            taken[nu] = rows["dissipated_energy"][-1] / (0.02 * 1.2 * 0.5)
+        for nu, ratio in taken.items():  # damage beside the crack adds to it; few points across
+            self.assertGreater(ratio, 0.85, nu)
+            self.assertLess(ratio, 1.35, nu)
+
+    def test_bodies_expand_freely(self):
+        text = SOLID + 'thermal_expansion = 1e-3\n[temperature]\nchange = "100*load"\n[[support]]\nset = "low"\ndisplacement = ["free", 0]\n'
+        text += '[[set]]\nname = "corner"\nwhere = "x < 0.1 and y < -0.1"\n[[support]]\nset = "corner"\ndisplacement = [0, 0]\n[loading]\nsteps = 1\n'
+        results = self.results(text)
+        corner = results.reference[results.sets["corner"]][0]
+        grown = results.reference[:, 0] * 0.1 - corner[0] * 0.1
+        numpy.testing.assert_allclose(results.steps[-1].displacement[:, 0], grown, atol=1e-10)
+
+    def test_what_it_does_not_do_is_refused(self):
+        for change, key in (("material.damage.strength=1e3", "strength"), ('solver.mode="path"', "solver.mode"),
+                            ('symmetry=[{axis="x", at=0}]', "material.model"), ('material.kinematics="linear"', "kinematics"),
+                            ("material.poisson_ratio=0.5", "poisson_ratio"), ('material.damage.law="energy_density"', "law")):  # fmt: skip
+            with self.subTest(change):
+                self.assertIn(key, self.refusal(SOLID + DAMAGE + PULL, change))
+
+    def test_an_interrupted_tear_goes_on_to_the_same_bits(self):
+        text = SOLID + DAMAGE + CRACK + PULL
+        whole = self.run_case(text, "solver.mode=adaptive", name="whole")
+        self.run_case(text, "solver.mode=adaptive", name="split", words=("--stop-after", 3), code=130)
+        split = self.resume("split")
+        self.assertEqual(split.code, 0)
+        for table in ("history.csv", "broken_bonds.csv"):
+            self.assertEqual((whole / table).read_text(), (self.folder / "split" / table).read_text())
+
+    def test_motions_balance(self):
+        text = SOLID + DAMAGE.replace("0.01", "0.006") + CRACK + '[[initial]]\nvelocity = ["0", "0.6*(y - 0.6)"]\n'
+        text += '[solver]\nmode = "dynamics"\n[dynamics]\nend_time = 0.06\nhistory_every = 5\n'
+        rows = columns(self.run_case(text))
+        self.assertGreater(rows["broken_bonds"][-1], 20)
+        whole = rows["stored_energy"] + rows["kinetic_energy"] + rows["dissipated_energy"]
+        numpy.testing.assert_allclose(whole, whole[0], rtol=0.08)  # first order in the step, as with bonds
