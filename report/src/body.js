@@ -16,7 +16,10 @@ export class Body {
     this.position = numbers.has("position") ? numbers.field("position", this.places) : null;
     this.centres = this.#centres(Boolean(this.position));
     const ofCells = content.kind === "lattice" ? this.#centres(false) : this.centres; // those of a perturbed lattice stay
-    this.cells = content.kind === "polygons" ? new PolygonCells(numbers, this.places, ofCells) : new BoxCells(content, numbers, this.places, ofCells);
+    this.cells =
+      content.kind === "polygons"
+        ? new PolygonCells(numbers, this.places, ofCells)
+        : new BoxCells(content, numbers, this.places, ofCells);
     this.points = numbers.has("number") ? numbers.list("number") : null;
     this.bonds = numbers.has("bond_first") ? this.#bonds() : null;
   }
@@ -31,7 +34,10 @@ export class Body {
   }
 
   largestDisplacement() {
-    const ends = this.frames.flatMap((_, frame) => [...this.displacement.about.low[frame], ...this.displacement.about.high[frame]]);
+    const ends = this.frames.flatMap((_, frame) => [
+      ...this.displacement.about.low[frame],
+      ...this.displacement.about.high[frame],
+    ]);
     return Math.max(0, ...ends.map(Math.abs));
   }
 
@@ -57,7 +63,7 @@ export class Body {
       const kind = image ? image[bond] - 1 : -1;
       for (let c = 0; c < 3; c++) {
         const place = this.centres[3 * second[bond] + c] + scale * displacements[3 * second[bond] + c];
-        const mirror = kind < 0 ? 1 : this.content.images.mirror[kind][c] ?? 1;
+        const mirror = kind < 0 ? 1 : (this.content.images.mirror[kind][c] ?? 1);
         ends.push(kind < 0 ? place : mirror * place + (this.content.images.shift[kind][c] ?? 0));
       }
     }
@@ -81,7 +87,12 @@ export class Body {
 
   #bonds() {
     const list = (name) => this.numbers.list(`bond_${name}`);
-    return { first: list("first"), second: list("second"), step: list("step"), image: this.numbers.has("bond_image") ? list("image") : null };
+    return {
+      first: list("first"),
+      second: list("second"),
+      step: list("step"),
+      image: this.numbers.has("bond_image") ? list("image") : null,
+    };
   }
 }
 

@@ -3,10 +3,15 @@
 import { Body } from "./body.js";
 import { colour, gradient } from "./colours.js";
 import { element } from "./dom.js";
+import { pointTable } from "./point_table.js";
+import { quantitiesOf } from "./quantities.js";
 import { BodyScene } from "./scene.js";
-import { plain, sizeOfError, unitFor, withUnit } from "./units.js";
+import { plain, unitFor } from "./units.js";
 
 const AXES = "xyz";
+const HELP =
+  "The deformed body. Drag to turn, two fingers or the right button to move, the wheel to zoom; " +
+  "click a point to read its values.";
 const SHOWN_SIZE = 0.08; // largest displacement over the size of the body, as it is drawn at first
 const PAUSE = 140; // between the steps of the animation [ms]
 const FAR = 4; // a peak above this many times the 99.5th percentile does not set the colours
@@ -47,7 +52,7 @@ export class BodyView {
       this.scene = new BodyScene(this.parts.canvas, this.body.dimension === 3);
     } catch (error) {
       this.parts.canvas.hidden = true;
-      this.parts.note.textContent = `The body can't be drawn: this browser has no WebGL (${error.message}). Values of points are below.`;
+      this.parts.note.textContent = `This browser can't draw the body, it has no WebGL (${error.message}). Values of points are below.`;
       return;
     }
     this.#frameBody();
@@ -66,7 +71,11 @@ export class BodyView {
     const last = this.body.frames.length - 1;
     const range = (label, properties) => element("input", { type: "range", "aria-label": label, ...properties });
     const p = (this.parts = {
-      canvas: element("canvas", { tabIndex: 0, role: "img", "aria-label": "The deformed body. Drag to turn, two fingers or the right button to move, the wheel to zoom; click a point to read its values." }),
+      canvas: element("canvas", {
+        tabIndex: 0,
+        role: "img",
+        "aria-label": HELP,
+      }),
       note: element("p", { className: "note", role: "status" }),
       step: range("step", { min: 0, max: last, value: last, id: "step" }),
       stepWords: element("output", { className: "step-words" }),
@@ -78,27 +87,56 @@ export class BodyView {
       bar: element("div", { className: "bar" }),
       low: element("span"),
       high: element("span"),
-      point: element("input", { type: "number", id: "point", min: 0, max: this.body.content.points - 1, step: 1, placeholder: "number" }),
+      point: element("input", {
+        type: "number",
+        id: "point",
+        min: 0,
+        max: this.body.content.points - 1,
+        step: 1,
+        placeholder: "number",
+      }),
       values: element("div", { className: "values", id: "values", "aria-live": "polite" }),
     });
     for (const { id, label } of this.quantities) p.field.add(new Option(label, id));
     const named = (text, ...inputs) => element("label", {}, element("span", { textContent: text }), ...inputs);
-    const controls = element("div", { className: "controls" }, named("colour", p.field), named("colours span", p.colours),
-      named("displacements ×", p.scale, p.slider), ...this.#switches(named), named(this.body.points ? "point" : "cell", p.point));
+    const controls = element(
+      "div",
+      { className: "controls" },
+      named("colour", p.field),
+      named("colours span", p.colours),
+      named("displacements ×", p.scale, p.slider),
+      ...this.#switches(named),
+      named(this.body.points ? "point" : "cell", p.point),
+    );
     const reset = element("button", { type: "button", textContent: "Reset view" });
     const bar = element("div", { className: "colour-bar" }, p.low, p.bar, p.high);
     for (const part of [p.play, p.step]) part.hidden = last === 0;
     place.append(
-      element("div", { className: "stage" }, p.canvas, element("div", { className: "player" }, p.play, p.step, reset), p.stepWords, bar, p.note),
+      element(
+        "div",
+        { className: "stage" },
+        p.canvas,
+        element("div", { className: "player" }, p.play, p.step, reset),
+        p.stepWords,
+        bar,
+        p.note,
+      ),
       element("div", { className: "side" }, controls, p.values),
     );
     p.step.addEventListener("input", () => this.show(Number(p.step.value)));
     p.play.addEventListener("click", () => this.#togglePlay());
-    p.field.addEventListener("change", () => this.#choose(this.quantities.find(({ id }) => id === p.field.value), true));
+    p.field.addEventListener("change", () =>
+      this.#choose(
+        this.quantities.find(({ id }) => id === p.field.value),
+        true,
+      ),
+    );
     p.colours.addEventListener("change", () => this.#draw());
     p.scale.addEventListener("change", () => this.#rescale(Math.max(Number(p.scale.value) || 0, 0)));
     p.slider.addEventListener("input", () => this.#rescale((this.#firstScale() * Number(p.slider.value)) / 25));
-    p.point.addEventListener("change", () => this.#pick(p.point.value === "" ? null : this.body.cellOf(Number(p.point.value))));
+    p.point.addEventListener("change", () =>
+      this.#pick(p.point.value === "" ? null : this.body.cellOf(Number(p.point.value))),
+    );
     reset.addEventListener("click", () => this.scene && this.#frameBody());
   }
 
@@ -114,8 +152,19 @@ export class BodyView {
     if (this.body.dimension === 3) {
       p.clear = element("input", { type: "checkbox", id: "clear" });
       p.clear.addEventListener("change", () => this.#draw());
-      p.axis = element("select", { id: "axis", "aria-label": "axis of the cut" }, ...[...AXES].map((axis) => new Option(axis, axis)));
-      p.cut = element("input", { type: "range", id: "cut", "aria-label": "place of the cut", min: 0, max: 100, value: 100 });
+      p.axis = element(
+        "select",
+        { id: "axis", "aria-label": "axis of the cut" },
+        ...[...AXES].map((axis) => new Option(axis, axis)),
+      );
+      p.cut = element("input", {
+        type: "range",
+        id: "cut",
+        "aria-label": "place of the cut",
+        min: 0,
+        max: 100,
+        value: 100,
+      });
       for (const input of [p.axis, p.cut]) input.addEventListener("input", () => this.#draw());
       made.push(named("see through", p.clear), named("cut across", p.axis, p.cut));
     }
@@ -138,16 +187,23 @@ export class BodyView {
   #draw() {
     const { body, frame, parts } = this;
     const { step, load, broken } = body.frames[frame];
-    parts.stepWords.textContent = [`step ${step}`, load, broken ? `${broken} broken bond${broken === 1 ? "" : "s"}` : ""].filter(Boolean).join(" · ");
+    parts.stepWords.textContent = [`step ${step}`, load, broken ? `${broken} broken bond${broken === 1 ? "" : "s"}` : ""]
+      .filter(Boolean)
+      .join(" · ");
     parts.step.setAttribute("aria-valuetext", parts.stepWords.textContent);
     const values = this.quantity.values(frame);
     const span = this.#span(values);
     this.#label(span);
     if (this.scene) {
       const hidden = this.#hidden();
-      this.scene.setCells(body.cells.positions(frame, this.displacements, body.loose(frame), this.scale),
-        this.#colours(values, span), body.cells.triangles(frame, (cell) => hidden[cell]));
-      this.scene.setBonds(parts.bonds?.checked ? body.brokenBonds(frame, this.displacements, this.scale) : new Float32Array());
+      this.scene.setCells(
+        body.cells.positions(frame, this.displacements, body.loose(frame), this.scale),
+        this.#colours(values, span),
+        body.cells.triangles(frame, (cell) => hidden[cell]),
+      );
+      this.scene.setBonds(
+        parts.bonds?.checked ? body.brokenBonds(frame, this.displacements, this.scale) : new Float32Array(),
+      );
       this.scene.setSeeThrough(Boolean(parts.clear?.checked));
       this.#mark();
       this.scene.draw();
@@ -199,7 +255,7 @@ export class BodyView {
 
   #pick(cell) {
     this.chosen = cell === null || cell < 0 ? null : cell;
-    this.parts.point.value = this.chosen === null ? "" : this.body.points?.[this.chosen] ?? this.chosen;
+    this.parts.point.value = this.chosen === null ? "" : (this.body.points?.[this.chosen] ?? this.chosen);
     this.#mark();
     this.scene?.draw();
     this.#tell();
@@ -211,25 +267,14 @@ export class BodyView {
     this.scene?.setMark(at === null ? null : [place(0), place(1), place(2)]);
   }
 
-  /** The values of the chosen point, each with the error that the page's numbers add. */
+  /** The values of the chosen point. */
   #tell() {
-    const { body, chosen, frame } = this;
-    if (chosen === null) {
-      this.parts.values.replaceChildren(element("p", { className: "note", textContent: "Click the body, or type a number, to read the values of a point." }));
-      return;
-    }
-    const rows = [];
-    for (let c = 0; c < body.dimension; c++) {
-      rows.push([`${AXES[c]} (reference)`, body.centres[3 * chosen + c], body.position?.error(0, c) ?? 0, "m", `position_${AXES[c]}`]);
-    }
-    for (const { id, label, unit, at, error } of this.quantities) rows.push([label, at(frame, chosen), error(frame), unit, id]);
-    const table = element("table", {}, element("caption", { textContent: `${body.points ? `point ${body.points[chosen]}` : `cell ${chosen}, a mean of points`}, step ${body.frames[frame].step}` }));
-    for (const [label, value, error, unit, id] of rows) {
-      table.append(element("tr", {}, element("th", { scope: "row", textContent: label }),
-        element("td", { textContent: withUnit(value, unit, error), "data-name": id, "data-value": value, "data-error": error }),
-        element("td", { className: "error", textContent: error > 0 ? `± ${sizeOfError(error, unit)}` : "" })));
-    }
-    this.parts.values.replaceChildren(table);
+    const note = "Click the body, or type a number, to read the values of a point.";
+    this.parts.values.replaceChildren(
+      this.chosen === null
+        ? element("p", { className: "note", textContent: note })
+        : pointTable(this.body, this.quantities, this.chosen, this.frame),
+    );
   }
 
   #togglePlay() {
@@ -247,49 +292,4 @@ export class BodyView {
     this.timer = null;
     this.parts.play.textContent = "▶ Play";
   }
-}
-
-/** What the body can be coloured by: fields, and the displacement and its components. */
-function quantitiesOf(body) {
-  const { displacement, dimension } = body;
-  const axes = [...AXES].slice(0, dimension);
-  const made = body.content.fields.map(({ name, label, unit }) => {
-    const field = body.fields.get(name);
-    const isSigned = field.about.low.some(([low]) => low < 0);
-    return withUsual({
-      id: name, label, unit, map: name === "damage" ? "damage" : isSigned ? "signed" : "plain",
-      values: (frame) => field.values(frame), at: (frame, cell) => field.value(frame, 0, cell),
-      low: (frame) => field.low(frame), high: (frame) => field.high(frame),
-      error: (frame) => (name === "fragment" && body.content.is_whole ? 0 : field.error(frame)),
-    });
-  });
-  const length = (frame, cell) => Math.hypot(...axes.map((_, c) => displacement.value(frame, c, cell)));
-  const lengths = remembered((frame) => Float64Array.from({ length: body.count }, (_, cell) => length(frame, cell)));
-  made.push(withUsual({
-    id: "displacement", label: "displacement", unit: "m", map: "plain", values: lengths, at: length,
-    low: (frame) => lengths(frame).reduce((a, b) => Math.min(a, b), Infinity),
-    high: (frame) => lengths(frame).reduce((a, b) => Math.max(a, b), 0),
-    error: (frame) => Math.hypot(...axes.map((_, c) => displacement.error(frame, c))),
-  }));
-  axes.forEach((axis, c) => {
-    made.push(withUsual({
-      id: `displacement_${axis}`, label: `displacement in ${axis}`, unit: "m", map: "signed",
-      values: (frame) => displacement.values(frame, c), at: (frame, cell) => displacement.value(frame, c, cell),
-      low: (frame) => displacement.low(frame, c), high: (frame) => displacement.high(frame, c), error: (frame) => displacement.error(frame, c),
-    }));
-  });
-  return made;
-}
-
-/** Adds the 99.5th percentile of each frame. */
-function withUsual(quantity) {
-  return { ...quantity, usual: remembered((frame) => { const sorted = quantity.values(frame).slice().sort(); return sorted[Math.floor(0.995 * (sorted.length - 1))]; }) };
-}
-
-function remembered(compute) {
-  const known = new Map();
-  return (key) => {
-    if (!known.has(key)) known.set(key, compute(key));
-    return known.get(key);
-  };
 }

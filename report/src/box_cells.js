@@ -175,6 +175,8 @@ function nextCells(shape, places) {
   const cellAt = new Map(Array.from(places, (place, cell) => [place, cell]));
   return shape.map((length, axis) => {
     const stride = shape.slice(axis + 1).reduce((product, n) => product * n, 1);
-    return Int32Array.from(places, (place) => (Math.floor(place / stride) % length < length - 1 ? cellAt.get(place + stride) ?? -1 : -1));
+    return Int32Array.from(places, (place) =>
+      Math.floor(place / stride) % length < length - 1 ? (cellAt.get(place + stride) ?? -1) : -1,
+    );
   });
 }

@@ -24,26 +24,37 @@ export function drawCurves(place, { title, x, y, log, series, steps }) {
   const data = [null, ...series.map((curve) => [curve.x, curve.y])];
   const width = () => Math.max(place.clientWidth, 240);
   let marked = -1;
-  const chart = new uPlot({
-    mode: 2,
-    width: width(),
-    height: HEIGHT,
-    title,
-    legend: { show: series.length > 1, live: false },
-    cursor: { points: { show: false }, drag: { x: true, y: true }, dataIdx: () => null },
-    scales: { x: { time: false, range: padded(data, 0) }, y: log ? { distr: 3 } : { range: padded(data, 1) } },
-    axes: [axis(x), { ...axis(y), size: 64, ...(log ? DECADES : {}) }],
-    series: [{}, ...series.map((curve, i) => ({
-      label: curve.label,
-      stroke: () => (series.length > LINES ? `hsl(${(360 * i) / series.length} 55% 50%)` : styleColour(`--line-${i + 1}`)),
-      facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }],
-      paths: (u, index) => draw(u, index, curve),
-    }))],
-    hooks: {
-      draw: [(u) => markStep(u, series, steps, marked)],
-      setCursor: [(u) => (told.textContent = nearest(u, series, x, y, steps))],
+  const chart = new uPlot(
+    {
+      mode: 2,
+      width: width(),
+      height: HEIGHT,
+      title,
+      legend: { show: series.length > 1, live: false },
+      cursor: { points: { show: false }, drag: { x: true, y: true }, dataIdx: () => null },
+      scales: { x: { time: false, range: padded(data, 0) }, y: log ? { distr: 3 } : { range: padded(data, 1) } },
+      axes: [axis(x), { ...axis(y), size: 64, ...(log ? DECADES : {}) }],
+      series: [
+        {},
+        ...series.map((curve, i) => ({
+          label: curve.label,
+          stroke: () =>
+            series.length > LINES ? `hsl(${(360 * i) / series.length} 55% 50%)` : styleColour(`--line-${i + 1}`),
+          facets: [
+            { scale: "x", auto: true },
+            { scale: "y", auto: true },
+          ],
+          paths: (u, index) => draw(u, index, curve),
+        })),
+      ],
+      hooks: {
+        draw: [(u) => markStep(u, series, steps, marked)],
+        setCursor: [(u) => (told.textContent = nearest(u, series, x, y, steps))],
+      },
     },
-  }, data, place);
+    data,
+    place,
+  );
   place.append(told);
   new ResizeObserver(() => chart.setSize({ width: width(), height: HEIGHT })).observe(place);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => chart.redraw());
@@ -54,7 +65,12 @@ export function drawCurves(place, { title, x, y, log, series, steps }) {
 }
 
 function axis(label) {
-  return { label, stroke: () => styleColour("--ink"), grid: { stroke: () => styleColour("--grid") }, ticks: { stroke: () => styleColour("--grid") } };
+  return {
+    label,
+    stroke: () => styleColour("--ink"),
+    grid: { stroke: () => styleColour("--grid") },
+    ticks: { stroke: () => styleColour("--grid") },
+  };
 }
 
 /** The whole range of all curves with some space around. */

@@ -12,7 +12,9 @@ async function begin() {
   const place = document.getElementById("body-view");
   if (content.body && place) {
     const bytes = await unzipped(document.getElementById("numbers").textContent);
-    const view = new BodyView(place, content.body, new Numbers(bytes, content.body.arrays), (step) => marks.forEach((mark) => mark(step)));
+    const view = new BodyView(place, content.body, new Numbers(bytes, content.body.arrays), (step) =>
+      marks.forEach((mark) => mark(step)),
+    );
     globalThis.peristat = { view };
   }
   document.documentElement.dataset.ready = "yes";

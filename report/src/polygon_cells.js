@@ -9,7 +9,9 @@ export class PolygonCells {
     this.centres = centres;
     const shapes = numbers.field("corners", places);
     this.corners = shapes.components / 2;
-    this.offsets = Float64Array.from({ length: 2 * this.corners * this.count }, (_, i) => shapes.value(0, i % shapes.components, Math.floor(i / shapes.components)));
+    this.offsets = Float64Array.from({ length: 2 * this.corners * this.count }, (_, i) =>
+      shapes.value(0, i % shapes.components, Math.floor(i / shapes.components)),
+    );
     this.knots = numbers.list("knots");
     this.parted = numbers.field("parted", places);
     this.beyond = this.#neighbours();
@@ -21,7 +23,8 @@ export class PolygonCells {
     const places = new Float32Array(3 * this.count * this.corners);
     for (let corner = 0; corner < this.count * this.corners; corner++) {
       const cell = Math.floor(corner / this.corners);
-      for (let c = 0; c < 2; c++) places[3 * corner + c] = this.centres[3 * cell + c] + this.offsets[2 * corner + c] + scale * moved[2 * corner + c];
+      for (let c = 0; c < 2; c++)
+        places[3 * corner + c] = this.centres[3 * cell + c] + this.offsets[2 * corner + c] + scale * moved[2 * corner + c];
     }
     return places;
   }
@@ -66,7 +69,10 @@ export class PolygonCells {
       const gradient = this.#gradient(frame, cell, displacement, loose);
       for (let corner = cell * this.corners; corner < (cell + 1) * this.corners; corner++) {
         for (let c = 0; c < 2; c++) {
-          moved[2 * corner + c] = displacement[3 * cell + c] + gradient[c][0] * this.offsets[2 * corner] + gradient[c][1] * this.offsets[2 * corner + 1];
+          moved[2 * corner + c] =
+            displacement[3 * cell + c] +
+            gradient[c][0] * this.offsets[2 * corner] +
+            gradient[c][1] * this.offsets[2 * corner + 1];
         }
       }
     }
@@ -76,7 +82,10 @@ export class PolygonCells {
   /** Displacement gradient, component x direction, by least squares over joined neighbours. */
   #gradient(frame, cell, displacement, loose) {
     let [xx, xy, yy] = [0, 0, 0];
-    const sums = [[0, 0], [0, 0]];
+    const sums = [
+      [0, 0],
+      [0, 0],
+    ];
     for (let corner = cell * this.corners; corner < (cell + 1) * this.corners; corner++) {
       const other = this.beyond[corner];
       if (other < 0 || loose[cell] || loose[other] || this.#isParted(frame, corner)) continue;
@@ -90,7 +99,11 @@ export class PolygonCells {
       }
     }
     const determinant = xx * yy - xy * xy;
-    if (!(determinant > FLAT * (xx + yy) ** 2)) return [[0, 0], [0, 0]];
+    if (!(determinant > FLAT * (xx + yy) ** 2))
+      return [
+        [0, 0],
+        [0, 0],
+      ];
     return sums.map(([x, y]) => [(yy * x - xy * y) / determinant, (xx * y - xy * x) / determinant]);
   }
 

@@ -1,9 +1,27 @@
 // The body in space: cells, lines of broken bonds and a mark at the chosen point, drawn when something has changed.
 
 import {
-  AmbientLight, BufferAttribute, BufferGeometry, Color, ColorManagement, DirectionalLight, DoubleSide, LineBasicMaterial,
-  LineSegments, LinearSRGBColorSpace, Mesh, MeshBasicMaterial, MeshLambertMaterial, OrthographicCamera, Points,
-  PointsMaterial, Raycaster, Scene, Vector2, Vector3, WebGLRenderer,
+  AmbientLight,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  ColorManagement,
+  DirectionalLight,
+  DoubleSide,
+  LineBasicMaterial,
+  LineSegments,
+  LinearSRGBColorSpace,
+  Mesh,
+  MeshBasicMaterial,
+  MeshLambertMaterial,
+  OrthographicCamera,
+  Points,
+  PointsMaterial,
+  Raycaster,
+  Scene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { styleColour } from "./dom.js";
@@ -24,11 +42,23 @@ export class BodyScene {
     this.camera = new OrthographicCamera();
     this.isSolid = isSolid;
     this.#addLights();
-    const shading = { vertexColors: true, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+    const shading = {
+      vertexColors: true,
+      side: DoubleSide,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    };
     this.material = isSolid ? new MeshLambertMaterial({ ...shading, flatShading: true }) : new MeshBasicMaterial(shading);
     this.mesh = new Mesh(new BufferGeometry(), this.material);
-    this.bonds = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: styleColour("--ink"), transparent: true, opacity: 0.45 }));
-    this.mark = new Points(new BufferGeometry(), new PointsMaterial({ size: 11, sizeAttenuation: false, depthTest: false, color: styleColour("--mark") }));
+    this.bonds = new LineSegments(
+      new BufferGeometry(),
+      new LineBasicMaterial({ color: styleColour("--ink"), transparent: true, opacity: 0.45 }),
+    );
+    this.mark = new Points(
+      new BufferGeometry(),
+      new PointsMaterial({ size: 11, sizeAttenuation: false, depthTest: false, color: styleColour("--mark") }),
+    );
     this.mark.visible = false;
     this.scene.add(this.mesh, this.bonds, this.mark);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -53,7 +83,12 @@ export class BodyScene {
     const half = high.clone().sub(middle);
     this.radius = half.length() || 1;
     const from = this.isSolid ? new Vector3(1.1, 0.75, 1.6) : new Vector3(0, 0, 1);
-    this.camera.position.copy(from.normalize().multiplyScalar(4 * this.radius).add(middle));
+    this.camera.position.copy(
+      from
+        .normalize()
+        .multiplyScalar(4 * this.radius)
+        .add(middle),
+    );
     this.camera.zoom = 1;
     this.controls.target.copy(middle);
     this.controls.update();
@@ -88,7 +123,12 @@ export class BodyScene {
   }
 
   setSeeThrough(isClear) {
-    Object.assign(this.material, { transparent: isClear, opacity: isClear ? 0.25 : 1, depthWrite: !isClear, needsUpdate: true });
+    Object.assign(this.material, {
+      transparent: isClear,
+      opacity: isClear ? 0.25 : 1,
+      depthWrite: !isClear,
+      needsUpdate: true,
+    });
   }
 
   /** Calls `chosen` with the number of a corner of what was clicked, or null. */
@@ -109,7 +149,10 @@ export class BodyScene {
 
   #cornerAt(event) {
     const box = this.canvas.getBoundingClientRect();
-    const place = new Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
+    const place = new Vector2(
+      (2 * (event.clientX - box.left)) / box.width - 1,
+      1 - (2 * (event.clientY - box.top)) / box.height,
+    );
     const ray = new Raycaster();
     ray.setFromCamera(place, this.camera);
     return ray.intersectObject(this.mesh)[0]?.face.a ?? null;
@@ -128,7 +171,12 @@ export class BodyScene {
     if (!this.extent || !width || !height) return;
     this.renderer.setSize(width, height, false);
     const half = 0.54 * Math.max(this.extent.y, (this.extent.x * height) / width);
-    Object.assign(this.camera, { left: (-half * width) / height, right: (half * width) / height, top: half, bottom: -half });
+    Object.assign(this.camera, {
+      left: (-half * width) / height,
+      right: (half * width) / height,
+      top: half,
+      bottom: -half,
+    });
     Object.assign(this.camera, { near: 0.01 * this.radius, far: 40 * this.radius });
     this.camera.updateProjectionMatrix();
     this.draw();

@@ -1,6 +1,16 @@
 // Numbers with units and their prefixes.
 
-const PREFIXES = [["T", 1e12], ["G", 1e9], ["M", 1e6], ["k", 1e3], ["", 1], ["m", 1e-3], ["µ", 1e-6], ["n", 1e-9], ["p", 1e-12]];
+const PREFIXES = [
+  ["T", 1e12],
+  ["G", 1e9],
+  ["M", 1e6],
+  ["k", 1e3],
+  ["", 1],
+  ["m", 1e-3],
+  ["µ", 1e-6],
+  ["n", 1e-9],
+  ["p", 1e-12],
+];
 const SHOWN = { "J/m3": "J/m³", 1: "" };
 
 /** Prefix and size of the unit in which a value is at least 1. */

@@ -24,8 +24,6 @@ POSITION_BITS = 16
 SHAPE_BITS = 12
 
 
-
-
 def body_content(results, room: int) -> tuple[dict, str] | None:
     """What the page says about the body, and its numbers as text of at most `room` bytes; None without fields."""
     if not results.step_numbers:
@@ -174,8 +172,8 @@ def _told(results, frames: Frames, content: dict) -> list[str]:
     if len(frames.numbers) < steps:
         told.append(f"{len(frames.numbers)} of the {number(steps)} steps with fields are shown, to keep the page small.")
     if not frames.is_whole:
-        told.append(f"{number(len(frames.order))} cells are shown for {number(points)} points, to keep the page small: each is "
-                    "the mean of its points. Single broken bonds are not drawn, and extreme values are smoothed.")  # fmt: skip
+        told.append(f"{number(len(frames.order))} cells are shown for {number(points)} points, to keep the page small: "
+                    "each is the mean of its points. Single broken bonds are not drawn, and extreme values are smoothed.")  # fmt: skip
     if content.get("bonds_shown", 0) < content.get("bonds", 0):
         told.append(f"{number(content['bonds_shown'])} of the {number(content['bonds'])} broken bonds are drawn.")
     return told

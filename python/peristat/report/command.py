@@ -43,9 +43,11 @@ def main(words: list[str]) -> int:
         return _told(str(error), WRONG_INPUT)
     except OSError as error:
         return _told(f"{arguments.output or directory}: {error}", MACHINE_FAILED)
-    except Exception:
+    except NameError:  # a fault of the program: no folder's content causes it
         traceback.print_exc()
         return _told(f"{directory}: a fault of the program, which is worth a report", BUG)
+    except Exception as error:  # an unforeseen change in a folder that somebody has edited
+        return _told(f"{directory}: can't be shown ({type(error).__name__}: {error})", WRONG_INPUT)
     print(f"report: {path}: {size / 1e6:.2f} MB")
     return DONE
 
@@ -72,4 +74,6 @@ def guarded(words: list[str]) -> int:
         code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
     except KeyboardInterrupt:  # from the terminal; the child has received it, too
         return INTERRUPTED
-    return code if code >= 0 else _told(f"reading {' '.join(words)} ended with signal {-code}: it is damaged", WRONG_INPUT)
+    return (
+        code if code >= 0 else _told(f"reading {' '.join(words)} ended with signal {-code}: it is damaged", WRONG_INPUT)
+    )

@@ -16,7 +16,7 @@ from ..pictures.reactions import has_reactions, reactions
 from ..pictures.results_folder import ResultsFolder, read_results_folder
 from ..pictures.units import FORCES, LENGTHS, unit_for
 from .curves import curve, line
-from .markup import Raw, escaped
+from .markup import Raw, escaped, paragraph
 from .place import NAME
 
 MOST_CURVES = 24  # in one picture
@@ -66,9 +66,12 @@ def comparison(name: str, title: str, runs: list[Run]) -> dict | None:
 
 def pictures(runs: list[Run]) -> str:
     """Small pictures of the last states."""
-    shown = "".join(f"<figure>{_picture(run)}<figcaption>{escaped(run.label)}</figcaption></figure>" for run in runs[:MOST_PICTURES])
+    shown = [
+        f"<figure>{_picture(run)}<figcaption>{escaped(run.label)}</figcaption></figure>" for run in runs[:MOST_PICTURES]
+    ]
     left = len(runs) - MOST_PICTURES
-    return f'<div class="pictures">{shown}</div>' + (f'<p class="note">{left} more runs have no picture here.</p>' if left > 0 else "")
+    told = paragraph(f"{left} more runs have no picture here.") if left > 0 else ""
+    return f'<div class="pictures">{"".join(shown)}</div>{told}'
 
 
 def _picture(run: Run) -> str:

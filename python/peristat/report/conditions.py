@@ -11,7 +11,9 @@ TABLES = {  # of the case: words for its entries
     "foundation": "foundation", "symmetry": "plane of symmetry", "period": "period", "eigenstrain": "eigenstrain",
     "initial": "initial state", "absorbing": "absorbing layer", "control": "control",
 }  # fmt: skip
-FORCES = ("body_force", "total_force", "gravity", "traction")  # keys of a load with a value per component
+PLACES = ("set", "side", "name", "axis")  # keys that say where an entry acts
+# By table: keys with a value per component.
+VECTORS = {"support": ("displacement",), "load": ("body_force", "total_force", "gravity", "traction")}
 LINEAR = re.compile(r"\s*([+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?)?\s*(-)?\s*\*?\s*\b(?:load|t)\b\s*")
 
 
@@ -39,13 +41,14 @@ def conditions(results) -> list[Condition]:
 
 
 def _condition(results, table: str, words: str, entry: dict) -> Condition:
-    place = entry.get("set") or entry.get("side") or entry.get("name") or entry.get("axis") or ""
-    values = [f"{key} = {_text(value)}" for key, value in entry.items() if key not in ("set", "side", "name", "axis") and value not in ("", [])]
+    place = next((entry[key] for key in PLACES if entry.get(key)), "")
+    values = [f"{key} = {_text(value)}" for key, value in entry.items() if key not in PLACES and value not in ("", [])]
     made = Condition(f"{words} {place}: {', '.join(values)}".replace(" :", ":"), _points(results, entry))
-    vector = entry.get("displacement") if table == "support" else next((entry[key] for key in FORCES if table == "load" and key in entry), None)
+    vector = next((entry[key] for key in VECTORS.get(table, ()) if key in entry), None)
     if isinstance(vector, list):
         columns = ("displacement", "force") if table == "support" else ("force", "displacement")
-        signs = [_sign(results, value, [f"{column}_{axis}:{place}" for column in columns]) for axis, value in zip(AXES, vector)]
+        names = [[f"{column}_{axis}:{place}" for column in columns] for axis in AXES]
+        signs = [_sign(results, value, own) for value, own in zip(vector, names)]
         made.direction = np.array([sign or 0.0 for sign in signs])
         made.held = [axis for axis, sign in enumerate(signs) if table == "support" and sign == 0.0]
     return made

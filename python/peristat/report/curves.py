@@ -63,11 +63,12 @@ def _load_displacement(results, kept) -> list[dict]:
     unit, size = unit_for(max(np.abs(reaction.values).max() for reaction in drawn), FORCES, 1.0)
     label, over = _over(results)
     shown = [line(reaction.label, over[kept], reaction.values[kept] / size) for reaction in drawn]
-    found = [curve("load-curve", f"Reactions over {label.partition(' [')[0]}", label, f"reaction [{unit}]", shown, steps=_steps(results, kept))]
+    title, reaction_label, steps = f"Reactions over {label.partition(' [')[0]}", f"reaction [{unit}]", _steps(results, kept)
+    found = [curve("load-curve", title, label, reaction_label, shown, steps=steps)]
     if abscissa := find_abscissa(results, drawn):
         over = abscissa.readable()
         shown = [line(reaction.label, over.values[kept], reaction.values[kept] / size) for reaction in over.curves(drawn)]
-        found.insert(0, curve("displacement-curve", "Load and displacement", over.label, f"reaction [{unit}]", shown, steps=_steps(results, kept)))
+        found.insert(0, curve("displacement-curve", "Load and displacement", over.label, reaction_label, shown, steps=steps))
     return found
 
 
@@ -82,7 +83,8 @@ def _energies(results, kept) -> dict | None:
     unit, size = unit_for(max(np.abs(values).max() for _, values in known), ENERGIES, 1.0)
     if not results.is_of_motion and not (np.diff(over) >= 0.0).all():
         label, over = "step", results.numbers("step")
-    shown = [line(words, over[kept], values[kept] / size, dashed=words == ENERGY_COLUMNS[-1][1]) for words, values in known]
+    dashed = ENERGY_COLUMNS[-1][1]
+    shown = [line(words, over[kept], values[kept] / size, dashed=words == dashed) for words, values in known]
     return curve("energy-curve", "Energies", label, f"energy [{unit}]", shown, steps=_steps(results, kept))
 
 

@@ -45,7 +45,10 @@ class Frames:
     @property
     def stands_on_lattice(self) -> bool:
         """Whether the points are the centres of the cells, which the page computes."""
-        return self.is_lattice and np.abs(self.cells.centres(self.reference) - self.reference).max() <= SAME * self.cells.spacing
+        return (
+            self.is_lattice
+            and np.abs(self.cells.centres(self.reference) - self.reference).max() <= SAME * self.cells.spacing
+        )
 
     @property
     def size(self) -> int:

@@ -31,18 +31,23 @@ def items(sentences: Iterable[str], kind: str = "") -> str:
 
 def table(names: Sequence[str], rows: Sequence[Sequence], numbers: Iterable[int] = ()) -> str:
     """A table; of a long one the first and last rows, with a row that says so. `numbers` are columns of numbers."""
-    right = set(numbers)
+    right, half = set(numbers), MOST_ROWS // 2
+    if len(rows) <= MOST_ROWS:
+        shown = [_row("td", row, right) for row in rows]
+    else:
+        words = f"… {len(rows) - MOST_ROWS} rows are left out; the tables of the results folder have them …"
+        shown = [_row("td", row, right) for row in rows[:half]]
+        shown.append(f'<tr><td colspan="{len(names)}">{words}</td></tr>')
+        shown += [_row("td", row, right) for row in rows[-half:]]
+    head = f"<thead>{_row('th', names, right)}</thead>"
+    return f'<div class="scroll" tabindex="0"><table>{head}<tbody>{"".join(shown)}</tbody></table></div>'
 
-    def cells(kind: str, row: Sequence) -> str:
-        return "".join(f"<{kind}{' class=number' * (place in right)}>{value if isinstance(value, Raw) else escaped(value)}</{kind}>"
-                       for place, value in enumerate(row))  # fmt: skip
 
-    shown = [f"<tr>{cells('td', row)}</tr>" for row in (rows if len(rows) <= MOST_ROWS else rows[: MOST_ROWS // 2])]
-    if len(rows) > MOST_ROWS:
-        shown.append(f'<tr><td colspan="{len(names)}">… {len(rows) - MOST_ROWS} rows are left out; the tables of the results '
-                     "folder have them …</td></tr>")  # fmt: skip
-        shown += [f"<tr>{cells('td', row)}</tr>" for row in rows[-(MOST_ROWS // 2) :]]
-    return f'<div class="scroll" tabindex="0"><table><thead><tr>{cells("th", names)}</tr></thead><tbody>{"".join(shown)}</tbody></table></div>'
+def _row(kind: str, row: Sequence, right: set[int]) -> str:
+    """A row of cells; those of numbers stand to the right."""
+    cells = [value if isinstance(value, Raw) else escaped(value) for value in row]
+    marks = [" class=number" * (place in right) for place in range(len(cells))]
+    return "<tr>" + "".join(f"<{kind}{mark}>{cell}</{kind}>" for mark, cell in zip(marks, cells)) + "</tr>"
 
 
 class Raw(str):

@@ -25,9 +25,14 @@ def head(results, status: str) -> str:
 
 def _facts(results) -> list[str]:
     summary = results.summary
-    steps = sum(1 for step in results.history.get("step", []) if step > 0) if not results.is_of_motion else summary.get("steps")
+    steps = sum(step > 0 for step in results.history.get("step", []))
+    steps = summary.get("steps") if results.is_of_motion else steps
     unit, size = unit_for(results.spacing, LENGTHS)
-    known = [f"{results.dimension}D", f"{number(len(results.volume))} points", f"spacing {number(results.spacing / size)} {unit}"]
+    known = [
+        f"{results.dimension}D",
+        f"{number(len(results.volume))} points",
+        f"spacing {number(results.spacing / size)} {unit}",
+    ]
     known += [f"{number(steps)} accepted step{'s' * (steps != 1)}"] if steps is not None else []
     for name in ("bonds", "triangles", "tetrahedra", "broken_bonds"):
         if isinstance(summary.get(name), (int, float)) and summary[name]:

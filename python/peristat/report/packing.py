@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..errors import InputError
+
 
 @dataclass
 class Ranges:
@@ -32,8 +34,14 @@ class Ranges:
 
 
 def quantised(values: np.ndarray, bits: int) -> tuple[np.ndarray, Ranges]:
-    """Whole numbers for values (frames x components x count), each frame and component over its own range."""
+    """Whole numbers for values (frames x components x count), each frame and component over its own range.
+
+    Raises InputError if a range is no number: only a damaged folder has such values.
+    """
     ranges = Ranges(values.min(axis=2), values.max(axis=2), bits)
+    with np.errstate(over="ignore"):
+        if not np.isfinite(ranges.step).all():
+            raise InputError(f"values from {values.min():.3g} to {values.max():.3g} are too far apart to be shown")
     step = np.where(ranges.step > 0.0, ranges.step, 1.0)[:, :, None]
     return np.rint((values - ranges.low[:, :, None]) / step).astype(np.uint16), ranges
 
@@ -51,7 +59,9 @@ class Pack:
         change = np.diff(np.asarray(values, dtype=np.int64).ravel(), prepend=0).astype(np.uint32)
         self._add(name, _planes(_zigzag(change, 32), 4), {"kind": "list", "count": int(change.size), "bytes": 4})
 
-    def add_fields(self, name: str, numbers: np.ndarray, places: np.ndarray, shape: tuple[int, ...], ranges: Ranges) -> None:
+    def add_fields(
+        self, name: str, numbers: np.ndarray, places: np.ndarray, shape: tuple[int, ...], ranges: Ranges
+    ) -> None:
         """Quantised values, frames x components x count.
 
         places  of the points in a grid of this shape; values are differences along its axes and, if that is smaller, in time

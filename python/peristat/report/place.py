@@ -22,11 +22,15 @@ def require_free(path: Path) -> None:
     except NotADirectoryError:
         raise InputError(f"{path}: {path.parent} is no folder") from None
     if not stat.S_ISREG(status.st_mode):
-        raise InputError(f"{path} is no plain file but a link, a folder or a device: remove it, or name another file by --output")
+        raise InputError(
+            f"{path} is no plain file but a link, a folder or a device: remove it, or name another file by --output"
+        )
     with open(path, "rb") as file:
         head = file.read(HEAD)
     if head and SIGN.encode() not in head:
-        raise InputError(f"{path} is no page of this command and would be replaced: move it, or name another file by --output")
+        raise InputError(
+            f"{path} is no page of this command and would be replaced: move it, or name another file by --output"
+        )
 
 
 def write(path: Path, content: str) -> None:

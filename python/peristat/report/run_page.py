@@ -49,7 +49,11 @@ def _places(curves: list[dict], kind: str = "") -> str:
     """Elements in which the page's program draws the curves."""
     if not curves:
         return ""
-    return f'<div class="grid {kind}">' + "".join(f'<div class="curve" id="{curve["id"]}"></div>' for curve in curves) + "</div>"
+    return (
+        f'<div class="grid {kind}">'
+        + "".join(f'<div class="curve" id="{curve["id"]}"></div>' for curve in curves)
+        + "</div>"
+    )
 
 
 def _contents(parts: list[str]) -> str:

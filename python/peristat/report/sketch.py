@@ -43,7 +43,9 @@ class _Drawing:
             mask = np.zeros(len(results.volume))
             mask[condition.points] = 1.0
             masks.append(mask)
-        self._edges, self._places, *shares = merged(results.reference, results.edges, MOST_CELLS[results.dimension], *masks)
+        self._edges, self._places, *shares = merged(
+            results.reference, results.edges, MOST_CELLS[results.dimension], *masks
+        )
         self._members = [share > 0.0 for share in shares]
         if results.dimension == 1:
             height = max(float(self._edges[0, 0]), np.ptp(self._places) / 20.0)
@@ -65,7 +67,8 @@ class _Drawing:
     def _paper(self, places: np.ndarray) -> np.ndarray:
         """Places of the body in units of the drawing, from the upper left corner."""
         flat = (self._flat(np.atleast_2d(places)) - self._low) * self._scale
-        return np.stack([0.5 * WIDTH + flat[:, 0] - 0.5 * (self._high - self._low)[0] * self._scale, self._height - MARGIN - flat[:, 1]], axis=1)
+        left = 0.5 * (WIDTH - (self._high - self._low)[0] * self._scale)
+        return np.stack([left + flat[:, 0], self._height - MARGIN - flat[:, 1]], axis=1)
 
     def text(self) -> str:
         parts = self._body() + self._outline() + self._sides() + self._cracks() + self._symbols()
@@ -91,7 +94,8 @@ class _Drawing:
     def _mesh(self) -> list[str]:
         """The boundary of a mesh, filled, and the elements of sets."""
         cells = element_cells(self._results.elements)
-        parts = [f'<path class="solid" style="stroke:var(--ink)" fill-rule="evenodd" d="{"".join(map(_closed, map(self._paper, loops(cells))))}"/>']
+        boundary = "".join(_closed(self._paper(loop)) for loop in loops(cells))
+        parts = [f'<path class="solid" style="stroke:var(--ink)" fill-rule="evenodd" d="{boundary}"/>']
         for place, condition in enumerate(self._acting):
             members = condition.points[:MOST_MARKS]
             shapes = "".join(_closed(self._paper(cells.corners[member])) for member in members)
@@ -109,8 +113,8 @@ class _Drawing:
         centres = self._cells.centres(self._places)
         first, last = centres[chosen[begins]], centres[chosen[ends]]
         along, across = 0.5 * self._edges
-        corners = [self._paper(at) for at in (first - along - across, last + along - across, last + along + across, first - along + across)]
-        return "".join(_closed(row) for row in np.stack(corners, axis=1))
+        corners = first - along - across, last + along - across, last + along + across, first - along + across
+        return "".join(_closed(row) for row in np.stack([self._paper(corner) for corner in corners], axis=1))
 
     def _faces(self) -> list[str]:
         """Exposed faces of cubes that look towards the eye, those behind first."""
@@ -128,7 +132,8 @@ class _Drawing:
                 fill = "var(--line-1)" if owner[cell] < 0 else _colour(owner[cell])
                 strength = 100.0 * (0.25 + 0.3 * facing) * (1.0 if owner[cell] < 0 else 1.5)
                 style = f"fill:color-mix(in srgb,{fill} {strength:.0f}%,var(--card))"
-                found.append((places.mean(axis=0) @ VIEW[2], f'<path class="face" style="{style}" d="{_closed(self._paper(places))}"/>'))
+                depth = places.mean(axis=0) @ VIEW[2]
+                found.append((depth, f'<path class="face" style="{style}" d="{_closed(self._paper(places))}"/>'))
         return [path for _, path in sorted(found)]
 
     def _marks(self) -> list[str]:
@@ -138,9 +143,11 @@ class _Drawing:
         owner = np.full(len(self._places), -1)
         for place, members in enumerate(self._members):
             owner[members] = place
-        shown = np.unique(np.concatenate([np.arange(0, len(owner), every), np.flatnonzero(owner >= 0)[:: max(every // 4, 1)]]))
+        of_sets = np.flatnonzero(owner >= 0)[:: max(every // 4, 1)]
+        shown = np.unique(np.concatenate([np.arange(0, len(owner), every), of_sets]))
         looks = [f'class="set" style="fill:{_colour(own)}"' if own >= 0 else 'class="solid"' for own in owner[shown]]
-        return [f'<circle {look} cx="{x:.1f}" cy="{y:.1f}" r="{radius:.1f}"/>' for look, (x, y) in zip(looks, self._paper(self._places[shown]))]
+        at = self._paper(self._places[shown])
+        return [f'<circle {look} cx="{x:.1f}" cy="{y:.1f}" r="{radius:.1f}"/>' for look, (x, y) in zip(looks, at)]
 
     def _outline(self) -> list[str]:
         if self._results.outline is None:
@@ -187,7 +194,9 @@ class _Drawing:
         if direction is None:
             return centre
         along = direction[: len(centre)]
-        return centre + np.where(along > 0, members.max(axis=0) - centre, np.where(along < 0, members.min(axis=0) - centre, 0.0))
+        return centre + np.where(
+            along > 0, members.max(axis=0) - centre, np.where(along < 0, members.min(axis=0) - centre, 0.0)
+        )
 
     def _towards(self, direction: np.ndarray) -> np.ndarray:
         """A direction of the body on the paper, of length 1."""
@@ -214,10 +223,9 @@ class _Drawing:
 def loops(cells: Polygons) -> list[np.ndarray]:
     """The boundary of cells that share corners, as closed lines: sides beyond which there is no cell, one after another."""
     cell, side = np.nonzero(cells.beyond == -1)
-    most = cells.beyond.shape[1]
     last = cells.is_side.sum(axis=1)
     after = np.where(side + 1 < last[cell], side + 1, 0)
-    begins = [tuple(corner) for corner in cells.corners[cell, side % most]]
+    begins = [tuple(corner) for corner in cells.corners[cell, side]]
     follows = dict(zip(begins, (tuple(corner) for corner in cells.corners[cell, after])))
     found = []
     while follows:

@@ -97,5 +97,3 @@ def _refinement(directory: Path) -> str:
     if picture.is_file() and picture.stat().st_size <= MOST_PICTURE:
         shown += embedded(picture.read_bytes(), "image/png", "Quantities over the spacing")
     return shown
-
-

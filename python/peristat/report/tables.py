@@ -14,8 +14,8 @@ LEDGER = (  # keys of summary.json, words, sign in the balance
     ("kinetic", "kinetic", "−"),
     ("balance_error", "what is left over: the balance error", "="),
 )
-TIMES = (("assembly", "assembly"), ("linear", "linear systems"), ("relaxation", "relaxation"), ("neighbourhood", "neighbours"),
-         ("output", "output"), ("checkpoints", "of that, checkpoints"))  # fmt: skip
+TIMES = (("assembly", "assembly"), ("linear", "linear systems"), ("relaxation", "relaxation"),
+         ("neighbourhood", "neighbours"), ("output", "output"), ("checkpoints", "of that, checkpoints"))  # fmt: skip
 DECISIONS = (("step", "step"), ("load_factor", "load factor"), ("increment", "increment"), ("outcome", "outcome"),
              ("action", "action"), ("reason", "reason"))  # fmt: skip
 
@@ -66,11 +66,14 @@ def timings(results) -> str:
     summary = results.summary
     words = [f"{what}: {_shown(summary[name])}" for name, what in (
         ("newton_iterations", "iterations of Newton's method"), ("relaxation_iterations", "of relaxation"),
-        ("factorisations", "factorisations"), ("linear_iterations", "linear iterations"), ("threads", "threads"), ("ranks", "ranks"),
+        ("factorisations", "factorisations"), ("linear_iterations", "linear iterations"), ("threads", "threads"),
+        ("ranks", "ranks"),
     ) if isinstance(summary.get(name), (int, float))]  # fmt: skip
     memory = summary.get("peak_memory_bytes")
     words += [f"largest memory: {number(memory / 2**20, 3)} MiB"] if isinstance(memory, (int, float)) else []
-    remark = "Some of the parts overlap: linear systems of relaxed steps count in both." if seconds.get("relaxation") else ""
+    remark = (
+        "Some of the parts overlap: linear systems of relaxed steps count in both." if seconds.get("relaxation") else ""
+    )
     return table(["", "s", ""], rows, [1]) + paragraph(" · ".join(words)) + paragraph(remark)
 
 

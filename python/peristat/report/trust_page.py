@@ -36,8 +36,8 @@ def trust_page(directory: Path, page_folder: Path) -> Page:
             f"{len(rows) - red} agree, {red} do not.</p>")  # fmt: skip
     every = [[link(path, page_folder, label)] for folders in specimens.values() for label, path in folders.items()]
     parts = [
-        section("table", "Table", table(names, [[_marked(cell) for cell in row] for row in rows]) + "".join(map(paragraph, remarks))
-                + items(told, "warnings")),
+        section("table", "Table", table(names, [list(map(_marked, row)) for row in rows])
+                + "".join(map(paragraph, remarks)) + items(told, "warnings")),
         section("entries", "Entries", _entries(directory / PICTURE)),
         section("curves", "Curves", f'<div class="grid two">{"".join(places)}</div>' if places else ""),
         section("pictures", "Last states on the finest lattices", pictures(last) if last else ""),
