@@ -137,7 +137,7 @@ class Points(Table):
     neighbours: str
     """file with the neighbours of the points and the shares of their volumes that count; its path is relative to the case file's folder. For model `bond`. Default: all points within the horizon. Allowed: an existing file"""
     at: Literal["elements", "nodes"]
-    """for a mesh: a point at the centroid of each element, with the volume of the element; or a point at each node, with its share of the volumes of the elements around it. Default: `'elements'`. Allowed: `'elements'`, `'nodes'`"""
+    """for a mesh: where the points are. `'elements'`: at the centroid of each element, with the volume of the element; `'nodes'`: at each node, with its share of the volumes of the elements around it. Default: `'elements'`. Allowed: `'elements'`, `'nodes'`"""
     cut_bonds: bool
     """for a mesh: whether the boundary of the elements cuts the bonds that leave the body. Default: true. Allowed: true, false"""
     thickness: Quantity
@@ -235,7 +235,7 @@ class Quadrature(Table):
     volume_correction: Literal["none", "linear", "exact", "exact_centroids"]
     """share of a neighbour's volume that counts near the horizon. `'none'`: all of it; `'linear'`: linear over half a spacing to either side; `'exact'`: the part of its cell within the horizon; `'exact_centroids'`: the same, with the bond's length and influence taken at that part's centroid. The last two are for whole cells of a lattice, whose corners `cell_perturbation` may shift. Default: `'none'`. Allowed: `'none'`, `'linear'`, `'exact'`, `'exact_centroids'`"""
     horizon_shape: Literal["ball", "box", "diamond"]
-    """shape of the neighbourhood. A point interacts with the points within the horizon by their distance (`'ball'`), by the largest component of their distance along the lattice's axes (`'box'`), or by the sum of these components (`'diamond'`). Boxes and diamonds are stiffer along some directions than along others: moduli are means over all directions. Default: `'ball'`. Allowed: `'ball'`, `'box'`, `'diamond'`"""
+    """shape of the neighbourhood. A point interacts with the points within the horizon, by a measure of their distance. `'ball'`: its length; `'box'`: its largest component along the lattice's axes; `'diamond'`: the sum of these components. Boxes and diamonds are stiffer along some directions than along others: moduli are means over all directions. Default: `'ball'`. Allowed: `'ball'`, `'box'`, `'diamond'`"""
     surface_correction: Literal["none", "volume", "energy"]
     """factor that restores the stiffness of points whose neighbourhood is cut by a surface. `'none'`: no factor; `'volume'`: from the volume of the neighbourhood; `'energy'`: from the energy of simple deformations. Default: `'none'`. Allowed: `'none'`, `'volume'`, `'energy'`"""
     weights: Literal["mean", "bulk"]
@@ -249,7 +249,7 @@ class Quadrature(Table):
 
 class MaterialDamage(Table):
     law: Literal["none", "critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended", "table", "energy_density"]
-    """`'none'`: no damage, and the other keys of the table have no effect; `'critical_stretch'`: a bond is undamaged up to `critical` and then broken; `'tanh'`: softening from `onset` to `critical` as published in [ADAPT], with jumps of (1 − tanh `rate`)/2 at both ends; `'tanh_continuous'`: the same law, rescaled to have no jumps; `'linear'`: the force falls linearly from `onset` to zero at `critical`; `'exponential'`: it falls exponentially, without a jump at `critical`; `'blended'`: it rises on a lower slope from `onset` to `peak`, and then falls linearly; `'table'`: the force is the curve of `stretches` and `forces`; `'energy_density'`: a point fails at once and irreversibly where its energy density exceeds `fracture_energy` / (2 δ). This law is for `kinematics = 'linear'`, and with `solver.operator = 'fft'` for all models. Default: `'none'`. Allowed: `'none'`, `'critical_stretch'`, `'tanh'`, `'tanh_continuous'`, `'linear'`, `'exponential'`, `'blended'`, `'table'`, `'energy_density'`"""
+    """`'none'`: no damage, and the other keys of the table have no effect; `'critical_stretch'`: a bond is undamaged up to `critical` and then broken; `'tanh'`: softening from `onset` to `critical` as published in [ADAPT], with jumps of (1 − tanh `rate`)/2 at both ends; `'tanh_continuous'`: the same law, rescaled to have no jumps; `'linear'`: the force falls linearly from `onset` to zero at `critical`; `'exponential'`: it falls exponentially, without a jump at `critical`; `'blended'`: it rises on a lower slope from `onset` to `peak`, and then falls linearly; `'table'`: the force is the curve of `stretches` and `forces`; `'energy_density'`: a point fails at once and irreversibly where its energy density exceeds `fracture_energy` / (2 δ); this law is for `kinematics = 'linear'`, and with `solver.operator = 'fft'` for all models. Default: `'none'`. Allowed: `'none'`, `'critical_stretch'`, `'tanh'`, `'tanh_continuous'`, `'linear'`, `'exponential'`, `'blended'`, `'table'`, `'energy_density'`"""
     fracture_energy: Quantity
     """$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` follows from it. `cpd` accepts it at horizon ratios up to 12 in 2D, 3.2 in 3D [J/m2]. Default: none. Allowed: positive"""
     fracture_toughness: Quantity
@@ -287,7 +287,7 @@ class MaterialFibre(Table):
 
 class MaterialScatter(Table):
     of: Literal["stiffness", "strength"]
-    """what the factor multiplies: the constants of bonds, triangles and tetrahedra, or the stretches of the law of damage. required. Allowed: `'stiffness'`, `'strength'`"""
+    """what the factor multiplies. `'stiffness'`: the constants of bonds, triangles and tetrahedra; `'strength'`: the stretches of the law of damage. required. Allowed: `'stiffness'`, `'strength'`"""
     factor: Expression
     """the factor at each point, instead of a random one. The factor of a bond is the mean of its ends [1]. Default: random. Allowed: number or expression of place; from 1e-6 to 1e6 at each point"""
     distribution: Literal["weibull"]
@@ -309,7 +309,7 @@ class Material(Table):
     kinematics: Literal["finite", "linear"]
     """stretch of a `bond`. `'finite'`: from its length, for any deformation; `'linear'`: from the displacements along it, for small displacements, so that forces are linear. `'linear'` is only for `potential = 'harmonic'`, damage by `energy_density`, and no eigenstrains. `lps` is always linear. Default: `'finite'`. Allowed: `'finite'`, `'linear'`"""
     influence: Literal["constant", "piecewise_constant", "linear", "cubic", "quintic", "septic", "gaussian", "inverse"]
-    """influence function $\\omega(r/\\delta)$: [GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, $e^{-(r/\\delta)^2}$, or $\\delta/r$. The force density of a bond is $c\\,\\omega s$; constants, moduli and fracture energy account for it. `cpd`: a triangle or tetrahedron has the product of its sides' functions, and the constants are those of the lattice. `state`, and `lps` as an energy: the kernel K(r); `lps` by collocation: only `inverse`. Default: `'constant'`; `'inverse'` with `state` and `lps`. Allowed: `'constant'`, `'piecewise_constant'`, `'linear'`, `'cubic'`, `'quintic'`, `'septic'`, `'gaussian'`, `'inverse'`"""
+    """influence function $\\omega(x)$ with $x = r/\\delta$. `'constant'`: 1; `'piecewise_constant'`: 1, and 0 beyond the horizon; `'linear'`: $1 - x$; `'cubic'`: $1 - 3x^2 + 2x^3$; `'quintic'`: $1 - 10x^3 + 15x^4 - 6x^5$; `'septic'`: $1 - 35x^4 + 84x^5 - 70x^6 + 20x^7$; `'gaussian'`: $e^{-x^2}$; `'inverse'`: $1/x$. The first six are those of [GPMB]. The force density of a bond is $c\\,\\omega s$; constants, moduli and fracture energy account for it. `cpd`: a triangle or tetrahedron has the product of its sides' functions, and the constants are those of the lattice. `state`, and `lps` as an energy: the kernel K(r); `lps` by collocation: only `inverse`. Default: `'constant'`; `'inverse'` with `state` and `lps`. Allowed: `'constant'`, `'piecewise_constant'`, `'linear'`, `'cubic'`, `'quintic'`, `'septic'`, `'gaussian'`, `'inverse'`"""
     youngs_modulus: Quantity
     """Young's modulus, for all models [Pa]. exactly one of `youngs_modulus`, `micromodulus`, `c1`. Allowed: positive"""
     micromodulus: Quantity
@@ -348,7 +348,7 @@ class Interface(Table):
     between: List
     """the two materials that meet at the interface. Default: all pairs that no other `[[interface]]` names. Allowed: two sets of regions; `'material'` for the points in none"""
     rule: Literal["harmonic", "arithmetic", "weaker"]
-    """rule for the constants of a bond or other interaction between points of the two materials: the harmonic or arithmetic mean of the values of its points, or the smallest value. The stretches of damage laws of the same kind follow by the same rule. Default: `'harmonic'`. Allowed: `'harmonic'`, `'arithmetic'`, `'weaker'`"""
+    """rule for the constants of a bond or other interaction between points of the two materials. `'harmonic'`: the harmonic mean of the values of its points; `'arithmetic'`: their arithmetic mean; `'weaker'`: the smallest value. The stretches of damage laws of the same kind follow by the same rule. Default: `'harmonic'`. Allowed: `'harmonic'`, `'arithmetic'`, `'weaker'`"""
     material: Inner[Material]
     """table `[interface.material]`, with the keys of [`material]` except `density` and `scatter`: constants and damage of the interface. Default: none: the `rule` holds"""
 
@@ -509,17 +509,17 @@ class Solver(Table):
     mode: Literal["newton", "relaxation", "adaptive", "arc_length", "path", "dynamics"]
     """`'newton'`: all steps implicit; `'relaxation'`: all steps by dynamic relaxation; `'adaptive'`: implicit steps while no damage grows, relaxation while it does; `'arc_length'`: steps along the equilibrium path, through limit points and bifurcations, without damage; `'path'`: sequentially linear analysis, from one breaking bond to the next; `'dynamics'`: the motion in time, by explicit or implicit steps. Default: `'newton'`. Allowed: `'newton'`, `'relaxation'`, `'adaptive'`, `'arc_length'`, `'path'`, `'dynamics'`"""
     linear: Literal["auto", "cholesky", "pcg", "minres", "gmres", "lu", "bicgstab"]
-    """solver of the linear systems (linear-solvers.md); `'auto'` chooses one, reports why, and takes another one if it fails. `'lu'` and `'bicgstab'` are for models whose tangent is not symmetric, `'gmres'` is for all models, the others are for symmetric tangents. Default: `'auto'`. Allowed: `'auto'`, `'cholesky'`, `'pcg'`, `'minres'`, `'gmres'`, `'lu'`, `'bicgstab'`"""
+    """solver of the linear systems (linear-solvers.md). `'auto'`: chooses one, reports why, and takes another one if it fails; `'cholesky'`: direct, for symmetric tangents; `'pcg'`: conjugate gradients, for symmetric tangents; `'minres'`: minimal residuals, for symmetric tangents; `'gmres'`: iterative, for all models; `'lu'`: direct, for tangents that are not symmetric; `'bicgstab'`: iterative, for tangents that are not symmetric. Default: `'auto'`. Allowed: `'auto'`, `'cholesky'`, `'pcg'`, `'minres'`, `'gmres'`, `'lu'`, `'bicgstab'`"""
     preconditioner: Literal["auto", "jacobi", "block_jacobi", "rigid_pieces", "surrogate", "sines", "riluk", "chebyshev", "multigrid", "local_operator"]
     """preconditioner of iterative solvers, not for `'cholesky'` and `'lu'`. Symmetric tangent: `'auto'` means `'rigid_pieces'`, and with a preconditioner that is given `linear = 'auto'` means `'pcg'`; `'sines'` is for points on a lattice along the axes, without constraints and images. Unsymmetric tangent: `'local_operator'`, `'jacobi'` and `'block_jacobi'` are allowed, `'auto'` means `'local_operator'`, and `linear = 'auto'` then means `'gmres'`. Default: `'auto'`. Allowed: `'auto'`, `'jacobi'`, `'block_jacobi'`, `'rigid_pieces'`, `'surrogate'`, `'sines'`, `'riluk'`, `'chebyshev'`, `'multigrid'`, `'local_operator'`"""
     tangent: Literal["auto", "stored", "matrix_free"]
-    """`'stored'`: the tangent's blocks are stored; `'matrix_free'`: they are computed anew in each product, which takes a third of the memory in 3D, for `material.model = 'bond'` without `'cholesky'`, `'riluk'`, `'chebyshev'` and `'multigrid'`. `'auto'` stores them for direct solvers. Default: `'auto'`. Allowed: `'auto'`, `'stored'`, `'matrix_free'`"""
+    """`'auto'`: stored for direct solvers; `'stored'`: the tangent's blocks are stored; `'matrix_free'`: they are computed anew in each product, which takes a third of the memory in 3D, for `material.model = 'bond'` without `'cholesky'`, `'riluk'`, `'chebyshev'` and `'multigrid'`. Default: `'auto'`. Allowed: `'auto'`, `'stored'`, `'matrix_free'`"""
     operator: Literal["auto", "bonds", "fft"]
-    """how forces of `material.kinematics = 'linear'`, and of `lps` as an energy, are summed. `'bonds'`: bond by bond; `'fft'`: by fast Fourier transforms, which store no bonds and take the same time whatever the horizon, for one material on points of a lattice with equal volumes, without a `surface_correction`. Both give the same results to round-off. `'auto'` chooses the faster one: where possible `fft` for motions by explicit steps with a horizon of 2.5 spacings or more. Models `green_bond` and `correspondence`, and `lps` as printed, have only `fft`. Default: `'bonds'`. Allowed: `'auto'`, `'bonds'`, `'fft'`"""
+    """how forces of `material.kinematics = 'linear'`, and of `lps` as an energy, are summed. `'auto'`: by the faster way, where possible `fft` for motions by explicit steps with a horizon of 2.5 spacings or more; `'bonds'`: bond by bond; `'fft'`: by fast Fourier transforms, which store no bonds and take the same time whatever the horizon, for one material on points of a lattice with equal volumes, without a `surface_correction`. All give the same results to round-off. Models `green_bond` and `correspondence`, and `lps` as printed, have only `fft`. Default: `'bonds'`. Allowed: `'auto'`, `'bonds'`, `'fft'`"""
     predictor: Literal["consistent", "none"]
     """state about which the first iteration of a step linearises. `'consistent'`: the old state, spreading the jump of the supports; `'none'`: the state after the jump, as in [CPD]. Default: `'consistent'`. Allowed: `'consistent'`, `'none'`"""
     projection: Literal["auto", "never", "always"]
-    """when the tangents of interactions are projected to their positive semidefinite part. `'auto'`: if the exact tangent has negative pivots or the search fails with it. Default: `'auto'`. Allowed: `'auto'`, `'never'`, `'always'`"""
+    """when the tangents of interactions are projected to their positive semidefinite part. `'auto'`: if the exact tangent has negative pivots or the search fails with it; `'never'`: not even then; `'always'`: in every iteration. Default: `'auto'`. Allowed: `'auto'`, `'never'`, `'always'`"""
     relative_tolerance: float
     """relative tolerance of the residual. Default: 1e-10. Allowed: 1e-14 to 0.01"""
     linear_tolerance: float
@@ -609,7 +609,7 @@ class Probe(Table):
     component: Literal["x", "y", "z", "1", "2", "3", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"]
     """component of a vector (`x`), of a tensor (`xy`; for a stress or a deformation gradient first the component, then the reference direction) or of `principal_stress` (`1`: the largest). all components of a vector; for other fields required with `set` and `at`. Allowed: `'x'`, `'y'`, `'z'`, `'1'`, `'2'`, `'3'`, `'xx'`, `'xy'`, `'xz'`, `'yx'`, `'yy'`, `'yz'`, `'zx'`, `'zy'`, `'zz'`"""
     statistic: Literal["mean", "max", "min", "rms_error", "max_error"]
-    """statistic over the points of the set, per component; the mean gives all points the same weight. `rms_error`, `max_error`: one number, the root mean square or the maximum of the lengths of the differences from `expected`. Default: `'mean'`. Allowed: `'mean'`, `'max'`, `'min'`, `'rms_error'`, `'max_error'`"""
+    """statistic over the points of the set. `'mean'`: per component, with the same weight for all points; `'max'`: largest value per component; `'min'`: smallest value per component; `'rms_error'`: one number, the root mean square of the lengths of the differences from `expected`; `'max_error'`: the maximum of these lengths. Default: `'mean'`. Allowed: `'mean'`, `'max'`, `'min'`, `'rms_error'`, `'max_error'`"""
     expected: List
     """expected values of the components at a point's reference position. required with `rms_error` and `max_error`. Allowed: list of numbers or expressions of place and `load` (mode `dynamics`: `t`), one for each component of the field"""
     axis: Literal["x", "y", "z"]

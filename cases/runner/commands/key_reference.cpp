@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -44,16 +46,77 @@ std::string shown_name(const TableDescription& table) {
   return table.name.empty() ? "document" : table.name;
 }
 
+/// Where the next `"value"`: of a meaning begins, and where the words on it do.
+struct ValueMark {
+  std::size_t begin = std::string::npos, words = std::string::npos;
+};
+
+ValueMark next_value(const std::string& meaning, std::size_t from) {
+  while ((from = meaning.find("`\"", from)) != std::string::npos) {
+    const std::size_t end =
+        meaning.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_", from + 2);
+    if (end != std::string::npos && meaning.compare(end, 4, "\"`: ") == 0) return {from, end + 4};
+    from += 2;
+  }
+  return {};
+}
+
+/// Where the first sentence from a place on ends; the next one begins with a capital or a key. "St.
+/// Venant" is no end.
+std::size_t end_of_sentence(const std::string& text, std::size_t from) {
+  for (; (from = text.find(". ", from)) != std::string::npos; ++from) {
+    const char next = from + 2 < text.size() ? text[from + 2] : ' ';
+    const bool begins = std::isupper(static_cast<unsigned char>(next)) || next == '`';
+    if (begins && text.compare(from - 2, 2, "St") != 0) return from;
+  }
+  return text.size();
+}
+
+std::string trimmed(std::string text) {
+  text.erase(text.find_last_not_of(" .;:") + 1);
+  text.erase(0, text.find_first_not_of(" .;"));
+  return text;
+}
+
+/// A meaning of the form `words. "a": …; "b": …. More words` by parts: what holds for the key, and
+/// what each value means.
+struct PartsOfMeaning {
+  std::string words;
+  std::vector<std::pair<std::string, std::string>> values;  ///< `"a"` and its meaning
+};
+
+PartsOfMeaning parts_of(const std::string& meaning) {
+  PartsOfMeaning parts;
+  ValueMark at = next_value(meaning, 0);
+  if (next_value(meaning, at.words).begin == std::string::npos) return {meaning, {}};
+  parts.words = trimmed(meaning.substr(0, at.begin));
+  while (at.begin != std::string::npos) {
+    const ValueMark next = next_value(meaning, at.words);
+    const std::size_t end =
+        next.begin != std::string::npos ? next.begin : end_of_sentence(meaning, at.words);
+    parts.values.emplace_back(meaning.substr(at.begin + 1, at.words - at.begin - 4),
+                              trimmed(meaning.substr(at.words, end - at.words)));
+    const std::string rest = next.begin != std::string::npos ? "" : trimmed(meaning.substr(end));
+    if (!rest.empty()) parts.words += (parts.words.empty() ? "" : ". ") + rest;
+    at = next;
+  }
+  if (parts.words.empty()) parts.words = "one of the values below";
+  return parts;
+}
+
 }  // namespace
 
 std::string key_reference(const TableDescription& table) {
   std::string rows = "| key | meaning | unit | default | allowed |\n|---|---|---|---|---|\n";
   for (const auto& key : table.keys) {
+    const PartsOfMeaning meaning = parts_of(key.meaning);
     rows += "| `" + key.name + "` |";
     for (const auto& cell :
-         {key.meaning, raised(key.unit), key.fallback, short_exponents(key.allowed)})
+         {meaning.words, raised(key.unit), key.fallback, short_exponents(key.allowed)})
       rows += cell.empty() ? " |" : " " + cell + " |";
     rows += "\n";
+    for (const auto& [value, words] : meaning.values)
+      rows += fmt::format("| `{} = {}` | {} | | | |\n", key.name, value, words);
   }
   return rows;
 }

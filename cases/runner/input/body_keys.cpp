@@ -274,8 +274,10 @@ Table<Case> points_keys() {
                .default_words("all points within the horizon"),
            K("at", in(points, &PointSource::at),
              choice<PointsAt>({{"elements", PointsAt::elements}, {"nodes", PointsAt::nodes}}),
-             "for a mesh: a point at the centroid of each element, with the volume of the element; "
-             "or a point at each node, with its share of the volumes of the elements around it")
+             "for a mesh: where the points are. `\"elements\"`: at the centroid of each element, "
+             "with the "
+             "volume of the element; `\"nodes\"`: at each node, with its share of the volumes of "
+             "the elements around it")
                .default_words("`\"elements\"`")
                .unless(is_no_mesh, "is for a mesh")
                .written_if(has_mesh),
@@ -406,9 +408,10 @@ Table<Case> quadrature_keys() {
          choice<HorizonShape>({{"ball", HorizonShape::ball},
                                {"box", HorizonShape::box},
                                {"diamond", HorizonShape::diamond}}),
-         "shape of the neighbourhood. A point interacts with the points within the horizon by "
-         "their distance (`\"ball\"`), by the largest component of their distance along the "
-         "lattice's axes (`\"box\"`), or by the sum of these components (`\"diamond\"`). Boxes and "
+         "shape of the neighbourhood. A point interacts with the points within the horizon, by a "
+         "measure of their distance. `\"ball\"`: its length; `\"box\"`: its largest component "
+         "along the "
+         "lattice's axes; `\"diamond\"`: the sum of these components. Boxes and "
          "diamonds are stiffer along some directions than along others: "
          "[moduli](theory.md#horizon-shapes) are means over all directions")
            .written_if(with(Option::horizon_shape))

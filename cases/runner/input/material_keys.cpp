@@ -85,8 +85,8 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "`\"exponential\"`: it falls exponentially, without a jump at `critical`; `\"blended\"`: "
          "it rises on a lower slope from `onset` to `peak`, and then falls linearly; `\"table\"`: "
          "the force is the curve of `stretches` and `forces`; `\"energy_density\"`: a point fails "
-         "at once and irreversibly where its energy density exceeds `fracture_energy` / (2 δ). "
-         "This law is for `kinematics = \"linear\"`, and with `solver.operator = \"fft\"` for all "
+         "at once and irreversibly where its energy density exceeds `fracture_energy` / (2 δ); "
+         "this law is for `kinematics = \"linear\"`, and with `solver.operator = \"fft\"` for all "
          "models")
            .early(),
        K("fracture_energy", &Spec::fracture_energy, positive("J/m2"),
@@ -223,8 +223,8 @@ Table<ScatterSpecification> scatter_keys(const std::string& material) {
           {K("of", &Spec::of,
              choice<Spec::Quantity>({{"stiffness", Spec::Quantity::stiffness},
                                      {"strength", Spec::Quantity::strength}}),
-             "what the factor multiplies: the constants of bonds, triangles and tetrahedra, or the "
-             "stretches of the law of damage")
+             "what the factor multiplies. `\"stiffness\"`: the constants of bonds, triangles and "
+             "tetrahedra; `\"strength\"`: the stretches of the law of damage")
                .required(),
            K("factor", &Spec::factor, field_of_place("1"),
              "the factor at each point, instead of a random one. The factor of a bond is the mean "
@@ -339,8 +339,12 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
                [](auto& material, auto&) { return takes(material.model, Option::kinematics); })
            .on_ranks(),
        K("influence", &Spec::influence, one_of(influence_names()),
-         "influence function $\\omega(r/\\delta)$: [GPMB]'s of order 0, 0.5, 1, 3, 5 and 7, "
-         "$e^{-(r/\\delta)^2}$, or $\\delta/r$. The force density of a bond is $c\\,\\omega s$; "
+         "influence function $\\omega(x)$ with $x = r/\\delta$. `\"constant\"`: 1; "
+         "`\"piecewise_constant\"`: 1, and 0 beyond the horizon; `\"linear\"`: $1 - x$; "
+         "`\"cubic\"`: $1 - 3x^2 + 2x^3$; `\"quintic\"`: $1 - 10x^3 + 15x^4 - 6x^5$; "
+         "`\"septic\"`: $1 - 35x^4 + 84x^5 - 70x^6 + 20x^7$; `\"gaussian\"`: $e^{-x^2}$; "
+         "`\"inverse\"`: $1/x$. The first six are those of [GPMB]. The force density of a bond is "
+         "$c\\,\\omega s$; "
          "constants, moduli and fracture energy account for it. `cpd`: a triangle or tetrahedron "
          "has the product of its sides' functions, and the constants are those of the lattice. "
          "`state`, and `lps` as an energy: the kernel K(r); `lps` by collocation: only `inverse`")
@@ -512,8 +516,9 @@ Table<InterfaceSpecification> interface_keys() {
                                 {"arithmetic", InterfaceRule::arithmetic},
                                 {"weaker", InterfaceRule::weaker}}),
          "rule for the constants of a bond or other interaction between points of the two "
-         "materials: the harmonic or arithmetic mean of the values of its points, or the smallest "
-         "value. The stretches of damage laws of the same kind follow by the same rule")
+         "materials. `\"harmonic\"`: the harmonic mean of the values of its points; "
+         "`\"arithmetic\"`: their arithmetic mean; `\"weaker\"`: the smallest value. The stretches "
+         "of damage laws of the same kind follow by the same rule")
            .unless([](auto& interface, auto&) { return interface.material.has_value(); },
                    "can't be given together with material; give one of them"),
        K("material", own, material_of_body_keys("interface.material"),

@@ -232,9 +232,11 @@ Table<ProbeSpecification> probe_keys() {
                             {"min", Statistic::min},
                             {"rms_error", Statistic::rms_error},
                             {"max_error", Statistic::max_error}}),
-         "statistic over the points of the set, per component; the mean gives all points the same "
-         "weight. `rms_error`, `max_error`: one number, the root mean square or the maximum of the "
-         "lengths of the differences from `expected`")
+         "statistic over the points of the set. `\"mean\"`: per component, with the same weight "
+         "for all "
+         "points; `\"max\"`: largest value per component; `\"min\"`: smallest value per component; "
+         "`\"rms_error\"`: one number, the root mean square of the lengths of the differences from "
+         "`expected`; `\"max_error\"`: the maximum of these lengths")
            .written_if(
                [](auto& probe, auto& from) { return !probe.set.empty() && !is_whole(probe, from); })
            .then([](auto& at, auto& probe) {

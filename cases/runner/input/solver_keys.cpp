@@ -120,10 +120,14 @@ Table<SolverSpecification> solver_keys() {
                                {"gmres", LinearMethod::gmres},
                                {"lu", LinearMethod::lu},
                                {"bicgstab", LinearMethod::bicgstab}}),
-         "solver of the linear systems ([linear-solvers.md](linear-solvers.md)); `\"auto\"` "
-         "chooses one, reports why, and takes another one if it fails. `\"lu\"` and `\"bicgstab\"` "
-         "are for models whose tangent is not symmetric, `\"gmres\"` is for all models, the others "
-         "are for symmetric tangents")
+         "solver of the linear systems ([linear-solvers.md](linear-solvers.md)). `\"auto\"`: "
+         "chooses one, reports why, and takes another one if it fails; `\"cholesky\"`: direct, for "
+         "symmetric tangents; `\"pcg\"`: conjugate gradients, for symmetric tangents; "
+         "`\"minres\"`: "
+         "minimal residuals, for symmetric tangents; `\"gmres\"`: iterative, for all models; "
+         "`\"lu\"`: "
+         "direct, for tangents that are not symmetric; `\"bicgstab\"`: iterative, for tangents "
+         "that are not symmetric")
            .written_if(searches)
            .extends()
            .then(check_linear)
@@ -153,10 +157,10 @@ Table<SolverSpecification> solver_keys() {
          choice<TangentStorage>({{"auto", TangentStorage::automatic},
                                  {"stored", TangentStorage::stored},
                                  {"matrix_free", TangentStorage::matrix_free}}),
-         "`\"stored\"`: the tangent's blocks are stored; `\"matrix_free\"`: they are computed anew "
+         "`\"auto\"`: stored for direct solvers; `\"stored\"`: the tangent's blocks are stored; "
+         "`\"matrix_free\"`: they are computed anew "
          "in each product, which takes a third of the memory in 3D, for `material.model = "
-         "\"bond\"` without `\"cholesky\"`, `\"riluk\"`, `\"chebyshev\"` and `\"multigrid\"`. "
-         "`\"auto\"` stores them for direct solvers")
+         "\"bond\"` without `\"cholesky\"`, `\"riluk\"`, `\"chebyshev\"` and `\"multigrid\"`")
            .written_if(searches)
            .then(check_tangent)
            .on_ranks(),
@@ -165,11 +169,12 @@ Table<SolverSpecification> solver_keys() {
                                 {"bonds", ForceOperator::bonds},
                                 {"fft", ForceOperator::fft}}),
          "how forces of `material.kinematics = \"linear\"`, and of `lps` as an energy, are summed. "
-         "`\"bonds\"`: bond by bond; `\"fft\"`: by fast Fourier transforms, which store no bonds "
+         "`\"auto\"`: by the faster way, where possible `fft` for motions by explicit steps with a "
+         "horizon of 2.5 spacings or more; `\"bonds\"`: bond by bond; `\"fft\"`: by fast Fourier "
+         "transforms, which store no bonds "
          "and take the same time whatever the horizon, for one material on points of a lattice "
-         "with equal volumes, without a `surface_correction`. Both give the same results to "
-         "round-off. `\"auto\"` chooses the faster one: where possible `fft` for motions by "
-         "explicit steps with a horizon of 2.5 spacings or more. Models `green_bond` and "
+         "with equal volumes, without a `surface_correction`. All give the same results to "
+         "round-off. Models `green_bond` and "
          "`correspondence`, and `lps` as printed, have only `fft`")
            .on_ranks(),
        K("predictor", &Spec::predictor,
@@ -184,7 +189,8 @@ Table<SolverSpecification> solver_keys() {
                              {"never", Projection::never},
                              {"always", Projection::always}}),
          "when the tangents of interactions are projected to their positive semidefinite part. "
-         "`\"auto\"`: if the exact tangent has negative pivots or the search fails with it")
+         "`\"auto\"`: if the exact tangent has negative pivots or the search fails with it; "
+         "`\"never\"`: not even then; `\"always\"`: in every iteration")
            .written_if(searches)
            .on_ranks(),
        K("relative_tolerance", &Spec::relative_tolerance, between(1e-14, 1e-2),

@@ -55,6 +55,26 @@ class CaseFilePage(unittest.TestCase):
             if table != "document":
                 self.assertRegex(page, rf"(?m)^#+ `\[+{re.escape(table)}\]+`$")
 
+    def test_each_value_with_a_meaning_has_a_row(self):
+        rows = re.findall(r"^\| `(\w+)(?: = \"(\w+)\")?` \| (.*?) \|.*\| ?(.*?) ?\|$", keys().stdout, re.MULTILINE)
+        allowed, found = {}, {}
+        for key, value, meaning, limits in rows:
+            self.assertLess(len(re.findall(r'`"\w+"`: ', meaning)), 2, f"{key}: several values in one cell")
+            self.assertNotEqual(meaning, "")
+            if value:
+                self.assertIn(value, allowed[key])
+                found.setdefault(key, [set()])[-1].add(value)
+            else:
+                allowed[key] = set(re.findall(r'`"(\w+)"`', limits))
+                found.setdefault(key, []).append(set())
+            if value:
+                self.assertTrue(found[key][-1] <= allowed[key])
+        complete = {key for key, sets in found.items() if any(sets)}
+        self.assertLessEqual({"law", "mode", "model", "influence", "volume_correction", "linear", "form"}, complete)
+        laws = next(values for values in found["law"] if values)
+        self.assertEqual(laws, {"none", "critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended", "table",
+                                "energy_density"})  # fmt: skip
+
     def test_one_table_is_printed_by_name(self):
         printed = keys("material.damage")
         self.assertEqual(printed.returncode, 0)
