@@ -34,3 +34,14 @@ def real_number(key: str, value: object) -> float:
     if number.ndim != 0 or not math.isfinite(number):
         raise input_error(key, repr(value)[:60], "must be a finite number")
     return float(number)
+
+
+def truth(key: str, value: object) -> bool:
+    """A truth value: that a text such as "no" is true would be a surprise.
+
+    Raises:
+        InputError: it is none.
+    """
+    if not isinstance(value, (bool, numpy.bool_)):
+        raise input_error(key, repr(value)[:60], "must be True or False")
+    return bool(value)

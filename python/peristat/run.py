@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from . import toml_text
+from ._numbers import truth
 from ._package import load_core, thread_count
 from .case import Case
 from .errors import input_error
@@ -72,7 +73,7 @@ def run_case(case, body, *, output=None, on_step=None, threads=0, quiet=False, l
             getattr(on_step, "is_left", None),
             threads,
             os.fspath(log or ""),
-            bool(overwrite),
+            truth("overwrite", overwrite),
         )
     return Run(folder, end, placed)
 

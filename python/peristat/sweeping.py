@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy
 
+from ._numbers import truth
 from ._package import thread_count
 from .case import Case, _with_mode
 from .errors import InputError, MachineError, input_error
@@ -172,7 +173,7 @@ def _solve_side_by_side(rows, cases, jobs, threads=0, overwrite=False, quiet=Tru
     at_work = []
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         try:
-            return list(pool.map(lambda *of: _solve_aside(*of, threads, bool(overwrite), at_work), rows, cases))
+            return list(pool.map(lambda *of: _solve_aside(*of, threads, truth("overwrite", overwrite), at_work), rows, cases))
         except KeyboardInterrupt:
             pool.shutdown(wait=False, cancel_futures=True)
             for process in at_work:

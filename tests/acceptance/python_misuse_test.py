@@ -113,6 +113,12 @@ class TestFolders(InFolder):
     def test_a_path_with_dots_is_that_of_the_program(self):
         self.assertEqual(strip().solve(quiet=True, output="new/../kept").history["step"][-1], 4)
 
+    def test_words_do_not_overwrite(self):
+        strip().solve(quiet=True, output="kept")
+        for act in (strip("other").solve, lambda **given: ps.sweep(strip("other"), {"loading.steps": [1]}, jobs=2, **given)):
+            self.assertRefuses(lambda: act(quiet=True, output="kept", overwrite="no"), "overwrite", "True or False")
+        self.assertEqual(ps.open_results("kept").title, "strip")
+
     def test_a_removed_folder_has_no_status(self):
         run = strip().solve(quiet=True)
         shutil.rmtree(run.path)
