@@ -314,7 +314,7 @@ const std::vector<BadInput> bad_inputs{
      "[material]",
      "[material]\npoisson_ratio = 0.2",
      18,
-     {"material.poisson_ratio = 0.2", "1/3 in plane stress, 1/4", "\"cpd\", \"lps\""}},
+     {"material.poisson_ratio = 0.2", "1/3 in plane stress, 1/4", "\"cpd\", \"state\", \"lps\""}},
     {"TableOfAParameterThatNothingNames",
      "[[probe]]",
      "[loading]\ntable = [0, 1]\ntable2 = [0, 1]\n[[probe]]",
@@ -482,7 +482,7 @@ const std::vector<BadInput> bad_inputs{
      "[material]",
      "[material]\nmodel = \"bnd\"",
      18,
-     {"material.model = \"bnd\": not known; did you mean bond?  (allowed: bond, cpd, lps, "
+     {"material.model = \"bnd\": not known; did you mean bond?  (allowed: bond, cpd, state, lps, "
       "green_bond, correspondence)"}},
     {"CpdConstantOfABondModel",
      "[material]",
@@ -510,7 +510,7 @@ const std::vector<BadInput> bad_inputs{
      "[quadrature]\nsurface_correction = \"energy\"\n[material]\nmodel = \"cpd\"\npoisson_ratio = "
      "0.4",
      18,
-     {"quadrature.surface_correction", "is for model \"bond\""}},
+     {"quadrature.surface_correction", "is for models \"bond\" and \"state\""}},
     {"WeightsOfABondModel",
      "[material]",
      "[quadrature]\nweights = \"mean\"\n[material]",
