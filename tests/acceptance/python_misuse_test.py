@@ -230,7 +230,7 @@ class TestPoints(InFolder):
 
     def test_names_of_columns_are_those_of_expressions(self):
         positions = np.stack(np.meshgrid(np.arange(10), np.arange(5)), axis=-1).reshape(-1, 2) * 1e-3
-        for name, word in (("pi", "taken"), ("load", "taken"), ("a b", "letters"), ("", "letters")):
+        for name, word in (("pi", "meaning"), ("load", "meaning"), ("a b", "letters"), ("", "letters")):
             self.assertRefuses(self.cloud(positions, columns={name: positions[:, 0]}).body, name, word)
 
 
