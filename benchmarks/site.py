@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 SITE = ROOT / "build/site"
 PAGES = ["index.html", "start/first-crack.html", "gallery.html", "theory.html", "case-file.html", "trustworthy-peaks.html"]
-DRAWN = ["index.html", "gallery.html", "case-file.html"]
+DRAWN = ["index.html", "case-file.html#materialdamage"]
 SIZES = {1280: 800, 390: 844}  # pixels
 
 
@@ -51,11 +51,11 @@ def draw(folder: Path) -> None:
         browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                 {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500})  # fmt: skip
         for page in DRAWN:
-            browser.get((SITE / page).as_uri())
+            browser.get(f"{SITE.as_uri()}/{page}")
             time.sleep(1)
             picture = Image.open(io.BytesIO(browser.get_screenshot_as_png())).convert("RGB")
             picture.thumbnail((800, 844))
-            picture.save(folder / f"site_{Path(page).stem}_{width}.webp", quality=60, method=6)
+            picture.save(folder / f"site_{page.partition('.')[0]}_{width}.webp", quality=60, method=6)
     browser.quit()
 
 
