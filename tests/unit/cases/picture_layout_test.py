@@ -15,8 +15,7 @@ import numpy as np
 from matplotlib.text import Text
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-import plot_test  # noqa: E402
-from plot_test import SPACING, lattice, write_cracked_folder, write_folder  # noqa: E402
+from plot_test import lattice, write_cracked_folder, write_folder  # noqa: E402
 
 from peristat.pictures.drawing import Drawing  # noqa: E402
 from peristat.pictures.field_picture import View, draw_field  # noqa: E402
@@ -74,3 +73,77 @@ def all_faults(results) -> dict[str, list[str]]:
             if wrong := faults(drawing.figure(size)):
                 found[f"{drawing.name}, {style}"] = wrong
     return found
+
+
+class Layout(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory(prefix="peristat_layout_")
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name) / "results"
+
+    def judge(self, least: int) -> None:
+        results = read_results_folder(self.folder)
+        self.assertGreaterEqual(len(list(drawings(results))), least)
+        self.assertEqual(all_faults(results), {})
+
+    def test_a_cracked_plate_with_a_long_title(self):
+        write_cracked_folder(self.folder, (24, 16), steps=8)
+        with h5py.File(self.folder / "results.h5", "a") as file:
+            file.attrs["title"] = "A plate with a crack, which somebody has described at length: " + "and more " * 12
+        self.judge(8)
+
+    def test_a_slender_plate(self):
+        write_folder(self.folder, lattice(60, 6))
+        self.judge(4)
+
+    def test_a_bar(self):
+        write_folder(self.folder, lattice(20))
+        self.judge(3)
+
+    def test_a_damaged_solid(self):
+        write_folder(self.folder, lattice(12, 6, 6), damaged=True)
+        self.judge(5)
+
+    def test_letters_of_a_field_are_legible_in_a_column(self):
+        write_cracked_folder(self.folder, (24, 16), steps=8)
+        results = read_results_folder(self.folder)
+        step = results.step(8)
+        drawing = Drawing("field", lambda: draw_field(results, step, "displacement", View("y", (2e-3, 9e-3, 2e-3, 9e-3))))
+        for size in PAPER.values():
+            figure = drawing.figure(size)
+            self.assertEqual(faults(figure), [])
+            self.assertGreaterEqual(min(text.get_fontsize() for text in texts_of(figure)), LEAST_LETTERS)
+            self.assertAlmostEqual(figure.get_size_inches()[0] * 25.4, {PAPER["single"]: 84, PAPER["double"]: 174}[size])
+
+
+class Faults(unittest.TestCase):
+    """The judge of layouts sees what is wrong."""
+
+    def figure(self):
+        with own_settings():
+            figure = new_figure(6.0, 4.0)
+            axes = figure.add_axes([0.2, 0.2, 0.7, 0.7])
+            axes.set_ylabel("reaction [kN]")
+        return figure, axes
+
+    def test_a_sound_figure_has_none(self):
+        self.assertEqual(faults(self.figure()[0]), [])
+
+    def test_an_axis_that_is_cut_off(self):
+        figure, axes = self.figure()
+        axes.set_position([0.05, 0.2, 0.7, 0.7])
+        self.assertTrue(any("'reaction [kN]' is cut off" in fault for fault in faults(figure)))
+
+    def test_ticks_over_each_other(self):
+        figure, axes = self.figure()
+        axes.set_xticks([0.5, 0.51], ["0.500", "0.510"])
+        self.assertTrue(any("'0.500' lies over '0.510'" in fault for fault in faults(figure)))
+
+    def test_letters_that_are_too_small(self):
+        figure, axes = self.figure()
+        axes.set_title("a title", fontsize=5.9)
+        self.assertTrue(any("letters of 5.90 points" in fault for fault in faults(figure)))
+
+
+if __name__ == "__main__":
+    unittest.main()
