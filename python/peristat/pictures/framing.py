@@ -1,6 +1,7 @@
 """Places of a body and its colour bar on the page, in true proportion."""
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from .style import new_figure, page_height, page_width, present_style, room_above, size_of, text_width
 
@@ -62,7 +63,12 @@ def framed(low, high, words, bar: str | None, foot: float = 0.0, room: float = 1
 
 
 def few_ticks(axes) -> None:
-    """As many ticks as their labels have room for."""
+    """As many ticks as their labels have room for, in axes of true proportion."""
     width, height = axes.get_position().size * size_of(axes.figure)
-    axes.locator_params(axis="x", nbins=int(np.clip(width / 0.75, 1, 9)))
-    axes.locator_params(axis="y", nbins=int(np.clip(height / 0.4, 1, 9)))
+    along, up = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
+    width, height = min(width, height * along / up), min(height, width * up / along)
+    for axis, limits, room in ((axes.xaxis, axes.get_xlim(), width / 0.75), (axes.yaxis, axes.get_ylim(), height / 0.4)):
+        axis.set_major_locator(MaxNLocator(nbins=int(np.clip(room, 1, 9)), steps=[1, 2, 2.5, 5, 10]))
+        inside = [tick for tick in axis.get_majorticklocs() if limits[0] <= tick <= limits[1]]
+        if room < 2.0:  # the locator has at least two
+            axis.set_ticks(inside[len(inside) // 2 :][:1])

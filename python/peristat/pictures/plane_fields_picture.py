@@ -103,7 +103,8 @@ def _small_multiples(count: int, aspect: float, words, has_legend: bool):
     for panel in range(count):
         x = (panel % columns) * across + left + 0.5 * (across - left - right - width)
         y = tall - above - (panel // columns + 1) * up + bottom
-        bar = [x + width + 0.2, y, 0.18, height] if is_stacked else [x, y - 0.85, width, 0.16]
+        tall_bar = max(height, 0.95)  # three ticks
+        bar = [x + width + 0.2, y + 0.5 * (height - tall_bar), 0.18, tall_bar] if is_stacked else [x, y - 0.85, width, 0.16]
         places.append(([x / page, y / tall, width / page, height / tall],
                        [bar[0] / page, bar[1] / tall, bar[2] / page, bar[3] / tall]))  # fmt: skip
     return figure, places, columns

@@ -180,9 +180,9 @@ def size_of(figure: Figure) -> np.ndarray:
     return figure.get_size_inches() / _style.get().scale
 
 
-def text_width(text: str, size: str = "medium") -> float:
+def text_width(text: str, size: str = "medium", weight: str = "normal") -> float:
     """Width of a line of text [inches of the code]."""
-    font = FontProperties(size=size)
+    font = FontProperties(size=size, weight=weight)
     return TextToPath().get_text_width_height_descent(text, font, ismath=False)[0] / 72.0 / _style.get().scale
 
 
@@ -219,9 +219,9 @@ def heading(figure: Picture, results, words: list[str]) -> None:
     figure.caption = SEPARATOR.join([results.title, *words, *([remark] if remark else [])])
     left, top = MARGIN / width, 0.2
     if style.has_title:
-        room = width - 2.2 * MARGIN - text_width(remark) - (0.3 if remark else 0.0)
+        room = width - 2 * MARGIN - (text_width(remark, weight="bold") + 0.3 if remark else 0.0)
         title = results.title
-        while len(title) > 1 and 1.08 * text_width(title, "x-large") > room:  # bold letters are wider
+        while len(title) > 1 and text_width(title, "x-large", "bold") > room:
             title = title[: int(0.95 * len(title))].rstrip("… ") + "…"
         figure.text(left, 1 - top / height, title, fontsize="x-large", fontweight="bold", va="top", parse_math=False)
         if remark:
