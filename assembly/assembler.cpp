@@ -162,7 +162,8 @@ DamageState Assembler::assess(const History& history, std::span<const double> cu
   DamageState state = assess_damage(model_, history, cut_weight, damage, &points_);
   const Communicator& ranks = index_map_.ranks();
   // All ranks know what failing points have dissipated in total: it is counted once.
-  if (model_.failure().parts() == FailingParts::points && ranks.rank() > 0) state.dissipated_energy = 0.0;
+  if (model_.failure().parts() == FailingParts::points && ranks.rank() > 0)
+    state.dissipated_energy = 0.0;
   const std::vector<double> sums = ranks.sum({state.dissipated_energy, double(state.broken_bonds)});
   return {sums[0], Index(sums[1]), ranks.max(state.max_damage)};
 }

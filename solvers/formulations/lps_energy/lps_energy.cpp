@@ -71,9 +71,8 @@ const Formulation& lps_energy_formulation() {
       .setting_of_bonds = state_setting,
       .make_model =
           [](const ModelSetting& setting, Bonds bonds) {
-            return setting.of.is_convolved()
-                       ? make_convolved_solid(setting, std::move(bonds))
-                       : make_state_model(setting, std::move(bonds), {});
+            return setting.of.is_convolved() ? make_convolved_solid(setting, std::move(bonds))
+                                             : make_state_model(setting, std::move(bonds), {});
           },
       .moduli = moduli_of_solid,
       .describe = describe_solid,

@@ -13,8 +13,8 @@
 namespace peristat {
 
 /// Bond-based, continuum-kinematics-inspired, or ordinary state-based peridynamics, or the linear
-/// peridynamic solid; by convolutions alone also bonds with the difference of squared lengths, and a correspondence
-/// material.
+/// peridynamic solid; by convolutions alone also bonds with the difference of squared lengths, and
+/// a correspondence material.
 enum class MaterialModel { bond, cpd, state, lps, green_bond, correspondence };
 
 /// Where constants from E and nu are exact.
