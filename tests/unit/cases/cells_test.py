@@ -301,8 +301,8 @@ class CrackSurfaces(unittest.TestCase):
         reference = lattice(*self.COUNTS)
         bonds = BrokenBonds(rows[:, 1:3], rows[:, 3], rows[:, 0])
         return types.SimpleNamespace(
-            reference=reference, edges=np.eye(3), spacing=1.0, volume=np.ones(len(reference)), cracks=list(cracks), reach=1, listed_reach=1,
-            image_kinds=kinds, outline=None, in_layers=np.zeros(len(reference), dtype=bool), tells_broken_bonds=True,
+            reference=reference, edges=np.eye(3), spacing=1.0, volume=np.ones(len(reference)), cracks=list(cracks), reach=1,
+            listed_reach=1, image_kinds=kinds, outline=None, in_layers=np.zeros(len(reference), dtype=bool), tells_broken_bonds=True,
             broken_bonds=lambda: bonds, drawn={}, dimension=3, elements=None,
         )  # fmt: skip
 
