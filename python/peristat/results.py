@@ -418,7 +418,7 @@ class Results:
         try:
             step = operator.index(step)
         except TypeError:
-            raise InputError(f"a step is a whole number or a name such as 'last', not {step!r}") from None
+            raise InputError(f"a step is a whole number, not {step!r}, or a name such as 'last'") from None
         if not self.steps:
             raise InputError(f"{self.path}: no step has fields")
         if step in self.steps:
