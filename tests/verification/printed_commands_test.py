@@ -10,6 +10,7 @@ import tomllib
 import unittest
 
 from tests.acceptance.folder import Folder
+from tests.acceptance.on_ranks import ENVIRONMENT
 from tests.printed.fences import PAGES, cases, lines, parts
 from tests.reference.program import PLOT, ROOT, settings
 from tests.reference.results import table
@@ -61,7 +62,7 @@ class Commands(Folder):
             words = ["check", rest[0], *settings(*sets)]
         if command == "run":
             words = [*self.without_output(words), "--stop-after", "1", "--output", "out", "--overwrite", "--quiet"]
-        ended = self.peristat(*words, limited="--ranks" not in words)
+        ended = self.peristat(*words, limited="--ranks" not in words, environment=ENVIRONMENT)
         self.assert_code(ended, (0, 130) if command == "run" else 0)
 
     @staticmethod
