@@ -7,14 +7,11 @@ can't be written, 1 for a fault of the program. Needs numpy, h5py and matplotlib
 
 import argparse
 import io
-import os
 import re
-import sys
-import traceback
 from functools import partial
 from pathlib import Path
 
-from ..errors import InputError
+from .._folder_command import DONE, WRONG_INPUT, exit_code_of
 from .drawing import Drawing
 from .field_picture import View, draw_field, in_common
 from .figures import animate, drawings
@@ -24,7 +21,6 @@ from .results_folder import NotAResultsFolder, read_results_folder
 from .steps_by_name import NAMES, steps_named
 from .style import COLUMNS, SCREEN, STYLES, Style, style_named
 
-DONE, BUG, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 1, 2, 5, 130
 FORMATS = ("png", "pdf", "svg")
 DOTS_PER_INCH = 300  # of images within vector pictures
 LENGTH_UNITS = {"": 1.0, "m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "km": 1e3}
@@ -171,9 +167,10 @@ def main(words: list[str]) -> int:
     try:
         given = parser.parse_args(words)
         _check(parser, given)
-    except SystemExit as ending:
-        return DONE if ending.code in (0, None) else WRONG_INPUT
-    try:
+    except SystemExit as end:
+        return DONE if end.code in (0, None) else WRONG_INPUT
+
+    def draw_all() -> None:
         style = style_named(given.style, given.column)
         if given.paraview:
             add_script(given.directory)
@@ -182,39 +179,5 @@ def main(words: list[str]) -> int:
             draw_one_field(given.directory, given.format, given.field, given.step or "last", view, style, given.column)
         else:
             draw(given.directory, given.format, style)
-    except (InputError, NoPlace) as error:
-        return _told(str(error), WRONG_INPUT)
-    except OSError as error:
-        return _told(f"{given.directory}: {error}", MACHINE_FAILED)
-    except NameError:  # a fault of the program: no folder's content causes it
-        traceback.print_exc()
-        return _told(f"{given.directory}: a fault of the program, which is worth a report", BUG)
-    except Exception as error:  # an unforeseen change in a folder that somebody has edited
-        return _told(f"{given.directory}: can't be drawn ({type(error).__name__}: {error})", WRONG_INPUT)
-    return DONE
 
-
-def _told(sentence: str, code: int) -> int:
-    line = "".join(c if c.isprintable() else " " for c in sentence)
-    print(f"plot: {line if len(line) < 1000 else line[:1000] + '…'}", file=sys.stderr)
-    return code
-
-
-def guarded(words: list[str]) -> int:
-    """Runs `main` in a process of its own, because the HDF5 library may crash on a damaged file."""
-    child = os.fork()
-    if child == 0:
-        try:
-            code = main(words)
-            sys.stdout.flush()
-        except KeyboardInterrupt:
-            code = INTERRUPTED
-        except OSError:  # nobody reads the output
-            code = MACHINE_FAILED
-        os._exit(code)
-    try:
-        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-    except KeyboardInterrupt:  # from the terminal; the child has received it, too
-        return INTERRUPTED
-    return code if code >= 0 else _told(f"reading {' '.join(words)} ended with signal {-code}: it is damaged", WRONG_INPUT)
-
+    return exit_code_of("plot", given.directory, "drawn", (NoPlace,), draw_all)

@@ -6,6 +6,7 @@ from pathlib import Path
 if not __package__:
     sys.path[0] = str(Path(__file__).resolve().parents[2])
 
-from peristat.report.command import guarded
+from peristat._folder_command import guarded
+from peristat.report.command import main
 
-sys.exit(guarded(sys.argv[1:]))
+sys.exit(guarded("report", main, sys.argv[1:]))
