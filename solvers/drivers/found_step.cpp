@@ -108,6 +108,9 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
     attempt.state.stored_energy = committed.energy;
     attempt.state.energy_round_off = committed.round_off;
     if (!committed.moves_equilibrium) return;
+    // Damaging by release and solving in turns sets energy free that no bond takes.
+    const Model& model = assembler.model();
+    if (model.failing_bonds() && model.fails_in_avalanches()) found.energies.is_avalanche = true;
     if (equilibrate() != Outcome::converged) return;
   }
   attempt.outcome = Outcome::iteration_limit;

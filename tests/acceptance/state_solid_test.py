@@ -92,6 +92,7 @@ class StateSolid(Folder):
                     rows = columns(folder)
                     self.assertTrue((numpy.diff(rows["dissipated_energy"]) >= 0).all())
                     self.assertGreaterEqual(rows["drained_energy"].min(), 0)
+                    self.assertLess(abs(rows["balance_error"]).max(), 0.02 * rows["external_work"].max())
                     total = rows["stored_energy"] + rows["dissipated_energy"] + rows["drained_energy"] + rows["balance_error"]
                     numpy.testing.assert_allclose(total, rows["external_work"] + rows["numerical_work"], rtol=1e-9, atol=1e-12)
 
