@@ -288,9 +288,8 @@ double StateTerm::bound_over_blocks(int dimension) const {
 
 double StateTerm::stored_bytes() const {
   const double bonds = double(shares_.kernel.size()), points = double(shares_.moment.size());
-  // Per bond kernel shares, twice once bonds can fail; per point moment, constants and results.
-  return failure_->bytes() + network_.bytes() + 8.0 * bonds * (failure_->can_fail() ? 2.0 : 1.0) +
-         8.0 * points * (1.0 + 2.0 + 4.0);
+  // Per bond the kernel and two shares of the passes; per point moment, constants and results.
+  return failure_->bytes() + network_.bytes() + 8.0 * 3.0 * bonds + 8.0 * 10.0 * points;
 }
 
 std::unique_ptr<TermPasses> StateTerm::passes(const TermSetting& setting) const {
