@@ -351,7 +351,7 @@ class Refusals(Cases):
             self.refuses(CUT, ["lattice.volumes=fractional", correction], "quadrature.volume_correction", "part of its cell")
             self.refuses(CUT, ["lattice.perturbation=0.1", correction], "quadrature.volume_correction", "not at a lattice site")
             self.refuses(HOLED, [correction], "quadrature.volume_correction", "cuts Voronoi cells")
-            self.refuses(PULLED, [cpd, correction], "quadrature.volume_correction", "is for models \"bond\", \"lps\"")
+            self.refuses(PULLED, [cpd, correction], "quadrature.volume_correction", "is for models \"bond\", \"state\", \"lps\"")
         box = "quadrature.horizon_shape=box"
         for correction in ("linear", "exact"):
             self.refuses(CUT, [box, f"quadrature.volume_correction={correction}"], "quadrature.horizon_shape", "parts of cells")
