@@ -340,7 +340,7 @@ displacement = [0, 0]
 
     def test_what_does_not_go_with_it(self):
         self.assert_both_refuse("planes of symmetry", patch() + '[[symmetry]]\naxis = "y"\nat = 0.0\n')
-        self.assert_both_refuse("is for model \"bond\"", patch(quadrature='surface_correction = "energy"'))
+        self.assert_both_refuse("is for models \"bond\" and \"state\"", patch(quadrature='surface_correction = "energy"'))
         self.assert_both_refuse("is for models? \"bond\"", patch(quadrature='volume_correction = "linear"'))
         self.assert_both_refuse("is for models \"bond\"",
                             patch(material="thermal_expansion = 1e-5") + '[temperature]\nchange = "10"\n')  # fmt: skip
