@@ -25,6 +25,7 @@ from PIL import Image
 PYTHON = Path(__file__).resolve().parents[3] / "python"
 sys.path.insert(0, str(PYTHON))
 
+from peristat._folder_command import guarded  # noqa: E402
 from peristat.pictures import command  # noqa: E402
 from peristat.pictures.abscissa import abscissas, control_words, find_abscissa  # noqa: E402
 from peristat.pictures.camera import Camera  # noqa: E402
@@ -1268,7 +1269,7 @@ def drawn(folder: Path, told: int) -> None:
     """The command, with a different import of matplotlib."""
     os.dup2(told, 1)
     os.dup2(told, 2)
-    os._exit(command.guarded([str(folder)]))
+    os._exit(guarded("plot", command.main, [str(folder)]))
 
 
 class DamagedFolders(unittest.TestCase):
