@@ -118,7 +118,7 @@ class Sweep(Folder):
         script = '"$@" | head -1; exit "${PIPESTATUS[0]}"'
         command = self.words("strip.toml", "--vary", "loading.steps=1,2,3", "--output", "out")
         run = self.execute(["bash", "-c", script, "bash", *command])
-        self.assertEqual((run.code, run.errors.count("in silence")), (0, 1), run.errors)
+        self.assertEqual((run.code, run.errors.count("without output")), (0, 1), run.errors)
         self.assertEqual([row["status"] for row in self.rows()], ["completed"] * 3)
 
     # ---- table and picture ------------------------------------------------------------------------
