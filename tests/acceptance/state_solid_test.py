@@ -1,6 +1,8 @@
 """Model state, the state-based solid at finite strain, from the command line: compared with the reference of
 tests/reference/states.py, elastic and through fracture, and with the bond model where both are the same."""
 
+import json
+
 import numpy
 
 from tests.acceptance.folder import Folder
@@ -123,6 +125,22 @@ class StateSolid(Folder):
                             ("material.poisson_ratio=0.5", "poisson_ratio"), ('material.damage.law="energy_density"', "law")):  # fmt: skip
             with self.subTest(change):
                 self.assertIn(key, self.refusal(SOLID + DAMAGE + PULL, change))
+
+    def test_cracks_that_would_run_late_are_refused_or_warned_of(self):
+        """lambda/mu = 2 nu / (1 - 2 nu) in plane strain."""
+        strain = SOLID + 'plane = "strain"\n' + DAMAGE + PULL
+        self.assertIn("poisson_ratio = 0.41", self.refusal(cut(strain, poisson_ratio=0.41)))
+        for nu, warns in ((0.35, False), (0.37, True), (0.4, True)):
+            ended = self.assert_completed(self.command("check", cut(strain, poisson_ratio=nu)))
+            self.assertEqual("to run where lambda/mu" in ended.output + ended.errors, warns, nu)
+        self.assert_completed(self.command("check", cut(SOLID + PULL, poisson_ratio=0.49) + ""))
+
+    def test_a_load_far_beyond_the_onset_is_warned_of(self):
+        text = SOLID + DAMAGE + CRACK + PULL
+        for factor, warns in (("0.012*load", False), ("1.2*load", True)):
+            folder = self.run_case(text.replace("0.012*load", factor), "solver.mode=adaptive", name="far", code=(0, 3))
+            warnings = json.loads((folder / "summary.json").read_text())["warnings"]
+            self.assertEqual(any("is not a peak of the body" in one for one in warnings), warns, warnings)
 
     def test_an_interrupted_tear_goes_on_to_the_same_bits(self):
         text = SOLID + DAMAGE + CRACK + PULL

@@ -385,6 +385,7 @@ class CaseRun {
       summary_.reason = recorder_->decisions().back().reason;  // it ended before its load
     }
     summary_.max_displacement = largest_of_all(result.state.displacement);
+    warn_of_numerical_work();
     recorder_->finish();
     summary_.costs = costs(result.relaxation_seconds);
     if (numbering_) tell_traffic();
@@ -392,6 +393,21 @@ class CaseRun {
     const Dossier dossier =
         make_dossier(from_, *body_, result, recorder_->last(), recorder_->decisions());
     results_->add_dossier(dossier.text, dossier.residual, dossier.displacement);
+  }
+
+  /// Warns of steps so large that relaxation itself has supplied nearly all energy: forces between
+  /// them, and so a peak, have not been seen.
+  void warn_of_numerical_work() {
+    constexpr double most = 10.0;  // times the external work
+    const std::optional<StepRecord>& last = recorder_->last();
+    if (!last || !(last->numerical_work > most * std::abs(last->external_work))) return;
+    summary_.warnings.push_back(fmt::format(
+        "the iterations of relaxation have done {:.3g} times the work of loads and supports: steps "
+        "went far beyond the onset of damage, and the largest force is not a peak of the body; "
+        "give "
+        "more steps (loading.steps, relaxation.steps) or a smaller load",
+        last->numerical_work / std::max(std::abs(last->external_work), 1e-300)));
+    progress_.say("warning: " + summary_.warnings.back());
   }
 
   /// Prints the traffic between ranks, in counts that do not depend on the machine.

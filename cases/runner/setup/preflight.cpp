@@ -265,6 +265,10 @@ void add_materials(const Case& from, const Body& body, Preflight& to) {
       to.stiffnesses.push_back({key + ".youngs_modulus", *material.youngs_modulus});
     }
     const DamageSpecification& damage = material.damage;
+    if (const auto& warning = formulation_of(of).fracture_warning) {
+      const std::string text = warning(material, key, body.setting, body.points.spacing);
+      if (!text.empty()) to.of_materials.push_back(text);
+    }
     to.may_fail = to.may_fail || damage.law != DamageLaw::none;
     const bool has_strength = formulation_of(of).has_quick_fracture_scale && !material.fibre;
     if (!has_strength || !damage.breaks_bonds()) continue;

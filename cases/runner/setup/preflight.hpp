@@ -95,8 +95,9 @@ struct Preflight {
   std::vector<Fracture> fractures;
   std::vector<Stiffness> stiffnesses;
   std::vector<Idle> idle;
-  bool begins_moving = false;  ///< by initial fields
-  bool has_notch = false;      ///< a crack or a subtracted shape, at which stress concentrates
+  std::vector<std::string> of_materials;  ///< warnings that models give of their fracture data
+  bool begins_moving = false;             ///< by initial fields
+  bool has_notch = false;  ///< a crack or a subtracted shape, at which stress concentrates
 
   /// The shortest length of a kind; null: there is none.
   [[nodiscard]] const FeatureLength* shortest(FeatureLength::Kind kind) const;

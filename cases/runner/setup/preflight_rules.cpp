@@ -170,6 +170,7 @@ std::vector<std::string> warnings_of(const Preflight& of) {
     rule(of, warnings);
   }
   for (const Preflight::Fracture& fracture : of.fractures) add_fracture(of, fracture, warnings);
+  warnings.insert(warnings.end(), of.of_materials.begin(), of.of_materials.end());
   add_idle(of, warnings);
   return warnings;
 }

@@ -114,6 +114,8 @@ struct Formulation {
   /// Energy that a plane crack takes under a uniform dilation, per squared critical stretch [J/m2];
   /// null: fracture_scale has it.
   OfMaterial<double> crack_energy_of_dilation = nullptr;
+  /// A sentence that warns of the fracture data of a material; empty: nothing to warn of.
+  OfMaterial<std::string> fracture_warning = nullptr;
   /// Key of a constant below zero, whose interactions store less energy the more they deform; empty
   /// if there is none.
   OfMaterial<std::string> negative_constant = nullptr;

@@ -3,11 +3,40 @@
 #include <utility>
 
 #include "solvers/formulations/solid/solid_constants.hpp"
+#include "solvers/formulations/specification/require.hpp"
 #include "solvers/formulations/state/state_model.hpp"
 #include "src/materials/bulk_bonds.hpp"
 
 namespace peristat {
 namespace {
+
+/// lambda / mu from which dilatations, spread over the horizon, drive the bonds at a crack tip
+/// late, and up to which they may.
+constexpr double late_ratio = 2.5, most_ratio = 4.0;
+
+double lame_ratio(const MaterialSpecification& material, int dimension) {
+  const LamePair constants = lame_constants(material, dimension);
+  return constants.lambda / constants.mu;
+}
+
+void check_material(const MaterialSpecification& material, const std::string& key, int dimension) {
+  check_solid_constants(material, key, dimension);
+  if (material.damage.law == DamageLaw::none) return;
+  require(lame_ratio(material, dimension) <= most_ratio * (1.0 + 1e-9), key + ".poisson_ratio",
+          number_text(*material.poisson_ratio),
+          "is too near 1/2 for damage with model \"state\": cracks would run far above their "
+          "fracture energy; take at most 0.4");
+}
+
+std::string warning_of_late_cracks(const MaterialSpecification& material, const std::string& key,
+                                   const BondSetting& setting, double) {
+  const double ratio = lame_ratio(material, setting.dimension);
+  if (material.damage.law == DamageLaw::none || ratio <= late_ratio) return "";
+  return key + ".poisson_ratio = " + number_text(*material.poisson_ratio) +
+         ": a crack of model \"state\" needs more than the fracture energy to run where lambda/mu "
+         "is above " +
+         number_text(late_ratio) + "; here it is " + number_text(ratio);
+}
 
 /// G_c = c A times the work of the law: what a tear takes does not depend on lambda.
 FractureScale scale_of_states(const MaterialSpecification& material, const std::string&,
@@ -33,7 +62,7 @@ const Formulation& state_formulation() {
       .default_influence = InverseInfluence::name,
       .part_bonds = PartBonds::of_neighbours,
       .couples_second_neighbours = true,
-      .check_material = check_solid_constants,
+      .check_material = check_material,
       .setting_of_bonds = state_setting,
       .make_model =
           [](const ModelSetting& setting, Bonds bonds) {
@@ -42,7 +71,8 @@ const Formulation& state_formulation() {
           },
       .moduli = moduli_of_solid,
       .describe = describe_solid,
-      .fracture_scale = scale_of_states};
+      .fracture_scale = scale_of_states,
+      .fracture_warning = warning_of_late_cracks};
   return formulation;
 }
 
