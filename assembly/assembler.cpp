@@ -42,10 +42,11 @@ Evaluation sum_of(const Communicator& ranks, const Evaluation& mine) {
 }  // namespace
 
 Assembler::Assembler(const Points& points, const Model& model, int threads,
-                     const IndexMap& index_map)
+                     const IndexMap& index_map, PatternOf pattern_of)
     : points_(points),
       model_(model),
-      pattern_(model.pattern()),
+      pattern_of_(pattern_of),
+      pattern_(pattern_of == PatternOf::blocks ? model.pattern() : model.visited_pattern()),
       workspace_(pattern_, points.dimension, threads),
       index_map_(index_map) {
   if (model.terms().empty()) throw std::logic_error("a model without terms has no energy");
@@ -170,8 +171,10 @@ DamageState Assembler::assess(const History& history, std::span<const double> cu
 
 TangentForms Assembler::forms() {
   const TangentKind kind = tangent_kind();
-  return {.blocks = kind <= TangentKind::stored ? this : nullptr,
-          .visits = kind == TangentKind::visited ? this : nullptr,
+  const bool is_nearby = kind == TangentKind::nearby;
+  const bool has_blocks = pattern_of_ == PatternOf::blocks;
+  return {.blocks = kind <= TangentKind::stored && (has_blocks || !is_nearby) ? this : nullptr,
+          .visits = kind == TangentKind::visited || (is_nearby && !has_blocks) ? this : nullptr,
           .rows = kind <= TangentKind::rows ? this : nullptr,
           .products = this};
 }
@@ -192,6 +195,10 @@ void Assembler::visit_tangent(const StateView& at, double projection, const RowV
   for_each_term([&](TermPasses& term, Write) {
     term.forms().visits->visit_tangent(at, projection, visit, diagonal);
   });
+}
+
+double Assembler::most_over_visited() const {
+  return terms_.front()->forms().visits->most_over_visited();
 }
 
 void Assembler::product(const StateView& at, std::span<const double> v, std::span<double> product,

@@ -25,6 +25,10 @@ namespace peristat {
 /// can be damaged needs a history (initial_history), which only `commit` changes.
 class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
  public:
+  /// Whose pattern the assembler has: the tangent's blocks, or the rows that are visited instead
+  /// of storing these. They differ for TangentKind::nearby alone.
+  enum class PatternOf { blocks, visited_rows };
+
   /// Points and model must outlive the assembler.
   /// @param index_map null: the body is whole. Otherwise points and model are one rank's part of
   /// it:
@@ -33,7 +37,7 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   ///        are collective.
   /// @throws std::logic_error for a model without terms, and for convolutions on a part of a body
   Assembler(const Points& points, const Model& model, int threads,
-            const IndexMap& index_map = whole_body());
+            const IndexMap& index_map = whole_body(), PatternOf pattern_of = PatternOf::blocks);
   ~Assembler() override;
 
   /// Initial history, before any load.
@@ -78,6 +82,7 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
                double projection = 0.0) override;
   void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                      std::span<double> diagonal) override;
+  [[nodiscard]] double most_over_visited() const override;
 
   [[nodiscard]] SparseRows rows(const StateView& at, RowReach reach) override;
   [[nodiscard]] double bytes_of_rows() const override;
@@ -121,6 +126,7 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
 
   const Points& points_;
   const Model& model_;
+  PatternOf pattern_of_;
   BlockPattern pattern_;
   Workspace workspace_;
   std::vector<std::unique_ptr<TermPasses>> terms_;

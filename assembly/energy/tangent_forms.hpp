@@ -16,6 +16,8 @@ struct Tangent;
 /// last kind of its terms.
 enum class TangentKind {
   visited,   ///< blocks of a symmetric matrix, computed row by row: they need not be stored
+  nearby,    ///< blocks of a symmetric matrix, which can be stored; products need no storage, and
+             ///< rows of a simpler matrix near it can be visited to precondition them
   stored,    ///< blocks of a symmetric matrix, which have to be stored
   rows,      ///< sparse rows of an unsymmetric matrix
   products,  ///< products with vectors, without blocks or rows
@@ -37,7 +39,8 @@ class BlockTangent {
 /// dimension, row major, in the order of its pattern. Rows of a thread come in ascending order.
 using RowVisitor = std::function<void(int thread, Index i, std::span<const double> blocks)>;
 
-/// A tangent whose rows are computed one by one. Its product and v may be one array.
+/// A tangent whose rows are computed one by one, or a matrix near it (TangentKind::nearby), with
+/// its diagonal. Its product and v may be one array.
 class RowVisits {
  public:
   virtual ~RowVisits() = default;
@@ -47,6 +50,8 @@ class RowVisits {
   /// @param diagonal blocks, overwritten; empty: not wanted
   virtual void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                              std::span<double> diagonal) = 0;
+  /// Factor c such that c times the matrix whose rows are visited is no less than the tangent.
+  [[nodiscard]] virtual double most_over_visited() const { return 1.0; }
 };
 
 /// What is known of a tangent without blocks, beside its products with vectors.

@@ -5,7 +5,7 @@
 namespace peristat {
 
 MatrixFreeTangent::MatrixFreeTangent(Energy& energy) : OperatorOfEnergy(energy, energy.pattern()) {
-  if (energy.tangent_kind() != TangentKind::visited) {
+  if (!energy.forms().visits) {
     throw std::logic_error("the tangent of this energy must be stored");
   }
 }
@@ -18,6 +18,12 @@ void MatrixFreeTangent::linearise(Energy& energy, const StateView& at, double pr
 
 void MatrixFreeTangent::for_each_row(const RowVisitor& visit) const {
   energy_->forms().visits->visit_tangent(at_.view(), projection_, visit, {});
+}
+
+void MatrixFreeTangent::absolute_row_sums(std::span<double> sums) const {
+  TangentOperator::absolute_row_sums(sums);
+  const double factor = energy_->forms().visits->most_over_visited();
+  for (double& sum : sums) sum *= factor;
 }
 
 }  // namespace peristat

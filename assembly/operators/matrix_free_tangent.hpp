@@ -6,7 +6,8 @@
 namespace peristat {
 
 /// Tangent of which only the diagonal blocks are stored: rows are computed anew from the energy
-/// each time.
+/// each time. With TangentKind::nearby products are the tangent's, rows and diagonal those of the
+/// matrix near it.
 struct MatrixFreeTangent : OperatorOfEnergy<TangentOperator> {
   /// @throws std::logic_error unless the energy's rows can be visited
   explicit MatrixFreeTangent(Energy& energy);
@@ -14,6 +15,8 @@ struct MatrixFreeTangent : OperatorOfEnergy<TangentOperator> {
   void linearise(Energy& energy, const StateView& at, double projection) override;
   [[nodiscard]] bool multiplies_in_place() const override { return true; }
   void for_each_row(const RowVisitor& visit) const override;
+  /// Bounds of the largest eigenvalue by the rows that are visited.
+  void absolute_row_sums(std::span<double> sums) const override;
 };
 
 }  // namespace peristat

@@ -35,6 +35,12 @@ BlockPattern Model::pattern() const {
   return BlockPattern::united(couplings, bonds().points());
 }
 
+BlockPattern Model::visited_pattern() const {
+  std::vector<Couplings> couplings;
+  for (const auto& term : terms_) couplings.push_back(term->visited_couplings());
+  return BlockPattern::united(couplings, bonds().points());
+}
+
 bool Model::has_symmetric_blocks() const {
   return std::all_of(terms_.begin(), terms_.end(),
                      [](const auto& term) { return term->has_symmetric_blocks(); });

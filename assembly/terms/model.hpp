@@ -71,6 +71,8 @@ class Model {
 
   /// Union of the blocks of all terms.
   [[nodiscard]] BlockPattern pattern() const;
+  /// The same of the rows that are visited where blocks are not stored.
+  [[nodiscard]] BlockPattern visited_pattern() const;
 
   [[nodiscard]] bool has_symmetric_blocks() const;
   [[nodiscard]] TangentKind tangent_kind() const;

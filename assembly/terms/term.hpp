@@ -84,6 +84,12 @@ struct TermSetting {
   const IndexMap& index_map = whole_body();
 };
 
+/// Blocks of a term's stored tangent.
+struct BlockCount {
+  double blocks = 0.0;        ///< off the diagonal, each pair of points once
+  double bytes_beside = 0.0;  ///< that their positions take, where the body has none of these
+};
+
 /// How many interactions of a kind there are.
 struct InteractionCount {
   std::string name;  ///< "bonds"
@@ -101,6 +107,12 @@ class Term {
 
   /// Points that it couples: the blocks of its tangent. The term owns the arrays.
   [[nodiscard]] virtual Couplings couplings() const = 0;
+  /// Points that the rows of RowVisits couple.
+  [[nodiscard]] virtual Couplings visited_couplings() const { return couplings(); }
+  /// Number of the blocks, which may be an estimate from above.
+  [[nodiscard]] virtual BlockCount block_count(int /*dimension*/) const {
+    return {double(couplings().partner.size()), 0.0};
+  }
   /// Whether each of its off-diagonal blocks is symmetric.
   [[nodiscard]] virtual bool has_symmetric_blocks() const { return false; }
   [[nodiscard]] virtual TangentKind tangent_kind() const { return TangentKind::stored; }

@@ -70,8 +70,11 @@ MemoryEstimate estimate_memory(const Body& body) {
     size.ranks = body.index_map->ranks().count();
     size.gathered_points = body.index_map->is_first_rank() ? double(body.index_map->whole()) : 0.0;
   }
+  double beside_blocks = 0.0;
   for (const auto& term : body.model.terms()) {
-    size.blocks = std::max(size.blocks, double(term->couplings().partner.size()));
+    const BlockCount count = term->block_count(body.points.dimension);
+    size.blocks = std::max(size.blocks, count.blocks);
+    beside_blocks += count.bytes_beside;
   }
   if (couples_second_neighbours(body.specification)) size.coupling_ratio = 2.0 * size.horizon_ratio;
   if (!body.model.balances().potential) {
@@ -81,6 +84,7 @@ MemoryEstimate estimate_memory(const Body& body) {
         size.dimension * std::min(size.points, std::pow(2.0, size.dimension) * near);
   }
   MemoryEstimate estimate = estimate_memory(size);
+  estimate.tangent_bytes += beside_blocks;
   for (const auto& term : body.model.terms()) estimate.body_bytes += term->stored_bytes();
   estimate.body_bytes +=
       body.specification.evaluation_bytes_per_point * double(body.points.count());

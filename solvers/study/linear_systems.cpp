@@ -102,6 +102,9 @@ bool has_rows_of_part(const Body& body) {
   return constraints.rollers.empty() && constraints.linear.empty();
 }
 
+/// True if the rows that a preconditioner needs can be visited without storing the tangent.
+bool needs_no_storage(TangentKind kind) { return kind <= TangentKind::nearby; }
+
 /// True if a model's tangent has products alone, as by convolutions.
 bool has_products_only(const Model& model) { return model.tangent_kind() == TangentKind::products; }
 
@@ -119,7 +122,7 @@ LinearSystems systems_of_motion(const Body& body) {
   systems.chosen.reason = "explicit time steps solve no equations";
   const bool is_followed = !body.conditions->constraints().none();
   const TangentKind kind = body.model.tangent_kind();
-  systems.is_stored = kind == TangentKind::visited ? is_followed : kind != TangentKind::products;
+  systems.is_stored = needs_no_storage(kind) ? is_followed : kind != TangentKind::products;
   systems.has_rows = has_rows_of_part(body);
   systems.bytes = estimate.body_bytes + (systems.is_stored ? estimate.tangent_bytes : 0.0) +
                   8.0 * vectors_of_motion * estimate.size.points * estimate.size.dimension;
@@ -190,7 +193,7 @@ std::shared_ptr<const LatticeBox> box_for_choice(const StudyOptions& options, co
                        options.linear.preconditioner == PreconditionerKind::automatic;
   const bool is_whole = !body.model.has_history() && body.cut_bonds.empty();
   if (!is_free || !is_whole || !of.is_uniform() || of.has_inertia ||
-      body.model.tangent_kind() != TangentKind::visited || !body.conditions->constraints().none() ||
+      !needs_no_storage(body.model.tangent_kind()) || !body.conditions->constraints().none() ||
       body.points.angle != 0.0) {
     return nullptr;
   }
@@ -220,6 +223,15 @@ std::shared_ptr<const LatticeBox> box_of_convolutions(const StudyOptions& option
   }
   std::string why_not;
   return std::make_shared<LatticeBox>(lattice_box(body.points, why_not).value());
+}
+
+/// Bonds that a product of conjugate gradients visits: those of the stored tangent, or where it is
+/// not stored, of two sweeps for states.
+double bonds_of_product(const StudyOptions& options, const MemoryEstimate& estimate,
+                        TangentKind kind) {
+  const bool sweeps_twice = kind == TangentKind::nearby && can_be_matrix_free(options.linear) &&
+                            options.tangent != TangentStorage::stored;
+  return sweeps_twice ? 2.0 * estimate.size.bonds : estimate.size.stored_blocks();
 }
 
 bool flows(const StudyOptions& options, const Model& model) {
@@ -272,14 +284,14 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   if (options.tangent == TangentStorage::matrix_free &&
       (kind == TangentKind::stored || kind == TangentKind::rows))
     throw InputError("tangent", "matrix_free",
-                     "is for bonds alone: other models need the stored tangent");
+                     "is for bonds and states alone: other models need the stored tangent");
   LinearProblem problem;
   problem.is_symmetric = is_symmetric;
   problem.index_map = &index_map;
   problem.unknowns = estimate.size.free_dofs;
   problem.has_inertia = options.loading.mode == Mode::dynamics &&
                         options.loading.dynamics.scheme == MotionScheme::newmark;
-  problem.bonds = estimate.size.stored_blocks();
+  problem.bonds = bonds_of_product(options, estimate, kind);
   problem.factor_flops = estimate.factor_flops;
   problem.factor_bytes = estimate.direct_bytes(linear.method);
   problem.available_bytes = available_memory() - estimate.body_bytes - estimate.tangent_bytes;
@@ -295,7 +307,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   // Matrix-free products take less memory; in 3D they are faster than stored ones, in 2D a sixth
   // slower.
   if (options.tangent == TangentStorage::automatic && !systems.chosen.is_direct &&
-      kind == TangentKind::visited && can_be_matrix_free(linear)) {
+      needs_no_storage(kind) && can_be_matrix_free(linear)) {
     problem.is_stored = false;
     systems.chosen = make_linear_solver(linear, problem, std::move(tell));
   }

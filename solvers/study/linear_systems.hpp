@@ -18,6 +18,10 @@ struct LinearSystems {
   bool has_rows = true;
   double bytes = 0.0;  ///< estimated for the whole run
 
+  /// What the assembler of the tangent has the pattern of.
+  [[nodiscard]] Assembler::PatternOf pattern_of() const {
+    return is_stored ? Assembler::PatternOf::blocks : Assembler::PatternOf::visited_rows;
+  }
   [[nodiscard]] std::unique_ptr<TangentOperator> make_tangent(Assembler& assembler,
                                                               const Constraints& constraints) const;
 };

@@ -79,7 +79,8 @@ void refuse_unstable_rest(const Body& body, const StudyOptions& options) {
 
   const LinearSystems systems = choose_linear_systems(options, body, {});
   require_memory_for(body, systems.bytes);
-  Assembler assembler(body.points, body.model, usable_threads(options.threads), *body.index_map);
+  Assembler assembler(body.points, body.model, usable_threads(options.threads), *body.index_map,
+                      systems.pattern_of());
   const Constraints& constraints = body.conditions->constraints();
   const std::unique_ptr<TangentOperator> tangent = systems.make_tangent(assembler, constraints);
   const std::vector<double> reference(constraints.dofs(), 0.0);

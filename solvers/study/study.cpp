@@ -142,7 +142,7 @@ SolvedModel::SolvedModel(const Points& points, const Model& model, const Constra
                          const IndexMap& index_map)
     : systems_(std::move(systems)),
       free_(free),
-      assembler_(points, model, threads, index_map),
+      assembler_(points, model, threads, index_map, systems_.pattern_of()),
       tangent_(systems_.make_tangent(assembler_, constraints)) {}
 
 LinearOutcome SolvedModel::analyze() { return solver().analyze(tangent_->pattern, free_); }

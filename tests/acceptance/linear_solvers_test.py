@@ -120,7 +120,7 @@ class LinearSolvers(Folder):
             with self.subTest(settings=settings):
                 self.assert_refused(self.command("check", BEAM, *settings), fragment)
         run = self.command("check", CASES / "cpd/square.toml", "solver.tangent=matrix_free")
-        self.assert_refused(run, "solver.tangent = matrix_free: is for bonds alone")
+        self.assert_refused(run, "solver.tangent = matrix_free: is for bonds and states alone")
 
     def test_sines_say_what_they_are_not_for(self):
         text = PLATE.read_text()

@@ -29,10 +29,10 @@ struct Batch {
   Vector<D, Lanes> vector0, vector1;  // partner's minus the row's own gathered vectors
 };
 
-/// Calls visit(batch) for the bonds of row i.
+/// Calls visit(batch) for the bonds of row i, with the weights of these kinds.
 template <int D, class Visit>
-[[gnu::always_inline]] inline void for_each_batch(const Bonds& bonds, const double* rows, Index i,
-                                                  const Visit& visit) {
+[[gnu::always_inline]] inline void for_each_batch(const Bonds& bonds, const BondKinds& kinds,
+                                                  const double* rows, Index i, const Visit& visit) {
   constexpr int width = row_width(D);
   const double* own = rows + std::size_t(i) * width;
   const Offset end = bonds.offset[i + 1];
@@ -52,7 +52,7 @@ template <int D, class Visit>
 #pragma GCC unroll 4
     for (int l = 0; l < lane_count; ++l) {
       batch.partner[l] = bonds.partner[bond[l]];
-      kind[l] = &bonds.kind[bond[l]].inverse_length;
+      kind[l] = &kinds[bond[l]].inverse_length;
     }
     load_transposed_pairs(kind, batch.inverse_length, batch.weight);
     if (batch.count < lane_count) {
@@ -72,6 +72,12 @@ template <int D, class Visit>
     }
     visit(batch);
   }
+}
+
+template <int D, class Visit>
+[[gnu::always_inline]] inline void for_each_batch(const Bonds& bonds, const double* rows, Index i,
+                                                  const Visit& visit) {
+  for_each_batch<D>(bonds, bonds.kind, rows, i, visit);
 }
 
 /// Adds lane l of a vector to the sum of partner l.
@@ -168,6 +174,70 @@ inline void store_upper_halves(double* blocks, int count,
       }
     }
   }
+}
+
+/// Sums the blocks of bonds row by row.
+/// @param block_of(batch, i) of the bonds of a batch between their points, of packed rows
+/// @param blocks_of(thread, i) where minus the blocks of row i are written
+/// @param done(thread, i) called once they are
+/// @param diagonal blocks of points, overwritten; empty: not wanted
+template <int D, Tangent::Blocks stored_as, class BlockOf, class BlocksOf, class Done>
+void sum_blocks(BondWorkspace& a, const BondKinds& kinds, const BlockOf& block_of,
+                const BlocksOf& blocks_of, const Done& done, std::span<double> diagonal) {
+  const Bonds& bonds = a.bonds;
+  constexpr int width = block_width(D);
+  const auto body = [&](int thread, RowRange range, double* sums) {
+    for (Index i = range.first; i < range.last; ++i) {
+      double* const blocks = blocks_of(thread, i);
+      std::array<Lanes, width> own;
+      own.fill(Lanes(0.0));
+      for_each_batch<D>(
+          bonds, kinds, a.rows.data(),
+          i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
+            const Matrix<D, Lanes> block = block_of(batch, i);
+            const auto half = upper_half<D>(block);
+            const std::ptrdiff_t place = batch.first - bonds.offset[i];
+            if constexpr (stored_as == Tangent::Blocks::whole) {
+              store_blocks<D>(blocks + place * D * D, batch.count, block);
+            } else {
+              store_upper_halves<D>(blocks + place * (D * (D + 1) / 2), batch.count, half);
+            }
+            for (int c = 0; c < width; ++c) own[c] += half[c];
+            add_to_partners<D>(sums, batch.partner, half);
+          });
+      for (int c = 0; c < D * (D + 1) / 2; ++c) {
+        sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
+      }
+      done(thread, i);
+    }
+  };
+  a.threads.template sum_rows<width>(body, [&](Index i, const double* total) {
+    if (diagonal.empty()) return;
+    double* block = &diagonal[std::size_t(i) * D * D];
+    int k = 0;
+    for (int r = 0; r < D; ++r) {
+      for (int c = r; c < D; ++c) block[r * D + c] = block[c * D + r] = total[k++];
+    }
+  });
+}
+
+/// Calls compute(blocks_of, done) for sum_blocks with room for one row per thread, and visits each
+/// row when it is done.
+template <int D, class Compute>
+void visit_rows(const BondWorkspace& a, const RowVisitor& visit, const Compute& compute) {
+  const std::vector<Offset>& offset = a.bonds.offset;
+  Offset longest = 0;
+  for (std::size_t i = 1; i < offset.size(); ++i) {
+    longest = std::max(longest, offset[i] - offset[i - 1]);
+  }
+  constexpr std::size_t entries = D * D;
+  std::vector<std::vector<double>> rows(std::size_t(a.threads.threads()),
+                                        std::vector<double>(std::size_t(longest) * entries));
+  compute([&](int thread, Index) { return rows[std::size_t(thread)].data(); },
+          [&](int thread, Index i) {
+            const auto bonds = std::size_t(offset[i + 1] - offset[i]);
+            visit(thread, i, std::span(rows[std::size_t(thread)]).first(bonds * entries));
+          });
 }
 
 /// Stress-free stretch of each bond: the mean of its points' eigenstretches.
@@ -386,45 +456,18 @@ struct BondKernels {
                       Span displacement, const double* largest_stretch, double projection,
                       const BlocksOf& blocks_of, const Done& done, std::span<double> diagonal) {
     a.pack<D>(a.points.reference, displacement);
-    const Bonds& bonds = a.bonds;
-    constexpr int width = block_width(D);
-    const auto body = [&](int thread, RowRange range, double* sums) {
-      for (Index i = range.first; i < range.last; ++i) {
-        double* const blocks = blocks_of(thread, i);
-        std::array<Lanes, width> own;
-        own.fill(Lanes(0.0));
-        for_each_batch<D>(
-            bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-              auto measure =
-                  Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-              relieve(measure, eigenstretch, i, batch);
-              auto psi = interaction_energy(
-                  batch.weight, at_history(largest_stretch, potential, batch.first), measure);
-              if (projection > 0.0) psi = projected(psi, projection);
-              const Matrix<D, Lanes> block = energy_hessian<0, 0>(psi, measure);
-              const auto half = upper_half<D>(block);
-              const std::ptrdiff_t place = batch.first - bonds.offset[i];
-              if constexpr (stored_as == Tangent::Blocks::whole) {
-                store_blocks<D>(blocks + place * D * D, batch.count, block);
-              } else {
-                store_upper_halves<D>(blocks + place * (D * (D + 1) / 2), batch.count, half);
-              }
-              for (int c = 0; c < width; ++c) own[c] += half[c];
-              add_to_partners<D>(sums, batch.partner, half);
-            });
-        for (int c = 0; c < D * (D + 1) / 2; ++c)
-          sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
-        done(thread, i);
-      }
-    };
-    a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
-      if (diagonal.empty()) return;
-      double* block = &diagonal[std::size_t(i) * D * D];
-      int k = 0;
-      for (int r = 0; r < D; ++r) {
-        for (int c = r; c < D; ++c) block[r * D + c] = block[c * D + r] = total[k++];
-      }
-    });
+    sum_blocks<D, stored_as>(
+        a, a.bonds.kind,
+        [&](const Batch<D>& batch, Index i) __attribute__((always_inline)) {
+          auto measure =
+              Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+          relieve(measure, eigenstretch, i, batch);
+          auto psi = interaction_energy(
+              batch.weight, at_history(largest_stretch, potential, batch.first), measure);
+          if (projection > 0.0) psi = projected(psi, projection);
+          return energy_hessian<0, 0>(psi, measure);
+        },
+        blocks_of, done, diagonal);
   }
 
   template <class P, class E>

@@ -172,24 +172,12 @@ void BondPassesIn<dimension>::tangent(const StateView& at, Tangent& tangent, dou
 template <int dimension>
 void BondPassesIn<dimension>::visit_tangent(const StateView& at, double projection,
                                             const RowVisitor& visit, std::span<double> diagonal) {
-  const std::vector<Offset>& offset = failure_.bonds().offset;
-  Offset longest = 0;
-  for (std::size_t i = 1; i < offset.size(); ++i) {
-    longest = std::max(longest, offset[i] - offset[i - 1]);
-  }
-  const int threads = workspace_.threads.threads();
   dispatch(at, [&](const auto& law, const double* largest_stretch, const auto& eigenstretch) {
-    constexpr std::size_t entries = dimension * dimension;
-    std::vector<std::vector<double>> rows(std::size_t(threads),
-                                          std::vector<double>(std::size_t(longest) * entries));
-    Kernels::template tangent<Tangent::Blocks::whole>(
-        workspace_, law, eigenstretch, at.displacement, largest_stretch, projection,
-        [&](int thread, Index) { return rows[std::size_t(thread)].data(); },
-        [&](int thread, Index i) {
-          const std::size_t bonds = std::size_t(offset[i + 1] - offset[i]);
-          visit(thread, i, std::span(rows[std::size_t(thread)]).first(bonds * entries));
-        },
-        diagonal);
+    visit_rows<dimension>(workspace_, visit, [&](const auto& blocks_of, const auto& done) {
+      Kernels::template tangent<Tangent::Blocks::whole>(workspace_, law, eigenstretch,
+                                                        at.displacement, largest_stretch,
+                                                        projection, blocks_of, done, diagonal);
+    });
   });
 }
 

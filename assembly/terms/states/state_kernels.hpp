@@ -29,15 +29,11 @@ class StateKernels {
  public:
   using Span = std::span<const double>;
 
+  /// Shares outlive it.
   StateKernels(const Points& points, const Bonds& bonds, const StateShares& shares,
-               const StateNetwork& network, Workspace& workspace)
-      : buffers_(points, bonds, workspace), network_(network) {
-    const auto count = points.volume.size(), bond_count = std::size_t(bonds.count());
-    whole_.assign(bond_count + lane_count, 0.0);
-    for (std::size_t b = 0; b < bond_count; ++b) {
-      whole_[b] = shares.kernel[b] * bonds.length(Offset(b));
-    }
-    share_ = whole_;
+               Workspace& workspace)
+      : buffers_(points, bonds, workspace), whole_(shares.whole) {
+    const auto count = points.volume.size();
     ends_.assign(2 * count, 0.0);
     for (std::vector<double>* per_point :
          {&dilatational_, &per_moment_, &stiffness_, &energy_, &rate_}) {
@@ -56,11 +52,10 @@ class StateKernels {
   /// Leaves integrity(bond) of each bond.
   template <class Integrity>
   void scale(const Integrity& integrity) {
-    const auto count = Offset(whole_.size()) - lane_count;
+    const Offset count = buffers_.bonds.count();
+    integrity_.resize(std::size_t(count) + lane_count, 0.0);
 #pragma omp parallel for num_threads(threads())
-    for (Offset b = 0; b < count; ++b) {
-      share_[std::size_t(b)] = whole_[std::size_t(b)] * integrity(b);
-    }
+    for (Offset b = 0; b < count; ++b) integrity_[std::size_t(b)] = integrity(b);
   }
 
   /// Finds p_i = V (lambda - mu) b theta and the energy of each point. Returns the sum of the
@@ -195,10 +190,11 @@ class StateKernels {
   /// common neighbour i get the block V (lambda - mu) G_j G_k^T from it, G the gradient of theta_i:
   /// b_i g n for a neighbour and minus the sum of these for i itself.
   template <class E>
-  void add_tangent(Span u, const E& eigenstretch, double projection, const BlockPattern& pattern,
-                   std::span<double> off_diagonal, std::span<double> diagonal) {
-    const BondBlocks bonds = bond_blocks(u, eigenstretch, projection);
-    const std::vector<double> own = own_gradients(bonds);
+  void add_tangent(Span u, const E& eigenstretch, double projection, const StateNetwork& network,
+                   const BlockPattern& pattern, std::span<double> off_diagonal,
+                   std::span<double> diagonal) {
+    const BondBlocks bonds = bond_blocks(u, eigenstretch, projection, diagonal);
+    const std::vector<double> own = own_gradients(network, bonds);
     const Index count = Index(energy_.size());
     run_on_threads(threads(), [&](int thread) {
       std::vector<Offset> place(std::size_t(count), -1);
@@ -213,20 +209,34 @@ class StateKernels {
           return k == j ? block_of_point
                         : &off_diagonal[std::size_t(place[std::size_t(k)]) * D * D];
         };
-        add_centre(j, j, of(own, j), own, bonds, block_with);
-        for_neighbours(j, [&](Index i, Offset bond) {
-          if (share_[std::size_t(bond)] == 0.0) return;
+        add_centre(network, j, j, of(own, j), own, bonds, block_with);
+        for_neighbours(network, j, [&](Index i, Offset bond) {
+          if (is_broken(bond)) return;
           const double b_i = per_moment_[std::size_t(i)];
-          add_centre(i, j, scaled<D>(i < j ? b_i : -b_i, of(bonds.direction, bond)), own, bonds,
-                     block_with);
+          add_centre(network, i, j, scaled<D>(i < j ? b_i : -b_i, of(bonds.direction, bond)), own,
+                     bonds, block_with);
+          if (i < j) return;
           const double* const block = &bonds.block[std::size_t(bond) * D * D];
-          double* const between = i > j ? block_with(i) : nullptr;
-          for (int c = 0; c < D * D; ++c) {
-            block_of_point[c] += block[c];
-            if (between != nullptr) between[c] -= block[c];
-          }
+          double* const between = block_with(i);
+          for (int c = 0; c < D * D; ++c) between[c] += block[c];
         });
       }
+    });
+  }
+
+  /// Visits the rows of the tangent's part that is the bonds' own, moved to its positive
+  /// semidefinite part, after find_states of the displacements u.
+  template <class E>
+  void visit_bonds(Span u, const E& eigenstretch, const RowVisitor& visit,
+                   std::span<double> diagonal) {
+    pack_current(u, u);
+    visit_rows<D>(buffers_, visit, [&](const auto& blocks_of, const auto& done) {
+      sum_blocks<D, Tangent::Blocks::whole>(
+          buffers_, whole_,
+          [&](const Batch<D>& batch, Index i) __attribute__((always_inline)) {
+            return block_of(batch, share_of(batch), i, current(batch), eigenstretch, 1.0);
+          },
+          blocks_of, done, diagonal);
     });
   }
 
@@ -281,26 +291,27 @@ class StateKernels {
     const double q = ends_[2 * i] + ends_[2 * j], p = ends_[2 * i + 1] + ends_[2 * j + 1];
     const double drop = of_bond.law.onset() < of_bond.law.critical() ? 0.0 : 1.0;
     const double stiffness = stiffness_[i] + stiffness_[j];
-    const double squared = s * (s + 2.0 * p / q - drop * whole_[bond] * r * s * stiffness / q);
+    const double whole = whole_[driven.bond].weight;
+    const double squared = s * (s + 2.0 * p / q - drop * whole * r * s * stiffness / q);
     // The digits that rounding of another order takes must not keep a bond from its damage.
     const double driving =
         s > 0.0 && squared > 0.0 ? std::sqrt(squared) * (1.0 + 0.5 * least_growth) : 0.0;
     if (!of_bond.is_loading(driving, history)) return false;
     const double lost = of_bond.integrity_after(history) - of_bond.integrity_after(driving);
     history = driving;
-    share_[bond] -= lost * whole_[bond];
+    integrity_[bond] -= lost;
     for (const std::size_t end : {i, j}) {
-      ends_[2 * end + 1] -= stiffness_[end] * lost * whole_[bond] * r * s;
+      ends_[2 * end + 1] -= stiffness_[end] * lost * whole * r * s;
     }
     return true;
   }
 
   /// State before bonds fail, which their losses depend on.
   struct Before {
-    std::vector<double> share, pressure;
+    std::vector<double> integrity, pressure;
   };
   [[nodiscard]] Before remembered() const {
-    Before before{{share_.begin(), share_.end()}, std::vector<double>(energy_.size())};
+    Before before{{integrity_.begin(), integrity_.end()}, std::vector<double>(energy_.size())};
     for (std::size_t i = 0; i < energy_.size(); ++i) before.pressure[i] = ends_[2 * i + 1];
     return before;
   }
@@ -314,7 +325,8 @@ class StateKernels {
     double total = 0.0;
     for (Index i = 0; i < bonds.points(); ++i) {
       for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-        const double lost = before.share[std::size_t(bond)] - share_[std::size_t(bond)];
+        const double lost = (before.integrity[std::size_t(bond)] - integrity_[std::size_t(bond)]) *
+                            whole_[bond].weight;
         if (lost == 0.0) continue;
         const Index j = bonds.partner[bond];
         const std::span<const double> reference = buffers_.points.reference;
@@ -352,18 +364,16 @@ class StateKernels {
     const auto [q, p] = of_ends(i, batch);
     const double own = stiffness_[std::size_t(i)];
     const Lanes stiffness([&](int l) { return own + stiffness_[std::size_t(batch.partner[l])]; });
-    const Lanes whole(&whole_[std::size_t(batch.first)]);
     const Lanes zero = 0.0;
     const Lanes squared =
-        s * (s + 2.0 * p / q - drop * whole * s * stiffness / (q * batch.inverse_length));
+        s * (s + 2.0 * p / q - drop * batch.weight * s * stiffness / (q * batch.inverse_length));
     return sqrt(max(chosen(s > zero, squared, zero), zero));
   }
 
   /// Whether the direction of a bond changes with displacements.
   static constexpr bool bends = std::is_same_v<Measure, Length>;
 
-  /// Of each bond from its first to its second point: g n, and the block of the bond alone,
-  /// g (q_i + q_j) / r n n^T + f / l (I - n n^T).
+  /// Of each bond from its first to its second point: g n, and minus the block of the bond alone.
   struct BondBlocks {
     std::vector<double> direction, block;
   };
@@ -381,14 +391,16 @@ class StateKernels {
   template <class Visit>
   [[gnu::always_inline]] void for_each_bond(Index i, const Visit& visit) const {
     for_each_batch<D>(
-        buffers_.bonds, buffers_.rows.data(),
+        buffers_.bonds, whole_, buffers_.rows.data(),
         i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-          Lanes share(&share_[std::size_t(batch.first)]);
-          if (batch.count < lane_count) {
-            share = Lanes([&](int l) { return l < batch.count ? share[l] : 0.0; });
-          }
-          visit(batch, share);
+          visit(batch, share_of(batch));
         });
+  }
+
+  /// g of the bonds of a batch.
+  [[gnu::always_inline]] Lanes share_of(const Batch<D>& batch) const {
+    return integrity_.empty() ? batch.weight
+                              : batch.weight * Lanes(&integrity_[std::size_t(batch.first)]);
   }
 
   /// Measure of rows with the reference and the displacement, less the eigenstretch.
@@ -463,49 +475,71 @@ class StateKernels {
 
   /// Calls visit(neighbour, bond), neighbours ascending.
   template <class Visit>
-  void for_neighbours(Index i, const Visit& visit) const {
-    for (Offset e = network_.offset[i]; e < network_.offset[i + 1]; ++e) {
-      visit(network_.lower[e], network_.bond[e]);
+  void for_neighbours(const StateNetwork& network, Index i, const Visit& visit) const {
+    for (Offset e = network.offset[i]; e < network.offset[i + 1]; ++e) {
+      visit(network.lower[e], network.bond[e]);
     }
     const Bonds& bonds = buffers_.bonds;
     for (Offset b = bonds.offset[i]; b < bonds.offset[i + 1]; ++b) visit(bonds.partner[b], b);
   }
 
+  [[nodiscard]] bool is_broken(Offset bond) const {
+    return whole_[bond].weight == 0.0 ||
+           (!integrity_.empty() && integrity_[std::size_t(bond)] == 0.0);
+  }
+
+  /// Block of bonds alone, g (q_i + q_j) / r n n^T + f / l (I - n n^T), from a measure by
+  /// pack_current.
+  template <class E, class MeasureAt>
+  [[gnu::always_inline]] Matrix<D, Lanes> block_of(const Batch<D>& batch, const Lanes& share,
+                                                   Index i, MeasureAt measure,
+                                                   const E& eigenstretch, double projection) const {
+    const auto [q, p] = of_ends(i, batch);
+    const Vector<D, Lanes> n = measure.gradient[0];
+    relieve(measure, eigenstretch, i, batch);
+    const Lanes across =
+        projected_pull(share * (p + q * measure.relative_change), projection) * measure.inverse;
+    const Lanes along = share * q * batch.inverse_length - across;
+    Matrix<D, Lanes> block;
+    for (int r = 0; r < D; ++r) {
+      for (int c = 0; c < D; ++c) block[r][c] = along * n[r] * n[c] + (r == c ? across : 0.0);
+    }
+    return block;
+  }
+
+  /// Also adds the blocks to those of their points.
   template <class E>
-  [[nodiscard]] BondBlocks bond_blocks(Span u, const E& eigenstretch, double projection) {
+  [[nodiscard]] BondBlocks bond_blocks(Span u, const E& eigenstretch, double projection,
+                                       std::span<double> diagonal) {
     const Bonds& bonds = buffers_.bonds;
     BondBlocks of_bonds{std::vector<double>(std::size_t(bonds.count()) * D),
                         std::vector<double>(std::size_t(bonds.count()) * D * D)};
+    std::vector<double> of_points(diagonal.size());
     pack_current(u, u);
-#pragma omp parallel for num_threads(threads())
-    for (Index i = 0; i < bonds.points(); ++i) {
-      for_each_bond(i, [&](const Batch<D>& batch, const Lanes& share) {
-        auto measure = current(batch);
-        const auto [q, p] = of_ends(i, batch);
-        const Vector<D, Lanes>& n = measure.gradient[0];
-        relieve(measure, eigenstretch, i, batch);
-        const Lanes across =
-            projected_pull(share * (p + q * measure.relative_change), projection) * measure.inverse;
-        const Lanes along = share * q * batch.inverse_length - across;
-        for (int l = 0; l < batch.count; ++l) {
-          const auto bond = std::size_t(batch.first + l);
-          for (int r = 0; r < D; ++r) {
-            of_bonds.direction[bond * D + std::size_t(r)] = share[l] * n[r][l];
+    sum_blocks<D, Tangent::Blocks::whole>(
+        buffers_, whole_,
+        [&](const Batch<D>& batch, Index i) {
+          const Lanes share = share_of(batch);
+          const auto measure = current(batch);
+          for (int l = 0; l < batch.count; ++l) {
             for (int c = 0; c < D; ++c) {
-              of_bonds.block[(bond * D + std::size_t(r)) * D + std::size_t(c)] =
-                  along[l] * n[r][l] * n[c][l] + (r == c ? across[l] : 0.0);
+              of_bonds.direction[std::size_t(batch.first + l) * D + std::size_t(c)] =
+                  share[l] * measure.gradient[0][c][l];
             }
           }
-        }
-      });
-    }
+          return block_of(batch, share, i, measure, eigenstretch, projection);
+        },
+        [&](int, Index i) { return &of_bonds.block[std::size_t(bonds.offset[i]) * D * D]; },
+        [](int, Index) {}, of_points);
+    for (std::size_t k = 0; k < diagonal.size(); ++k) diagonal[k] += of_points[k];
     return of_bonds;
   }
 
   /// Adds the blocks of theta_i between j and the points k >= j.
   template <class BlockWith>
-  void add_centre(Index i, Index j, const Vector<D, double>& g_j, const std::vector<double>& own,
-                  const BondBlocks& bonds, const BlockWith& block_with) const {
+  void add_centre(const StateNetwork& network, Index i, Index j, const Vector<D, double>& g_j,
+                  const std::vector<double>& own, const BondBlocks& bonds,
+                  const BlockWith& block_with) const {
     const double stiffness = dilatational_[std::size_t(i)];
     if (stiffness == 0.0) return;
     const auto add = [&](double factor, const Vector<D, double>& g_k, double* block) {
@@ -515,19 +549,20 @@ class StateKernels {
     };
     if (i >= j) add(stiffness, of(own, i), block_with(i));
     const double share = stiffness * per_moment_[std::size_t(i)];
-    for_neighbours(i, [&](Index k, Offset bond) {
-      if (k < j || share_[std::size_t(bond)] == 0.0) return;
+    for_neighbours(network, i, [&](Index k, Offset bond) {
+      if (k < j || is_broken(bond)) return;
       add(k > i ? share : -share, of(bonds.direction, bond), block_with(k));
     });
   }
 
   /// dtheta_i/du_i
-  [[nodiscard]] std::vector<double> own_gradients(const BondBlocks& bonds) const {
+  [[nodiscard]] std::vector<double> own_gradients(const StateNetwork& network,
+                                                  const BondBlocks& bonds) const {
     std::vector<double> own(energy_.size() * D, 0.0);
 #pragma omp parallel for num_threads(threads())
     for (Index i = 0; i < Index(energy_.size()); ++i) {
       Vector<D, double> total{};
-      for_neighbours(i, [&](Index k, Offset bond) {
+      for_neighbours(network, i, [&](Index k, Offset bond) {
         const Vector<D, double> part = of(bonds.direction, bond);
         for (int c = 0; c < D; ++c) total[c] += k > i ? -part[c] : part[c];
       });
@@ -539,12 +574,12 @@ class StateKernels {
   }
 
   BondWorkspace buffers_;
-  const StateNetwork& network_;
-  AlignedVector<double> whole_, share_;  // per bond kappa r, and g = T kappa r; padded by a batch
-  AlignedVector<double> ends_;           // per point q = V d (d + 2) mu / M and p, side by side
-  std::vector<double> dilatational_;     // V (lambda - mu) [J]
-  std::vector<double> per_moment_;       // b = d / M
-  std::vector<double> stiffness_;        // V (lambda - mu) b^2
+  const BondKinds& whole_;            // per bond kappa r
+  AlignedVector<double> integrity_;   // per bond T, padded by a batch; empty: none fails
+  AlignedVector<double> ends_;        // per point q = V d (d + 2) mu / M and p, side by side
+  std::vector<double> dilatational_;  // V (lambda - mu) [J]
+  std::vector<double> per_moment_;    // b = d / M
+  std::vector<double> stiffness_;     // V (lambda - mu) b^2
   std::vector<double> energy_, rate_;
 };
 

@@ -35,21 +35,13 @@ class Marks {
 
 }  // namespace
 
-std::vector<double> kernel_of_weights(const Bonds& bonds) {
-  std::vector<double> kernel(std::size_t(bonds.count()));
-  for (Offset bond = 0; bond < bonds.count(); ++bond) {
-    kernel[std::size_t(bond)] = bonds.weight(bond) * bonds.inverse_length(bond);
-  }
-  return kernel;
-}
-
-std::vector<double> moments_of(const Points& points, const Bonds& bonds,
-                               const std::vector<double>& kernel) {
+std::vector<double> moments_of(const Points& points, const Bonds& bonds) {
   std::vector<double> moment(points.volume.size(), 0.0);
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       const Index j = bonds.partner[bond];
-      const double part = kernel[std::size_t(bond)] * squared_length(points, i, j);
+      const double part =
+          bonds.weight(bond) * bonds.inverse_length(bond) * squared_length(points, i, j);
       moment[std::size_t(i)] += part;
       moment[std::size_t(j)] += part;
     }
@@ -111,11 +103,6 @@ StateNetwork::StateNetwork(const Bonds& bonds, bool reaches_twice, int threads) 
   for (Index i = 0; i < points; ++i) {
     std::sort(partner.begin() + block_offset[i], partner.begin() + block_offset[i + 1]);
   }
-}
-
-double StateNetwork::bytes() const {
-  return double(sizeof(Offset)) * double(offset.size() + block_offset.size() + bond.size()) +
-         double(sizeof(Index)) * double(lower.size() + partner.size());
 }
 
 }  // namespace peristat

@@ -10,19 +10,15 @@ namespace peristat {
 
 /// Constants of the energy of states, frozen in the reference configuration.
 struct StateShares {
-  std::vector<double> kernel;  ///< kappa_ij = K(r) V_i V_j nu_ij of the bonds that are left
+  BondKinds whole;             ///< weights kappa_ij r, kappa_ij = K(r) V_i V_j nu_ij
   std::vector<double> moment;  ///< per point M_i = sum_j kappa_ij r^2 over whole neighbourhoods
   std::vector<LamePair> constants{};  ///< per point [Pa]
 };
 
-/// Kernel shares of bonds whose weights are w_ij = K(r) (r / delta) V_i V_j nu_ij, up to a factor
-/// that all of them have: w_ij / r.
-[[nodiscard]] std::vector<double> kernel_of_weights(const Bonds& bonds);
-
 /// sum_j kappa_ij r_ij^2 per point with the actual distances r: with these moments the dilatation
 /// of a uniform dilation is right at every point, however few neighbours it has.
-[[nodiscard]] std::vector<double> moments_of(const Points& points, const Bonds& bonds,
-                                             const std::vector<double>& kernel);
+/// @param bonds with weights kappa_ij r, up to a factor that all of them have
+[[nodiscard]] std::vector<double> moments_of(const Points& points, const Bonds& bonds);
 
 /// Lower neighbours of each point, and pairs of points with a common neighbour: connectivity that
 /// the bonds do not store.
@@ -36,8 +32,6 @@ struct StateNetwork {
 
   /// @param reaches_twice true if points with a common neighbour are coupled
   StateNetwork(const Bonds& bonds, bool reaches_twice, int threads);
-
-  [[nodiscard]] double bytes() const;
 };
 
 }  // namespace peristat

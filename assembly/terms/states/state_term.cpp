@@ -18,8 +18,12 @@
 namespace peristat {
 namespace {
 
+/// Bonds up to which the blocks of a tangent are counted; of more bonds they are at most so many
+/// times as many, since twice the horizon reaches 2^d times the volume.
+constexpr double most_bonds_to_count = 1e6;
+
 template <int D, class Measure>
-class StatePasses : public TermPasses, BlockTangent {
+class StatePasses : public TermPasses, BlockTangent, RowVisits {
  public:
   StatePasses(const StateTerm& term, const TermSetting& setting)
       : term_(term),
@@ -30,7 +34,7 @@ class StatePasses : public TermPasses, BlockTangent {
         index_map_(setting.index_map),
         pattern_(setting.pattern),
         threads_(setting.workspace.threads()),
-        kernels_(setting.points, term.bonds(), term.shares(), term.network(), setting.workspace) {}
+        kernels_(setting.points, term.bonds(), term.shares(), setting.workspace) {}
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
     const Evaluation found = find_states(at);
@@ -72,7 +76,7 @@ class StatePasses : public TermPasses, BlockTangent {
     return visit_driven(at, [](int, const Driven&) {});
   }
 
-  [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
+  [[nodiscard]] TangentForms forms() override { return {.blocks = this, .visits = this}; }
 
   void tangent(const StateView& at, Tangent& tangent, double projection, Write how) override {
     if (tangent.blocks != Tangent::Blocks::whole) {
@@ -81,9 +85,22 @@ class StatePasses : public TermPasses, BlockTangent {
     if (how == Write::over) tangent.clear();
     find_states(at);
     with_eigenstretch(at, [&](const auto& relief) {
-      kernels_.add_tangent(at.displacement, relief, projection, pattern_, tangent.off_diagonal,
-                           tangent.diagonal);
+      kernels_.add_tangent(at.displacement, relief, projection, term_.network(), pattern_,
+                           tangent.off_diagonal, tangent.diagonal);
     });
+  }
+
+  /// Rows of the bonds alone, whose positive semidefinite part is taken whatever the projection:
+  /// no definiteness of the tangent could be read off them.
+  void visit_tangent(const StateView& at, double /*projection*/, const RowVisitor& visit,
+                     std::span<double> diagonal) override {
+    if (!are_found(at)) find_states(at);
+    with_eigenstretch(at, [&](const auto& relief) {
+      kernels_.visit_bonds(at.displacement, relief, visit, diagonal);
+    });
+  }
+  [[nodiscard]] double most_over_visited() const override {
+    return state_ratios(term_.shares().constants, D).most;
   }
 
   void product(const StateView& at, std::span<const double> v, double projection,
@@ -260,12 +277,11 @@ StateTerm::StateTerm(std::shared_ptr<const Bonds> bonds, BondPotential potential
       failure_(std::make_shared<BondFailure>(std::move(bonds), std::move(potential),
                                              std::move(never_fails), rules.drive)),
       shares_(std::move(shares)),
-      network_(this->bonds(),
-               std::ranges::any_of(shares_.constants,
-                                   [](const LamePair& of) { return of.lambda != of.mu; }),
-               threads) {
+      reaches_twice_(std::ranges::any_of(shares_.constants,
+                                         [](const LamePair& of) { return of.lambda != of.mu; })),
+      threads_(threads) {
   const auto points = std::size_t(this->bonds().points());
-  if (shares_.kernel.size() != std::size_t(this->bonds().count()) ||
+  if (shares_.whole.size() != std::size_t(this->bonds().count()) ||
       shares_.moment.size() != points || shares_.constants.size() != points) {
     throw std::logic_error("states have a share of every bond and a moment of every point");
   }
@@ -282,14 +298,34 @@ StateRatios state_ratios(std::span<const LamePair> constants, int dimension) {
   return of;
 }
 
-double StateTerm::bound_over_blocks(int dimension) const {
-  return state_ratios(shares_.constants, dimension).bound_over_blocks();
+const StateNetwork& StateTerm::network() const {
+  std::call_once(finds_network_, [&] { network_.emplace(bonds(), reaches_twice_, threads_); });
+  return *network_;
+}
+
+BlockCount StateTerm::block_count(int dimension) const {
+  const double bonds = double(this->bonds().count()), points = double(this->bonds().points());
+  BlockCount count{bonds, 0.0};
+  if (reaches_twice_) {
+    const bool is_quick = bonds < most_bonds_to_count;
+    count.blocks = is_quick ? double(network().partner.size())
+                            : std::min(std::ldexp(bonds, dimension), 0.5 * points * points);
+  }
+  // Their partners; per bond its lower point with its number, and, while the tangent is written,
+  // its direction and block; per point and thread a block's place.
+  const double d = dimension;
+  count.bytes_beside = sizeof(Index) * count.blocks +
+                       (sizeof(Index) + sizeof(Offset) + sizeof(double) * d * (d + 1.0)) * bonds +
+                       sizeof(Offset) * (2.0 + threads_) * points;
+  return count;
 }
 
 double StateTerm::stored_bytes() const {
-  const double bonds = double(shares_.kernel.size()), points = double(shares_.moment.size());
-  // Per bond the kernel and two shares of the passes; per point moment, constants and results.
-  return failure_->bytes() + network_.bytes() + 8.0 * 3.0 * bonds + 8.0 * 10.0 * points;
+  const double bonds = double(shares_.whole.size()), points = double(shares_.moment.size());
+  // Per bond its share, and its integrity in the passes; per point moment, constants and results.
+  return failure_->bytes() +
+         (double(shares_.whole.bytes_per_bond()) + (failure_->can_fail() ? 8.0 : 0.0)) * bonds +
+         8.0 * 10.0 * points;
 }
 
 std::unique_ptr<TermPasses> StateTerm::passes(const TermSetting& setting) const {

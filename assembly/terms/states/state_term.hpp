@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -69,14 +71,15 @@ class StateTerm : public Term {
   [[nodiscard]] const BondFailure& bond_failure() const { return *failure_; }
   [[nodiscard]] const Bonds& bonds() const { return failure_->bonds(); }
   [[nodiscard]] const StateShares& shares() const { return shares_; }
-  [[nodiscard]] const StateNetwork& network() const { return network_; }
-
-  /// See StateRatios.
-  [[nodiscard]] double bound_over_blocks(int dimension) const;
+  /// Found when it is first asked for: only the blocks of its tangent need it.
+  [[nodiscard]] const StateNetwork& network() const;
 
   [[nodiscard]] Couplings couplings() const override {
-    return {network_.block_offset, network_.partner};
+    return {network().block_offset, network().partner};
   }
+  [[nodiscard]] Couplings visited_couplings() const override { return bonds(); }
+  [[nodiscard]] BlockCount block_count(int dimension) const override;
+  [[nodiscard]] TangentKind tangent_kind() const override { return TangentKind::nearby; }
   [[nodiscard]] Balances balances() const override {
     return {true, extension_ == Extension::finite, true, true};
   }
@@ -91,7 +94,10 @@ class StateTerm : public Term {
   Extension extension_;
   std::shared_ptr<const BondFailure> failure_;
   StateShares shares_;
-  StateNetwork network_;
+  bool reaches_twice_;
+  int threads_;
+  mutable std::once_flag finds_network_;
+  mutable std::optional<StateNetwork> network_;
 };
 
 /// Bounds of Pi over the bonds' part of it: at most R, the largest of 1 and

@@ -361,9 +361,6 @@ Exit check(const Case& from, int threads, std::FILE* out) {
 
   const FreeDofs free(body.conditions->prescribed(), points.dimension);
   const Constraints& constraints = body.conditions->constraints();
-  const BlockPattern pattern = constraints.none()
-                                   ? body.model.pattern()
-                                   : constrained_pattern(body.model.pattern(), constraints);
   std::string reason;
   const StudyOptions options = study_options(from, threads);
   const LinearSystems systems = located_errors(from, [&] {
@@ -371,6 +368,10 @@ Exit check(const Case& from, int threads, std::FILE* out) {
   });
   const ChosenSolver& chosen = systems.chosen;
   require_memory(systems.bytes, fmt::format("the case with {} points", points.count()));
+  const BlockPattern whole = systems.pattern_of() == Assembler::PatternOf::blocks
+                                 ? body.model.pattern()
+                                 : body.model.visited_pattern();
+  const BlockPattern pattern = constraints.none() ? whole : constrained_pattern(whole, constraints);
   if (chosen.solver->analyze(pattern, free) == LinearOutcome::solved) {
     fmt::print(out, "solver      {} ({})\n", chosen.solver->describe(),
                reason.empty() ? chosen.reason : reason);

@@ -160,7 +160,8 @@ Table<SolverSpecification> solver_keys() {
          "`\"auto\"`: stored for direct solvers; `\"stored\"`: the tangent's blocks are stored; "
          "`\"matrix_free\"`: they are computed anew "
          "in each product, which takes a third of the memory in 3D, for `material.model = "
-         "\"bond\"` without `\"cholesky\"`, `\"riluk\"`, `\"chebyshev\"` and `\"multigrid\"`")
+         "\"bond\"`, `\"state\"` and `\"lps\"` as an energy, without `\"cholesky\"`, "
+         "`\"riluk\"`, `\"chebyshev\"` and `\"multigrid\"`")
            .written_if(searches)
            .then(check_tangent)
            .on_ranks(),

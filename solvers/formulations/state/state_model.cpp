@@ -46,8 +46,7 @@ void weigh_by_release(Bonds& bonds, const Points& points, const StateShares& sha
     return points.volume[i] * d * (d + 2) * shares.constants[i].mu / shares.moment[i];
   };
   bonds.set_weights([&](Index i, Offset bond) {
-    return shares.kernel[std::size_t(bond)] * bonds.length(bond) * (q(i) + q(bonds.partner[bond])) /
-           modulus;
+    return shares.whole[bond].weight * (q(i) + q(bonds.partner[bond])) / modulus;
   });
 }
 
@@ -71,18 +70,18 @@ MadeModel make_state_model(const ModelSetting& setting, Bonds bonds, StateRules 
   }
   StateShares shares;
   shares.constants = constants_of_points(setting);
-  shares.moment = moments_of(points, bonds, kernel_of_weights(bonds));
+  shares.moment = moments_of(points, bonds);
   const BondMaterials mixed(from, setting.materials, setting.factors, points, std::move(moduli));
   if (!from.is_uniform()) {
     // The kernel of the states does not depend on materials; the energy that bonds dissipate does.
     refuse_idle_interfaces(from, setting.materials, bonds, setting.index_map.ranks());
     Bonds plain = bonds;
     static_cast<void>(cut_bonds(plain, points, from.cracks));
-    shares.kernel = kernel_of_weights(plain);
+    shares.whole = std::move(plain.kind);
     mixed.weigh(bonds);
   }
   CutBonds cut = cut_bonds(bonds, points, from.cracks);
-  if (from.is_uniform()) shares.kernel = kernel_of_weights(bonds);
+  if (from.is_uniform()) shares.whole = bonds.kind;
   if (is_by_release) weigh_by_release(bonds, points, shares, mixed.modulus());
   auto [potential, never_fails] = mixed.potential(bonds);
   return {Model(std::make_shared<StateTerm>(std::make_shared<const Bonds>(std::move(bonds)),

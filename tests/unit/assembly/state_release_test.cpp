@@ -37,8 +37,8 @@ struct ReleaseBody {
     const LamePair constants =
         lame_constants(youngs_modulus, poisson_ratio, box.dimension, PlaneState::stress);
     StateShares shares;
-    shares.kernel = kernel_of_weights(bonds);
-    shares.moment = moments_of(points, bonds, shares.kernel);
+    shares.whole = bonds.kind;
+    shares.moment = moments_of(points, bonds);
     shares.constants.assign(points.volume.size(), constants);
     const int d = box.dimension;
     const auto q = [&](Index point) {
@@ -46,8 +46,7 @@ struct ReleaseBody {
       return points.volume[i] * d * (d + 2) * constants.mu / shares.moment[i];
     };
     bonds.set_weights([&](Index i, Offset bond) {
-      return shares.kernel[std::size_t(bond)] * bonds.length(bond) *
-             (q(i) + q(bonds.partner[bond]));
+      return shares.whole[bond].weight * (q(i) + q(bonds.partner[bond]));
     });
     bond_model = Model(bonds, potential);
     term = std::make_shared<StateTerm>(std::make_shared<const Bonds>(std::move(bonds)), potential,

@@ -1,6 +1,7 @@
 // The energy of states (StateTerm): derivatives, balances, what it is known to be, damage.
 #include "assembly/terms/states/state_term.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "assembly/assembler.hpp"
+#include "assembly/operators/matrix_free_tangent.hpp"
 #include "assembly/terms/collocation/collocation_operator.hpp"
 #include "assembly/terms/collocation/make_collocation_network.hpp"
 #include "src/neighbourhood/influence.hpp"
@@ -53,8 +55,8 @@ struct StateBody {
 
   void make(Bonds bonds, const BoxSetting& box, const Solid& solid, int threads) {
     StateShares shares;
-    shares.kernel = kernel_of_weights(bonds);
-    shares.moment = moments_of(points, bonds, shares.kernel);
+    shares.whole = bonds.kind;
+    shares.moment = moments_of(points, bonds);
     for (Index i = 0; i < points.count(); ++i) {
       const bool is_right = points.position(i)[0] > 0.5 * box.extent[0] * box.spacing;
       shares.constants.push_back(is_right ? LamePair{solid.lambda_right, solid.mu_right}
@@ -133,8 +135,7 @@ Bonds bonds_alone(const StateBody& body, double mu) {
     const Index j = bonds.partner[bond];
     const double volumes = body.points.volume[i] / moment[std::size_t(i)] +
                            body.points.volume[j] / moment[std::size_t(j)];
-    return d * (d + 2) * mu * body.term->shares().kernel[std::size_t(bond)] * bonds.length(bond) *
-           volumes;
+    return d * (d + 2) * mu * body.term->shares().whole[bond].weight * volumes;
   });
   return bonds;
 }
@@ -359,6 +360,67 @@ TEST_P(StatesOfDimension, TangentLiesBetweenMultiplesOfTheBonds) {
   }
 }
 
+/// Products are the stored tangent's, rows and diagonal those of the bonds alone, and their sums
+/// bound its eigenvalues.
+TEST_P(StatesOfDimension, TangentNeedsNoStorage) {
+  const int d = GetParam();
+  for (const int threads : {1, 3}) {
+    Solid solid;
+    solid.lambda = solid.lambda_right = 5.0;
+    solid.mu = solid.mu_right = 0.8;
+    solid.rules = {Extension::finite, DamageDrive::release};
+    const StateBody body(perturbed_box(d), solid);
+    Assembler storing(body.points, body.model, threads);
+    Assembler visiting(body.points, body.model, threads, whole_body(),
+                       Assembler::PatternOf::visited_rows);
+    EXPECT_THROW(MatrixFreeTangent{storing}, std::logic_error);
+    EXPECT_EQ(visiting.pattern().blocks(), body.model.bonds().count());
+    Tangent stored(storing);
+    MatrixFreeTangent free(visiting);
+    const std::vector<double> v = Random(16).vector(body.dofs(), 1.0);
+    std::vector<double> one(body.dofs()), other(body.dofs());
+    for (const double projection : {0.0, 1.0}) {
+      const std::vector<double> u = large_displacement(body);
+      stored.linearise(storing, {u, {}}, projection);
+      free.linearise(visiting, {u, {}}, projection);
+      stored.multiply(v, one);
+      free.multiply(v, other);
+      EXPECT_LT(distance(one, other), 1e-13 * norm(one));
+      other = v;
+      ASSERT_TRUE(free.multiplies_in_place());
+      free.multiply(other, other);
+      EXPECT_LT(distance(one, other), 1e-13 * norm(one));
+    }
+
+    const std::vector<double> rest(body.dofs(), 0.0);
+    const Model bond_model(bonds_alone(body, 0.8), Harmonic{1.0});
+    Assembler springs(body.points, bond_model, threads);
+    Tangent of_bonds(springs);
+    of_bonds.linearise(springs, {rest, {}}, 0.0);
+    free.linearise(visiting, {rest, {}}, 0.0);
+    EXPECT_LT(distance(free.diagonal, of_bonds.diagonal), 1e-12 * norm(of_bonds.diagonal));
+    double difference = 0.0;
+    const auto entries = std::size_t(d * d);
+    Assembler alone(body.points, body.model, 1, whole_body(), Assembler::PatternOf::visited_rows);
+    MatrixFreeTangent by_one(alone);
+    by_one.linearise(alone, {rest, {}}, 0.0);
+    by_one.for_each_row([&](int, Index i, std::span<const double> row) {
+      for (std::size_t k = 0; k < row.size(); ++k) {
+        const Offset block = of_bonds.pattern.offset[i] + Offset(k / entries);
+        const int r = int(k % entries) / d, c = int(k % entries) % d;
+        difference = std::max(difference, std::abs(row[k] - of_bonds.entry(block, r, c)));
+      }
+    });
+    EXPECT_LT(difference, 1e-12 * norm(of_bonds.diagonal));
+
+    const Eigen::MatrixXd matrix = full(storing, rest);
+    std::vector<double> sums(body.dofs());
+    free.absolute_row_sums(sums);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(matrix, Eigen::EigenvaluesOnly);
+    EXPECT_LT(spectrum.eigenvalues()[matrix.rows() - 1], std::ranges::max(sums));
+  }
+}
+
 /// Compressed until bonds turn aside: the exact tangent has negative eigenvalues, the projected
 /// none.
 TEST_P(StatesOfDimension, FiniteProjectionIsPositive) {
@@ -414,7 +476,8 @@ TEST_P(StatesOfDimension, TangentIsPositiveAndFreesRigidMotionsAlone) {
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own(matrix.block(i, i, d, d));
       block = std::max(block, own.eigenvalues()[d - 1]);
     }
-    EXPECT_LT(values[values.size() - 1], body.term->bound_over_blocks(d) * block);
+    EXPECT_LT(values[values.size() - 1],
+              state_ratios(body.term->shares().constants, d).bound_over_blocks() * block);
   }
 }
 
@@ -510,10 +573,14 @@ TEST(States, OfCollocationsSharesAreItsOperatorInsideALattice) {
       make_collocation_network(ghosted, bonds, body.setting.horizon, 5, 1).network);
   auto constants = std::make_shared<LameConstants>();
   StateShares shares;
-  shares.kernel.assign(std::size_t(bonds.count()), 0.0);
+  std::vector<double> kernel(std::size_t(bonds.count()), 0.0);
   const double volume = body.points.volume.front();
   for (std::size_t e = 0; e < network->bond.size(); ++e) {
-    shares.kernel[std::size_t(network->bond[e])] = volume * network->kernel_share[e];
+    kernel[std::size_t(network->bond[e])] = volume * network->kernel_share[e];
+  }
+  for (Offset bond = 0; bond < bonds.count(); ++bond) {
+    shares.whole.push_back(
+        {bonds.inverse_length(bond), kernel[std::size_t(bond)] * bonds.length(bond)});
   }
   // m is the integral over the ball, and k has it in: M = V.
   shares.moment.assign(body.points.volume.size(), volume);
@@ -649,13 +716,13 @@ TEST(States, WithBrokenBondsAreThoseOfACutBody) {
 
   Bonds left = body.model.bonds();
   StateShares shares = body.term->shares();
-  std::vector<double> kernel;
+  BondKinds left_shares;
   left.remove_if([&](Index, Offset bond) { return stretches[std::size_t(bond)] > 0.0; });
   for (std::size_t b = 0; b < stretches.size(); ++b) {
-    if (stretches[b] == 0.0) kernel.push_back(shares.kernel[b]);
+    if (stretches[b] == 0.0) left_shares.push_back(shares.whole[Offset(b)]);
   }
-  ASSERT_LT(kernel.size(), stretches.size());
-  shares.kernel = kernel;
+  ASSERT_LT(left_shares.size(), stretches.size());
+  shares.whole = std::move(left_shares);
   const Model cut(std::shared_ptr<Term>(
       std::make_shared<StateTerm>(std::make_shared<const Bonds>(std::move(left)), Harmonic{1.0},
                                   std::vector<char>(), std::move(shares), StateRules{}, 1)));

@@ -93,8 +93,8 @@ TEST(LinearSolid, IsTheEnergyOfStatesWithMomentsOfTheNeighboursThatAreThere) {
     const auto bonds = std::make_shared<const Bonds>(
         make_bonds(body.points, SurfaceCorrection::none, bonds_setting, 1));
     StateShares shares;
-    shares.kernel = kernel_of_weights(*bonds);
-    shares.moment = moments_of(body.points, *bonds, shares.kernel);
+    shares.whole = bonds->kind;
+    shares.moment = moments_of(body.points, *bonds);
     const LinearSolid::Setting setting = setting_of(body);
     shares.constants.assign(body.count(), setting.constants);
     const Model model(std::shared_ptr<Term>(std::make_shared<StateTerm>(
