@@ -98,6 +98,26 @@ class StateSolid(Folder):
                     total = rows["stored_energy"] + rows["dissipated_energy"] + rows["drained_energy"] + rows["balance_error"]
                     numpy.testing.assert_allclose(total, rows["external_work"] + rows["numerical_work"], rtol=1e-9, atol=1e-12)
 
+    def test_how_the_tangent_is_held_changes_no_result(self):
+        """Stored for a factor, stored for conjugate gradients, or not stored at all."""
+        ways = {"stored, CHOLMOD": ("solver.linear=cholesky",),
+                "stored": ("solver.linear=pcg", "solver.tangent=stored"),
+                "matrix-free": ("solver.linear=pcg",)}  # fmt: skip
+        for nu in (0.05, 0.45):
+            text = cut(SOLID, poisson_ratio=nu) + DAMAGE + CRACK + PULL
+            found = []
+            for way, changes in ways.items():
+                folder = self.run_case(text, "solver.mode=adaptive", *changes, name="held")
+                if way == "matrix-free":
+                    self.assertIn("tangent matrix-free", self.ended.output)
+                elif way == "stored":
+                    self.assertNotIn("tangent matrix-free", self.ended.output)
+                found.append((columns(folder), Results(folder).steps[-1].displacement))
+            for rows, displacement in found[1:]:
+                self.assertGreater(rows["broken_bonds"][-1], 20)
+                numpy.testing.assert_array_equal(rows["broken_bonds"], found[0][0]["broken_bonds"])
+                numpy.testing.assert_allclose(displacement, found[0][1], rtol=0, atol=1e-9 * abs(displacement).max())
+
     def test_fracture_energy_is_what_a_torn_plate_takes(self):
         """The same fracture energy at any Poisson's ratio: a crack through the plate takes it along its ligament."""
         damage = '[material.damage]\nlaw = "linear"\nfracture_energy = 0.02\nno_fail = ["low", "high"]\n'
