@@ -54,14 +54,6 @@ void refuse_coincident_points(const Points& points, const Bonds& bonds) {
   }
 }
 
-/// Sets the counts for a model that couples points with a common neighbour: as many blocks as bonds
-/// of twice the horizon.
-void reach_twice(BodySize& size) {
-  size.has_symmetric_blocks = false;
-  size.coupling_ratio = 2.0 * size.horizon_ratio;
-  size.blocks = expected_bonds(size.points, size.dimension, size.coupling_ratio);
-}
-
 /// Stores regions and random factors of the points.
 void note_materials(Body& body, const PointMaterials& materials, int threads) {
   using Quantity = ScatterSpecification::Quantity;
@@ -282,10 +274,7 @@ double expected_bytes(const Body& body, const BodySpecification& of) {
         setting_of_short_bonds(body.points, body.setting).horizon / body.points.spacing;
   }
   expected.bonds = expected_bonds(expected.points, body.points.dimension, expected.horizon_ratio);
-  // Such a body needs a stored tangent for products.
-  const bool stores_twice = couples_second_neighbours(of);
-  if (stores_twice) reach_twice(expected);
-  return estimate_memory(expected).bytes(false, stores_twice, {});
+  return estimate_memory(expected).least_bytes();
 }
 
 }  // namespace

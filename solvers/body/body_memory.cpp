@@ -17,10 +17,6 @@ constexpr double states_with_environment = 4.0;
 
 }  // namespace
 
-bool couples_second_neighbours(const BodySpecification& of) {
-  return !of.is_convolved() && formulation_of(of).couples_second_neighbours;
-}
-
 double reach_ratio(VolumeCorrection correction, HorizonShape shape, int dimension,
                    double horizon_ratio) {
   const double m = horizon_ratio * farthest_of(shape, dimension), pi = std::numbers::pi;
@@ -76,7 +72,10 @@ MemoryEstimate estimate_memory(const Body& body) {
     size.blocks = std::max(size.blocks, count.blocks);
     beside_blocks += count.bytes_beside;
   }
-  if (couples_second_neighbours(body.specification)) size.coupling_ratio = 2.0 * size.horizon_ratio;
+  if (body.model.tangent_kind() <= TangentKind::stored &&
+      formulation_of(body.specification).couples_second_neighbours) {
+    size.coupling_ratio = 2.0 * size.horizon_ratio;
+  }
   if (!body.model.balances().potential) {
     // Couplings reach two horizons: 2^d as many points as one.
     const double near = 2.0 * size.bonds / std::max(size.points, 1.0) + 1.0;

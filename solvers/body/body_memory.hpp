@@ -17,9 +17,6 @@ namespace peristat {
 /// Expected number of bonds of so many points, from horizon and dimension alone.
 [[nodiscard]] double expected_bonds(double points, int dimension, double horizon_ratio);
 
-/// True if points couple that have a neighbour in common.
-[[nodiscard]] bool couples_second_neighbours(const BodySpecification& of);
-
 /// Memory estimate from the counts of the body.
 [[nodiscard]] MemoryEstimate estimate_memory(const Body& body);
 

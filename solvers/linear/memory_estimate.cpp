@@ -62,9 +62,8 @@ double coarse_bytes(const BodySize& size, double points) {
   const double motions = 0.5 * d * (d + 1.0);
   // Boxes are 5/3 horizons wide; in 3D they are larger where their factor would take more than 100
   // bytes per point, on more than sixteen ranks per point of sixteen ranks.
-  const double ratio = size.coupling_ratio > 0.0 ? size.coupling_ratio : size.horizon_ratio;
   const double most = 100.0 * std::min(1.0, 16.0 / double(size.ranks)) * points;
-  double pieces = points / std::pow(5.0 / 3.0 * ratio, d);
+  double pieces = points / std::pow(5.0 / 3.0 * size.horizon_ratio, d);
   if (size.dimension == 3) pieces = std::min(pieces, std::pow(most / (8.0 * 36.0 * 8.0), 0.75));
   const double coarse = motions * pieces;
   const double factor = size.dimension == 3
