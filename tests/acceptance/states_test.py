@@ -265,7 +265,6 @@ class States(Folder):
             (PULLED + '[solver]\nmode = "path"\n', ("mode", "path")),
             (PLATE + REGION + '[[interface]]\nrule = "weaker"\n' + PULL, ("interface", '"lps" by collocation')),
             (PLATE + PULL + '[[symmetry]]\naxis = "x"\n', ("symmetry",)),
-            (PLATE + PULL + '[solver]\ntangent = "matrix_free"\n', ("matrix_free",)),
             (PLATE + PULL + '[[load]]\nside = "y+"\ntraction = [0, 1]\ndepth = "surface"\n', ("depth",)),
             (collocated.replace("[quadrature]", '[quadrature]\nvolume_correction = "linear"') + PULL, ("volume_correction",)),
             (collocated + 'influence = "cubic"\n' + PULL, ("influence", "inverse")),
