@@ -151,6 +151,13 @@ DamageGrowth Assembler::growth(const StateView& at) {
   return of_all(found.growth);
 }
 
+void Assembler::drive(const StateView& at, std::span<BondDrive> drives) {
+  for (auto& [stretch, rate, squared] : drives) {
+    squared = {stretch * stretch, 2.0 * stretch * rate, rate * rate};
+  }
+  for_each_term([&](TermPasses& term, Write) { term.add_drive(at, drives); });
+}
+
 DamageGrowth Assembler::of_all(const DamageGrowth& mine) const {
   if (index_map_.is_whole()) return mine;
   const Communicator& ranks = index_map_.ranks();

@@ -72,6 +72,10 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   /// Damage that committing the state would cause.
   [[nodiscard]] DamageGrowth growth(const StateView& at);
 
+  /// Squared equivalent stretches of bonds that fail by release, see BondDrive.
+  /// @param drives of all bonds; their stretches and rates are given
+  void drive(const StateView& at, std::span<BondDrive> drives);
+
   /// Damage state of a history, see assess_damage; the damage of ghosts is meaningless.
   [[nodiscard]] DamageState assess(const History& history, std::span<const double> cut_weight,
                                    std::span<double> damage) const;

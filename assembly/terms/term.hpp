@@ -12,6 +12,7 @@
 #include "assembly/operators/block_pattern.hpp"
 #include "assembly/operators/tangent.hpp"
 #include "assembly/terms/balances.hpp"
+#include "assembly/terms/bond_drive.hpp"
 #include "assembly/terms/failure/failure_model.hpp"
 #include "src/geometry/points.hpp"
 #include "src/parallel/index_map.hpp"
@@ -51,6 +52,11 @@ class TermPasses {
 
   /// Damage that committing the state would cause.
   virtual DamageGrowth growth(const StateView&) { return {}; }
+
+  /// Adds to the squared equivalent stretches of bonds that fail by release, which have those of
+  /// their own stretches so far, what else drives them.
+  /// @param drives of all bonds
+  virtual void add_drive(const StateView&, std::span<BondDrive> /*drives*/) {}
 
   /// Its tangent, in the form of Term::tangent_kind; rows also as products. Blocks that can be
   /// visited can also be stored.

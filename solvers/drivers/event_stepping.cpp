@@ -130,18 +130,16 @@ UpdatedTangent& EventStepping::tangent() {
 }
 
 double EventStepping::utilisation(const State& at, std::span<const double> borne) const {
-  const Assembler& body = path_.damaged();
-  return largest_utilisation(body.points(), body.model(), StateView(at, Damage::held), borne,
-                             body.threads());
+  Assembler& body = path_.damaged();
+  return largest_utilisation(body, StateView(at, Damage::held), borne);
 }
 
 std::vector<UtilisedBond> EventStepping::batch_of(const State& at) const {
-  const Assembler& body = path_.damaged();
+  Assembler& body = path_.damaged();
   const double most = utilisation(at, borne_), tolerance = path_.options().events.tolerance;
   // Leaves room for the gap that ends the batch.
   const double least = most * (1.0 - std::max(1.5 * tolerance, 1e-3));
-  std::vector<UtilisedBond> all = utilised_bonds(
-      body.points(), body.model(), StateView(at, Damage::held), borne_, least, body.threads());
+  std::vector<UtilisedBond> all = utilised_bonds(body, StateView(at, Damage::held), borne_, least);
   std::size_t count = 1;
   while (count < all.size() && (all[count].utilisation >= (1.0 - tolerance) * most ||
                                 all[count - 1].utilisation - all[count].utilisation <= tie)) {
@@ -173,6 +171,10 @@ bool EventStepping::pin(Settled& settled) {
   if (path_.pin() == Advance::goes_on) return true;
   settled.outcome = Outcome::out_of_memory;
   return false;
+}
+
+bool EventStepping::fails_by_release() const {
+  return path_.damaged().model().failing_bonds()->drive() == DamageDrive::release;
 }
 
 bool EventStepping::asks_for_interrupt() const {
@@ -212,7 +214,7 @@ Attempt EventStepping::settle_downhill(const State& at, double relative_toleranc
 EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& ledger) {
   Assembler& body = path_.damaged();
   const std::vector<UtilisedBond> batch = batch_of(at);
-  BondDrops dropped = drop(body.points(), body.model(), StateView(at, Damage::held), borne_, batch);
+  BondDrops dropped = drop(body, StateView(at, Damage::held), borne_, batch);
   Settled settled;
   settled.dropping = Index(batch.size());
   settled.breaking = dropped.breaking;
@@ -222,10 +224,11 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   const auto energy = [&](const State& of) {
     return body.energy(StateView(of, Damage::held)).energy;
   };
-  const bool bonds_alone = body.model().terms().size() == 1;
+  // By release bonds lose all that hangs on them.
+  const bool bonds_alone = fails_by_release() || body.model().terms().size() == 1;
   const double lost = bonds_alone ? dropped.energy_lost : energy(at) - energy(settled.state);
   const bool was_bifurcated = tangent().has_negative_pivots();
-  tangent().lose(dropped.stiffness);
+  fails_by_release() ? tangent().forget() : tangent().lose(dropped.stiffness);
 
   const FragmentPins pins_before = path_.state().pins;
   const bool may_go_on = dropped.breaking == 0 || pin(settled);
@@ -278,6 +281,8 @@ bool EventStepping::book_event(const State& at, const PathLedger& ledger, const 
   Ledger after = ledger.with_step(path_.problem().sums(), at.displacement, settled.attempt.state,
                                   working, dissipated, energies);
   settled.batch_work = dropped.dissipated - dropped.energy_lost;
+  // What loss sets free beyond what it takes is drained, as in other modes.
+  if (fails_by_release()) settled.batch_work = std::max(settled.batch_work, 0.0);
   after.numerical_work += settled.batch_work;
   const double drained = after.balance_error() - ledger.entries.balance_error();
   const double turned_over = std::abs(lost) + std::abs(after.stored) + std::abs(drained);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "assembly/terms/bonds/borne_stretches.hpp"
+#include "assembly/borne_stretches.hpp"
 #include "solvers/search/convergence.hpp"
 #include "solvers/search/linearisation.hpp"
 #include "src/core/vector_verbs.hpp"
@@ -149,9 +149,9 @@ class StrengthSearch {
 
   /// Returns the change of the stage, and sets the end that the search aims at.
   double choose(bool is_first) {
-    const AdmissibleRange range = admissible_range(
-        problem_.assembler.points(), problem_.assembler.model(), current_.at(Damage::held),
-        step_.borne, rate_, eigenstretch_rate_, share_at_strength, problem_.assembler.threads());
+    const AdmissibleRange range =
+        admissible_range(problem_.assembler, current_.at(Damage::held), step_.borne, rate_,
+                         eigenstretch_rate_, share_at_strength);
     if (is_first) {
       if (range.low > range.high) return refuse();
       result_.goes_up = range.high >= 0.0;
@@ -206,9 +206,7 @@ class StrengthSearch {
   }
 
   [[nodiscard]] double utilisation() const {
-    return largest_utilisation(problem_.assembler.points(), problem_.assembler.model(),
-                               current_.at(Damage::held), step_.borne,
-                               problem_.assembler.threads());
+    return largest_utilisation(problem_.assembler, current_.at(Damage::held), step_.borne);
   }
 
   /// Moves supports and loads to the stage, and evaluates the state.

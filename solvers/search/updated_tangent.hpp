@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "assembly/terms/bonds/borne_stretches.hpp"
+#include "assembly/borne_stretches.hpp"
 #include "solvers/linear/linear_solver.hpp"
 #include "solvers/problem/equilibrium.hpp"
 

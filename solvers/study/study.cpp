@@ -47,15 +47,17 @@ void refuse_modes_without_potential(const Body& body, const StudyOptions& option
   }
 }
 
-/// Refuses mode path for bodies whose points have states: it assumes that a body loses just what
-/// its bonds lose.
+/// Refuses mode path for bodies whose points have states and whose bonds break by their stretch: a
+/// bond's strength then does not say what the body loses with it.
 void refuse_events_of_states(const Body& body, const StudyOptions& options) {
   const OptionSet can = options_of(body.specification);
   const bool loses_more = can.has(Option::critical_stretch) && !can.has(Option::events);
   if (!loses_more || options.loading.mode != Mode::path) return;
-  throw InputError("loading.mode", std::string(options.loading.mode.name),
-                   is_for(Option::events) +
-                       ": when a bond of this model breaks, its points also lose dilatation");
+  throw InputError(
+      "loading.mode", std::string(options.loading.mode.name),
+      is_for(Option::events) +
+          ": a bond of this model breaks by its stretch, and its points lose dilatation "
+          "with it");
 }
 
 /// Points that fail one by one have no strength that a step could be led to, and what follows one

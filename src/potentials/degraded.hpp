@@ -10,6 +10,7 @@
 #include "src/potentials/bond_laws.hpp"
 #include "src/potentials/harmonic.hpp"
 #include "src/potentials/potential_density.hpp"
+#include "src/potentials/stepwise_law.hpp"
 
 namespace peristat {
 
@@ -131,6 +132,16 @@ struct Degraded {
   /// Remaining integrity T(kappa).
   [[nodiscard]] double integrity_after(double largest_stretch) const {
     return law.integrity(std::max(largest_stretch, 0.0));
+  }
+
+  /// Integrity that the bond loses at once when it exceeds what it bears; 0 if its force falls
+  /// smoothly.
+  [[nodiscard]] double drop_after(double largest_stretch) const {
+    const double integrity = integrity_after(largest_stretch);
+    if (falls_by_steps(law)) {
+      return integrity - law.integrity(borne_after(law, borne(largest_stretch)));
+    }
+    return law.onset() < law.critical() ? 0.0 : integrity;
   }
 
   /// Energy density that the history has dissipated: int_0^kappa T phi_0' dr - T(kappa)

@@ -41,8 +41,8 @@ class FailureModel {
   /// Otherwise states do no damage, and there is no history.
   [[nodiscard]] virtual bool can_fail() const = 0;
   [[nodiscard]] virtual FailingParts parts() const = 0;
-  /// True if all that exceeds what it bears fails at one load, while the body finds new equilibria:
-  /// there is no bond strength that a load could be scaled to.
+  /// True if implicit steps damage all that exceeds what it bears at one load, and find equilibria
+  /// in turns with that. Mode path goes from drop to drop where fails_by_steps.
   [[nodiscard]] virtual bool fails_in_avalanches() const = 0;
   /// History before any load; empty if nothing can fail.
   [[nodiscard]] virtual std::vector<double> initial_history() const = 0;

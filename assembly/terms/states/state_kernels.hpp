@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "assembly/operators/block_pattern.hpp"
+#include "assembly/terms/bond_drive.hpp"
 #include "assembly/terms/bonds/bond_kernels.hpp"
 #include "assembly/terms/bonds/bond_workspace.hpp"
 #include "assembly/terms/states/state_network.hpp"
@@ -259,9 +260,10 @@ class StateKernels {
       for (Index i = range.first; i < range.last; ++i) {
         for_each_bond(i, [&](const Batch<D>& batch, const Lanes&) {
           const Lanes s = strained(batch, eigenstretch, i).relative_change;
-          const auto range_of_law = law.ranges(batch.first);
-          const Lanes drop = chosen(Lanes(range_of_law.onset) < Lanes(range_of_law.critical),
-                                    Lanes(0.0), Lanes(1.0));
+          const Lanes drop([&](int l) {
+            const Offset bond = batch.first + std::min(l, batch.count - 1);
+            return law.of_bond(bond).drop_after(history[bond]);
+          });
           const Lanes driving = equivalent_stretch(batch, i, s, drop);
           for (int l = 0; l < batch.count; ++l) {
             const Offset bond = batch.first + l;
@@ -281,6 +283,46 @@ class StateKernels {
     return buffers_.threads.total_evaluation().growth;
   }
 
+  /// Adds to squared equivalent stretches what the dilatations of the bonds' ends drive, see
+  /// equivalent_stretch. The drives' stretches need not be those of a state that has been found.
+  template <class P>
+  void add_drive(const P& law, const double* history, std::span<BondDrive> drives) {
+    const Bonds& bonds = buffers_.bonds;
+    std::vector<std::array<double, 2>> pressure(energy_.size());  // p and its rate
+    const auto body = [&](int, RowRange range, double* sums) {
+      for (Index i = range.first; i < range.last; ++i) {
+        for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+          const BondDrive& drive = drives[std::size_t(bond)];
+          const double part = left_of(bond) * whole_[bond].weight * bonds.length(bond);
+          for (const Index end : {i, bonds.partner[bond]}) {
+            sums[std::ptrdiff_t(end) * 2] += part * drive.stretch;
+            sums[std::ptrdiff_t(end) * 2 + 1] += part * drive.rate;
+          }
+        }
+      }
+    };
+    buffers_.threads.template sum_rows<2>(body, [&](Index i, const double* total) {
+      const double stiffness = stiffness_[std::size_t(i)];
+      pressure[std::size_t(i)] = {stiffness * total[0], stiffness * total[1]};
+    });
+#pragma omp parallel for num_threads(threads())
+    for (Index first = 0; first < bonds.points(); ++first) {
+      const auto i = std::size_t(first);
+      for (Offset bond = bonds.offset[first]; bond < bonds.offset[first + 1]; ++bond) {
+        const auto j = std::size_t(bonds.partner[bond]);
+        const double q = ends_[2 * i] + ends_[2 * j];
+        const double lost = law.of_bond(bond).drop_after(history[bond]) * whole_[bond].weight *
+                            bonds.length(bond) * (stiffness_[i] + stiffness_[j]) / q;
+        auto& [s, speed, squared] = drives[std::size_t(bond)];
+        const double factor = 2.0 * (pressure[i][0] + pressure[j][0]) / q - lost * s;
+        const double rate = 2.0 * (pressure[i][1] + pressure[j][1]) / q - lost * speed;
+        squared[0] += s * factor;
+        squared[1] += s * rate + speed * factor;
+        squared[2] += speed * rate;
+      }
+    }
+  }
+
   /// Damages a bond, if what the ones before it have left of the dilatations still drives it.
   /// Returns true if it has. The states are those of the present displacements and histories.
   template <class OfBond>
@@ -289,7 +331,7 @@ class StateKernels {
     const auto i = std::size_t(driven.point), j = std::size_t(buffers_.bonds.partner[driven.bond]);
     const double s = driven.stretch, r = buffers_.bonds.length(driven.bond);
     const double q = ends_[2 * i] + ends_[2 * j], p = ends_[2 * i + 1] + ends_[2 * j + 1];
-    const double drop = of_bond.law.onset() < of_bond.law.critical() ? 0.0 : 1.0;
+    const double drop = of_bond.drop_after(history);
     const double stiffness = stiffness_[i] + stiffness_[j];
     const double whole = whole_[driven.bond].weight;
     const double squared = s * (s + 2.0 * p / q - drop * whole * r * s * stiffness / q);
@@ -484,8 +526,12 @@ class StateKernels {
   }
 
   [[nodiscard]] bool is_broken(Offset bond) const {
-    return whole_[bond].weight == 0.0 ||
-           (!integrity_.empty() && integrity_[std::size_t(bond)] == 0.0);
+    return whole_[bond].weight == 0.0 || left_of(bond) == 0.0;
+  }
+
+  /// Integrity of a bond.
+  [[nodiscard]] double left_of(Offset bond) const {
+    return integrity_.empty() ? 1.0 : integrity_[std::size_t(bond)];
   }
 
   /// Block of bonds alone, g (q_i + q_j) / r n n^T + f / l (I - n n^T), from a measure by

@@ -76,6 +76,13 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
     return visit_driven(at, [](int, const Driven&) {});
   }
 
+  void add_drive(const StateView& at, std::span<BondDrive> drives) override {
+    take_integrities(at);
+    found_ = {};  // whose integrities the kernels had
+    failure_.with_damage_law(
+        [&](const auto& law) { kernels_.add_drive(law, at.history.of(slot_).data(), drives); });
+  }
+
   [[nodiscard]] TangentForms forms() override { return {.blocks = this, .visits = this}; }
 
   void tangent(const StateView& at, Tangent& tangent, double projection, Write how) override {

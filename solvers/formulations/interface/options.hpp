@@ -40,7 +40,7 @@ enum class Option {
   pressures,
   surface_loads,  ///< tractions and stresses on the surface itself, not on points below it
   images,         ///< planes of symmetry and periods
-  events          ///< mode `path`: a body loses just what its bonds lose
+  events          ///< mode `path`: bonds' strengths say what the body loses
 };
 
 /// A set of options.

@@ -57,7 +57,7 @@ const Formulation& state_formulation() {
       .label = "\"state\"",
       .takes = {Option::plane, Option::poisson_ratio, Option::thermal_expansion,
                 Option::volume_correction, Option::surface_correction, Option::eigenstrains,
-                Option::pressures, Option::softening, Option::critical_stretch},
+                Option::pressures, Option::softening, Option::critical_stretch, Option::events},
       .least_dimension = 2,
       .default_influence = InverseInfluence::name,
       .part_bonds = PartBonds::of_neighbours,

@@ -1,4 +1,4 @@
-#include "assembly/terms/bonds/borne_stretches.hpp"
+#include "assembly/borne_stretches.hpp"
 
 #include <cmath>
 #include <vector>
@@ -50,9 +50,9 @@ struct Torn {
   [[nodiscard]] StateView at() const { return {displacement, history, Damage::held}; }
 
   BondDrops tear() {
-    auto most = utilised_bonds(body.points, body.model, at(), borne, 0.5, assembler.threads());
+    auto most = utilised_bonds(assembler, at(), borne, 0.5);
     most.resize(std::min<std::size_t>(most.size(), 3));
-    BondDrops dropped = drop(body.points, body.model, at(), borne, most);
+    BondDrops dropped = drop(assembler, at(), borne, most);
     history = assembler.history_of(dropped.histories);
     borne = dropped.borne;
     return dropped;
@@ -111,7 +111,7 @@ TEST(BorneStretches, TheAdmissibleRangeIsThatOfEveryBond) {
   for (const int dimension : {1, 2, 3}) {
     for (const int threads : {1, 3}) {
       SCOPED_TRACE(std::to_string(dimension) + "D, " + std::to_string(threads));
-      const Torn torn(dimension, threads);
+      Torn torn(dimension, threads);
       const double h = 1e-6, share = 0.9;
       double low = -1e300, high = 1e300, most = 0.0;
       const std::vector<double> ahead = torn.moved(h), behind = torn.moved(-h);
@@ -125,23 +125,20 @@ TEST(BorneStretches, TheAdmissibleRangeIsThatOfEveryBond) {
         if (speed < 0.0) low = std::max(low, way);
         most = std::max(most, s / strength);
       });
-      const AdmissibleRange range = admissible_range(torn.body.points, torn.body.model, torn.at(),
-                                                     torn.borne, torn.rate, {}, share, threads);
+      const AdmissibleRange range =
+          admissible_range(torn.assembler, torn.at(), torn.borne, torn.rate, {}, share);
       EXPECT_NEAR(range.low, low, 1e-5 * std::abs(low));
       EXPECT_NEAR(range.high, high, 1e-5 * std::abs(high));
       EXPECT_NEAR(range.utilisation, most, 1e-10);
-      EXPECT_NEAR(
-          largest_utilisation(torn.body.points, torn.body.model, torn.at(), torn.borne, threads),
-          most, 1e-10);
+      EXPECT_NEAR(largest_utilisation(torn.assembler, torn.at(), torn.borne), most, 1e-10);
     }
   }
 }
 
 TEST(BorneStretches, TheMostUtilisedComeFirst) {
-  const Torn one(3, 1), three(3, 3);
-  const auto first = utilised_bonds(one.body.points, one.body.model, one.at(), one.borne, 0.1, 1);
-  const auto again =
-      utilised_bonds(three.body.points, three.body.model, three.at(), three.borne, 0.1, 3);
+  Torn one(3, 1), three(3, 3);
+  const auto first = utilised_bonds(one.assembler, one.at(), one.borne, 0.1);
+  const auto again = utilised_bonds(three.assembler, three.at(), three.borne, 0.1);
   ASSERT_EQ(first.size(), again.size());
   ASSERT_GT(first.size(), 10u);
   for (std::size_t k = 0; k < first.size(); ++k) {

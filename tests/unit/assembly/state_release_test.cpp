@@ -1,17 +1,15 @@
 // Damage of states by what bonds release: exact drops of energy, tears, and the bond model's limit.
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "assembly/assembler.hpp"
-#include "assembly/terms/states/state_term.hpp"
-#include "src/materials/lame_constants.hpp"
+#include "assembly/borne_stretches.hpp"
+#include "src/potentials/make_saw_tooth.hpp"
 #include "src/potentials/potential.hpp"
-#include "tests/bodies.hpp"
+#include "tests/release_body.hpp"
 
 namespace peristat {
 namespace {
@@ -20,63 +18,7 @@ using tests::BoxSetting;
 using tests::distance;
 using tests::norm;
 using tests::Random;
-
-constexpr double youngs_modulus = 2.0;
-
-/// A box of states whose bonds take kappa r^2 (q_i + q_j) times the work of the law.
-struct ReleaseBody {
-  Points points;
-  std::shared_ptr<StateTerm> term;
-  Model model, bond_model;
-
-  ReleaseBody(const BoxSetting& box, double poisson_ratio, const BondPotential& potential)
-      : points(tests::box_points(box)) {
-    BondSetting setting = tests::bond_setting(box);
-    setting.influence = [](double) { return 1.0; };  // K = 1 / r
-    Bonds bonds = make_bonds(points, SurfaceCorrection::none, setting, 1);
-    const LamePair constants =
-        lame_constants(youngs_modulus, poisson_ratio, box.dimension, PlaneState::stress);
-    StateShares shares;
-    shares.whole = bonds.kind;
-    shares.moment = moments_of(points, bonds);
-    shares.constants.assign(points.volume.size(), constants);
-    const int d = box.dimension;
-    const auto q = [&](Index point) {
-      const auto i = std::size_t(point);
-      return points.volume[i] * d * (d + 2) * constants.mu / shares.moment[i];
-    };
-    bonds.set_weights([&](Index i, Offset bond) {
-      return shares.whole[bond].weight * (q(i) + q(bonds.partner[bond]));
-    });
-    bond_model = Model(bonds, potential);
-    term = std::make_shared<StateTerm>(std::make_shared<const Bonds>(std::move(bonds)), potential,
-                                       std::vector<char>(), std::move(shares),
-                                       StateRules{Extension::finite, DamageDrive::release}, 1);
-    model = Model(std::shared_ptr<Term>(term));
-  }
-
-  [[nodiscard]] std::size_t dofs() const { return points.reference.size(); }
-
-  /// Moves the points beyond x apart.
-  [[nodiscard]] std::vector<double> torn(double x, double opening) const {
-    const auto d = std::size_t(points.dimension);
-    std::vector<double> u(dofs(), 0.0);
-    for (Index i = 0; i < points.count(); ++i) {
-      if (points.position(i)[0] >= x) u[std::size_t(i) * d] = opening;
-    }
-    return u;
-  }
-
-  /// sum over the bonds across x of what they take in all.
-  [[nodiscard]] double taken_across(double x, double work_of_law) const {
-    double sum = 0.0;
-    tests::for_each_bond(model.bonds(), [&](Index i, Index j, Offset bond) {
-      if ((points.position(i)[0] < x) == (points.position(j)[0] < x)) return;
-      sum += model.bonds().weight(bond) * model.bonds().length(bond) * work_of_law;
-    });
-    return sum;
-  }
-};
+using tests::ReleaseBody;
 
 BondPotential brittle(double critical) {
   return Degraded<CriticalStretch>{1.0, CriticalStretch{critical}};
@@ -246,6 +188,168 @@ TEST(StateRelease, SmallerStepsDrainLess) {
     EXPECT_NEAR(excess[0] / excess[1], 4.0, 1.0);
     EXPECT_NEAR(excess[1] / excess[2], 4.0, 1.0);
   }
+}
+
+/// A body whose bonds are on different teeth of a saw-tooth, in a random state.
+struct OnTeeth {
+  ReleaseBody body;
+  Assembler assembler;
+  std::vector<double> u;
+  History history;
+  std::vector<double> borne;
+
+  OnTeeth(int d, double nu, int threads = 1)
+      : body(perturbed(d), nu,
+             with_teeth(Degraded<ForceEnvelope>{1.0, ForceEnvelope{0.005, 0.02}}, 5)),
+        assembler(body.points, body.model, threads),
+        u(Random(8).vector(body.dofs(), 0.01)),
+        history(assembler.initial_history()),
+        borne(borne_stretches(body.model, history)) {
+    for (int event = 0; event < 60; ++event) drop_some(3);
+  }
+
+  static BoxSetting perturbed(int d) {
+    BoxSetting box = tests::small_box(d);
+    box.perturbation = 0.2;
+    return box;
+  }
+  [[nodiscard]] StateView at() const { return {u, history, Damage::held}; }
+  [[nodiscard]] std::vector<UtilisedBond> utilised(double least) {
+    return utilised_bonds(assembler, at(), borne, least);
+  }
+  void drop_some(std::size_t count) {
+    std::vector<UtilisedBond> bonds = utilised(0.1);
+    bonds.resize(std::min(bonds.size(), count));
+    const BondDrops dropped = drop(assembler, at(), borne, bonds);
+    history = assembler.history_of(dropped.histories);
+    borne = dropped.borne;
+  }
+};
+
+/// From tooth to tooth: a drop sets free the square of its utilisation times what its law takes.
+TEST_P(ReleaseOfPoisson, DropsSetFreeWhatTheirUtilisationSays) {
+  const auto [d, nu] = GetParam();
+  OnTeeth state(d, nu);
+  const double stored = state.assembler.energy(state.at()).energy;
+  int whole = 0, damaged = 0;
+  for (const UtilisedBond& bond : state.utilised(1e-6)) {
+    const double before = bond_stretches(state.body.model, state.history)[std::size_t(bond.bond)];
+    before == 0.0 ? ++whole : ++damaged;
+    const std::vector<UtilisedBond> one{bond};
+    const BondDrops dropped = drop(state.assembler, state.at(), state.borne, one);
+    EXPECT_GT(dropped.dissipated, 0.0);
+    EXPECT_NEAR(dropped.energy_lost, dropped.dissipated * std::pow(bond.utilisation, 2),
+                1e-12 * stored);
+    const History after = state.assembler.history_of(dropped.histories);
+    EXPECT_NEAR(dissipated(state.assembler, after) - dissipated(state.assembler, state.history),
+                dropped.dissipated, 1e-12 * stored);
+  }
+  EXPECT_GT(whole, 20);
+  EXPECT_GT(damaged, 20);
+}
+
+/// All teeth of a bond take what its law takes in all.
+TEST(StateRelease, TeethTakeWhatTheirLawTakes) {
+  OnTeeth state(2, 0.45);
+  const Bonds& bonds = state.body.model.bonds();
+  for (const Offset bond : {Offset(3), Offset(40)}) {
+    History history = state.assembler.initial_history();
+    std::vector<double> borne = borne_stretches(state.body.model, history);
+    double taken = 0.0;
+    int teeth = 0;
+    while (std::isfinite(borne[std::size_t(bond)])) {
+      const std::vector<UtilisedBond> one{{bond, 0, 1.0, 0.0}};
+      const BondDrops dropped = drop(state.assembler, {state.u, history, Damage::held}, borne, one);
+      history = state.assembler.history_of(dropped.histories);
+      borne = dropped.borne;
+      taken += dropped.dissipated;
+      ++teeth;
+    }
+    const double expected = bonds.weight(bond) * bonds.length(bond) * 0.5 * 0.005 * 0.02;
+    EXPECT_NEAR(taken, expected, 1e-12 * expected);
+    EXPECT_GT(teeth, 2);
+  }
+}
+
+/// Along a line of stretches the square of the drive is the polynomial that it says, it is that of
+/// the growth of damage, and does not depend on threads.
+TEST_P(ReleaseOfPoisson, DrivesAlongALine) {
+  const auto [d, nu] = GetParam();
+  OnTeeth state(d, nu), on_threads(d, nu, 3);
+  const auto count = std::size_t(state.body.model.bonds().count());
+  const std::vector<double> s = Random(3).vector(count, 0.01), rate = Random(4).vector(count, 0.3);
+  const auto drives = [&](OnTeeth& of, double step, bool moves) {
+    std::vector<BondDrive> all(count);
+    for (std::size_t b = 0; b < count; ++b) {
+      all[b].stretch = s[b] + step * rate[b];
+      all[b].rate = moves ? rate[b] : 0.0;
+    }
+    of.assembler.drive(of.at(), all);
+    return all;
+  };
+  const std::vector<BondDrive> line = drives(state, 0.0, true),
+                               same = drives(on_threads, 0.0, true);
+  for (const double step : {-0.3, 0.01, 0.2}) {
+    const std::vector<BondDrive> there = drives(state, step, false);
+    for (std::size_t b = 0; b < count; ++b) {
+      const auto& c = line[b].squared;
+      const double expected = c[0] + step * (c[1] + step * c[2]);
+      EXPECT_NEAR(there[b].squared[0], expected, 1e-13);
+      EXPECT_EQ(line[b].squared, same[b].squared);
+    }
+  }
+  EXPECT_NEAR(largest_utilisation(state.assembler, state.at(), state.borne),
+              state.assembler.growth(state.at()).utilisation, 1e-12);
+}
+
+/// The square of a drive, where its stretch is positive.
+double square_at(const BondDrive& drive, double step) {
+  if (!(drive.stretch + step * drive.rate > 0.0)) return 0.0;
+  return drive.squared[0] + step * (drive.squared[1] + step * drive.squared[2]);
+}
+
+TEST(BondDrives, AreWithinTheirLimitsInTheRange) {
+  Random random(2);
+  int beyond = 0, both_sides = 0;
+  for (int k = 0; k < 2000; ++k) {
+    BondDrive drive{random.number(), k % 5 == 0 ? 0.0 : random.number()};
+    for (double& c : drive.squared) c = random.number();
+    if (k % 3 == 0) drive.squared[2] = 0.0;
+    const double limit = 0.5;
+    const auto is_beyond = [&](double step) { return square_at(drive, step) > limit * limit; };
+    const AdmissibleRange range = admissible_range(drive, limit);
+    SCOPED_TRACE(k);
+    if (!is_beyond(0.0)) {
+      ASSERT_LE(range.low, 0.0);
+      ASSERT_GE(range.high, 0.0);
+      both_sides += std::isfinite(range.low) && std::isfinite(range.high);
+    } else if (range.low <= range.high) {
+      ++beyond;
+      ASSERT_TRUE(range.low > 0.0 || range.high < 0.0);
+      if (drive.squared[1] > 0.0 && range.low > 0.0) {
+        for (double step = 0.0; step > -50.0; step -= 0.1) EXPECT_TRUE(is_beyond(step));
+      }
+    }
+    for (const double end : {range.low, range.high}) {
+      if (std::isinf(end)) continue;
+      const double small = 1e-7 * (1.0 + std::abs(end));
+      EXPECT_NE(is_beyond(end - small), is_beyond(end + small));
+    }
+    const double from = std::max(range.low, -50.0), to = std::min(range.high, 50.0);
+    const double nearest = std::abs(from) < std::abs(to) ? from : to;
+    for (int part = 1; part < 100; ++part) {
+      const double step = from + (to - from) * 0.01 * part;
+      if (!is_beyond(0.0)) {
+        EXPECT_FALSE(is_beyond(step));
+      }
+      // Nothing nearer on the way.
+      if (is_beyond(0.0) && range.low <= range.high) {
+        EXPECT_TRUE(is_beyond(0.01 * part * nearest));
+      }
+    }
+  }
+  EXPECT_GT(beyond, 100);
+  EXPECT_GT(both_sides, 20);
 }
 
 }  // namespace

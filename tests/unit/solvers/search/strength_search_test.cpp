@@ -51,7 +51,7 @@ struct Drawn : Problem {
     return search_strength(equilibrium, updated, state, step, NewtonOptions(), nobody);
   }
   [[nodiscard]] double utilisation(const Trial& trial) const {
-    return largest_utilisation(body.points, body.model, trial.at(Damage::held), borne, 1);
+    return largest_utilisation(assembler, trial.at(Damage::held), borne);
   }
   /// The state that a search by itself finds at the stage.
   [[nodiscard]] double distance_from_newton(const StrengthResult& found) {
@@ -75,11 +75,9 @@ struct Drawn : Problem {
   }
   /// Some of the most stretched bonds break.
   void break_bonds(std::size_t count) {
-    auto most = utilised_bonds(body.points, body.model, StateView(state, Damage::held), borne, 0.1,
-                               assembler.threads());
+    auto most = utilised_bonds(assembler, StateView(state, Damage::held), borne, 0.1);
     most.resize(count);
-    const BondDrops dropped =
-        drop(body.points, body.model, StateView(state, Damage::held), borne, most);
+    const BondDrops dropped = drop(assembler, StateView(state, Damage::held), borne, most);
     state.history = assembler.history_of(dropped.histories);
     borne = dropped.borne;
     updated.lose(dropped.stiffness);
@@ -178,8 +176,8 @@ TEST(UpdatedTangent, IsThatOfTheBodyWithoutWhatItHasLost) {
   tests::for_each_bond(drawn.body.model.bonds(), [&](Index i, Index, Offset bond) {
     if (bond % 9 == 4) some.push_back({bond, i, 1.0, 0.0});
   });
-  const BondDrops dropped = drop(drawn.body.points, drawn.body.model,
-                                 StateView(drawn.state, Damage::held), drawn.borne, some);
+  const BondDrops dropped =
+      drop(drawn.assembler, StateView(drawn.state, Damage::held), drawn.borne, some);
   drawn.state.history = drawn.assembler.history_of(dropped.histories);
   drawn.updated.lose(dropped.stiffness);
   ASSERT_TRUE(drawn.updated.is_there());

@@ -1,0 +1,321 @@
+#include "assembly/borne_stretches.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "assembly/terms/damage.hpp"
+#include "src/core/threads.hpp"
+#include "src/measures/length.hpp"
+
+namespace peristat {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// Calls visit(law) if the bonds can be damaged; law.of_bond(bond) is that of one of them.
+template <class Visit>
+void with_law(const Model& model, const Visit& visit) {
+  if (const BondFailure* const bonds = model.failing_bonds()) bonds->with_damage_law(visit);
+}
+
+/// The stretch of a bond and its rate along a direction.
+struct BondStretch {
+  double value = 0.0, rate = 0.0;
+};
+
+/// Kinematics of the bonds of a body at a state.
+template <int D>
+class BondLook {
+ public:
+  BondLook(const Points& points, const Bonds& bonds, const StateView& at)
+      : points_(points), bonds_(bonds), displacement_(at.displacement), free_(at.eigenstretch()) {}
+
+  /// @param direction rate of the displacement, or empty
+  [[nodiscard]] BondStretch along(Index i, Offset bond, std::span<const double> direction,
+                                  std::span<const double> free_rate) const {
+    const Index j = bonds_.partner[bond];
+    const auto found =
+        Length::at<D, double>(bonds_.inverse_length(bond), {difference(points_.reference, i, j)},
+                              {difference(displacement_, i, j)});
+    BondStretch stretch{found.relative_change - mean(free_, i, bond)};
+    if (direction.empty()) return stretch;
+    stretch.rate =
+        dot<D>(found.gradient[0], difference(direction, i, j)) * found.inverse_reference -
+        mean(free_rate, i, bond);
+    return stretch;
+  }
+
+ private:
+  [[nodiscard]] Vector<D, double> difference(std::span<const double> field, Index i,
+                                             Index j) const {
+    Vector<D, double> result;
+    for (int c = 0; c < D; ++c) {
+      result[c] = field[std::size_t(j) * D + c] - field[std::size_t(i) * D + c];
+    }
+    return result;
+  }
+  [[nodiscard]] double mean(std::span<const double> of_point, Index i, Offset bond) const {
+    return of_point.empty() ? 0.0 : 0.5 * (of_point[i] + of_point[bonds_.partner[bond]]);
+  }
+
+  const Points& points_;
+  const Bonds& bonds_;
+  std::span<const double> displacement_, free_;
+};
+
+/// Current unit vector along the bond between two points.
+Coordinates direction(const Points& points, const StateView& at, Index i, Index j) {
+  const std::size_t d = std::size_t(points.dimension);
+  Coordinates arm{};
+  for (std::size_t c = 0; c < d; ++c) {
+    const std::size_t from = std::size_t(i) * d + c, to = std::size_t(j) * d + c;
+    arm[c] =
+        points.reference[to] - points.reference[from] + at.displacement[to] - at.displacement[from];
+  }
+  const double length = std::hypot(arm[0], arm[1], arm[2]);
+  for (double& component : arm) component /= length;
+  return arm;
+}
+
+double driving(const BondStretch& stretch) { return stretch.value; }
+double driving(const BondDrive& drive) {
+  return drive.stretch > 0.0 ? std::sqrt(std::max(drive.squared[0], 0.0)) : 0.0;
+}
+
+AdmissibleRange admissible_range(const BondStretch& stretch, double limit) {
+  AdmissibleRange range;
+  const double way = (limit - stretch.value) / stretch.rate;
+  if (stretch.rate > 0.0) range.high = way;
+  if (stretch.rate < 0.0) range.low = way;
+  return range;
+}
+
+/// A line of states: the direction of the displacements, with the rate of the eigenstretches.
+struct Line {
+  std::span<const double> rate{}, eigenstretch_rate{};
+};
+
+/// Calls visit(thread, point, bond) for every bond with a finite borne stretch, on several threads;
+/// each thread visits consecutive bonds.
+template <class Visit>
+void for_each_bearing(const Assembler& body, std::span<const double> borne, const Visit& visit) {
+  const Bonds& bonds = body.model().bonds();
+  run_on_threads(body.threads(), [&](int thread) {
+    const std::ptrdiff_t count = bonds.points();
+    const Index first = Index(count * thread / body.threads());
+    const Index last = Index(count * (thread + 1) / body.threads());
+    for (Index i = first; i < last; ++i) {
+      for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+        if (borne[std::size_t(bond)] < infinite) visit(thread, i, bond);
+      }
+    }
+  });
+}
+
+/// Calls visit(look) with the kinematics of the bonds.
+template <class Visit>
+void look_at_bonds(const Assembler& body, const StateView& at, const Visit& visit) {
+  const Bonds& bonds = body.model().bonds();
+  switch (body.points().dimension) {
+    case 1:
+      return visit(BondLook<1>(body.points(), bonds, at));
+    case 2:
+      return visit(BondLook<2>(body.points(), bonds, at));
+    default:
+      return visit(BondLook<3>(body.points(), bonds, at));
+  }
+}
+
+bool fails_by_release(const Model& model) {
+  const BondFailure* const bonds = model.failing_bonds();
+  return bonds && bonds->drive() == DamageDrive::release;
+}
+
+std::vector<BondDrive> drives(Assembler& body, const StateView& at, const Line& line) {
+  const Bonds& bonds = body.model().bonds();
+  std::vector<BondDrive> all(std::size_t(bonds.count()));
+  look_at_bonds(body, at, [&](const auto& look) {
+#pragma omp parallel for num_threads(body.threads())
+    for (Index i = 0; i < bonds.points(); ++i) {
+      for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+        const auto [value, rate] = look.along(i, bond, line.rate, line.eigenstretch_rate);
+        all[std::size_t(bond)] = {value, rate};
+      }
+    }
+  });
+  body.drive(at, all);
+  return all;
+}
+
+/// Calls visit(thread, point, bond, drive) for every bond with a finite borne stretch, drive a
+/// BondStretch or a BondDrive.
+template <class Visit>
+void for_each_driven(Assembler& body, const StateView& at, std::span<const double> borne,
+                     const Line& line, const Visit& visit) {
+  if (fails_by_release(body.model())) {
+    const std::vector<BondDrive> all = drives(body, at, line);
+    for_each_bearing(body, borne, [&](int thread, Index i, Offset bond) {
+      visit(thread, i, bond, all[std::size_t(bond)]);
+    });
+    return;
+  }
+  look_at_bonds(body, at, [&](const auto& look) {
+    for_each_bearing(body, borne, [&](int thread, Index i, Offset bond) {
+      visit(thread, i, bond, look.along(i, bond, line.rate, line.eigenstretch_rate));
+    });
+  });
+}
+
+/// Roots of a x^2 + b x + c, without cancellation; those that are not finite are none.
+std::array<double, 2> roots(double a, double b, double c) {
+  const double root = std::sqrt(b * b - 4.0 * a * c);  // NaN: no roots
+  const double q = -0.5 * (b + std::copysign(root, b));
+  return {q / a, c / q};
+}
+
+}  // namespace
+
+std::vector<double> borne_stretches(const Model& model, const History& history) {
+  const std::span<const double> largest = bond_stretches(model, history);
+  std::vector<double> borne(largest.size());
+  with_law(model, [&](const auto& laws) {
+    for (std::size_t bond = 0; bond < borne.size(); ++bond) {
+      borne[bond] = model.bonds().weight(Offset(bond)) == 0.0
+                        ? infinite
+                        : laws.of_bond(Offset(bond)).borne(largest[bond]);
+    }
+  });
+  return borne;
+}
+
+bool fails_by_steps(const Model& model) {
+  bool all = model.failing_bonds() != nullptr;
+  with_law(model, [&](const auto& laws) {
+    for (Offset bond = 0; all && bond < model.bonds().count(); ++bond) {
+      all = falls_by_steps(laws.of_bond(bond).law);
+    }
+  });
+  return all;
+}
+
+AdmissibleRange admissible_range(const BondDrive& drive, double limit) {
+  const auto& [stretch, speed, squared] = drive;
+  const double above = squared[0] - limit * limit;
+  const auto [one, other] = roots(squared[2], squared[1], above);
+  // Between two of these steps the bond is either within its limit or beyond it.
+  std::array<double, 5> ends{-infinite, one, other, -stretch / speed, infinite};
+  for (double& end : ends) end = std::isnan(end) ? infinite : end;
+  std::ranges::sort(ends);
+  const auto is_beyond = [&](double step) {
+    return stretch + step * speed > 0.0 && above + step * (squared[1] + step * squared[2]) > 0.0;
+  };
+  const auto within = [](double low, double high) {
+    if (std::isinf(low)) return std::isinf(high) ? 0.0 : high - 1.0 - std::abs(high);
+    return std::isinf(high) ? low + 1.0 + std::abs(low) : 0.5 * (low + high);
+  };
+  const bool starts_beyond = is_beyond(0.0);
+  double previous = -infinite, next = infinite;  // the nearest ends at which that changes
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    if (!(ends[k] < ends[k + 1])) continue;
+    if (is_beyond(within(ends[k], ends[k + 1])) == starts_beyond) continue;
+    if (ends[k] >= 0.0) next = std::min(next, ends[k]);
+    if (ends[k + 1] <= 0.0) previous = ends[k + 1];
+  }
+  if (!starts_beyond) return {previous, next};
+  const bool goes_down = std::isinf(next) || (squared[1] > 0.0 && !std::isinf(previous));
+  return goes_down ? AdmissibleRange{-infinite, previous} : AdmissibleRange{next, infinite};
+}
+
+BondDrops drop(Assembler& body, const StateView& at, std::span<const double> borne,
+               std::span<const UtilisedBond> bonds) {
+  const Model& model = body.model();
+  const std::span<const double> before = bond_stretches(model, at.history);
+  BondDrops result{{before.begin(), before.end()}, {borne.begin(), borne.end()}};
+  const Bonds& network = model.bonds();
+  const bool is_by_release = fails_by_release(model);
+  with_law(model, [&](const auto& laws) {
+    for (const UtilisedBond& one : bonds) {
+      const Offset bond = one.bond;
+      const auto law = laws.of_bond(bond);
+      double& largest = result.histories[std::size_t(bond)];
+      const double after = borne_after(law.law, law.borne(largest));
+      const double volume = network.weight(bond) * network.length(bond);
+      const auto whole = [&](double kappa) {
+        auto potential = law.shape;
+        potential.modulus = law.modulus * law.integrity_after(kappa);
+        return potential(one.stretch);
+      };
+      const auto stored = whole(largest), left = whole(after);
+      result.dissipated += volume * (law.dissipated(after) - law.dissipated(largest));
+      if (!is_by_release) {
+        result.energy_lost += volume * (stored.value - left.value);
+        result.stiffness.push_back(
+            {bond, one.first_point, network.partner[bond],
+             direction(body.points(), at, one.first_point, network.partner[bond]),
+             (stored.second - left.second) * network.weight(bond) * network.inverse_length(bond)});
+      }
+      largest = after;
+      result.borne[std::size_t(bond)] = law.borne(after);
+      result.breaking += law.is_broken(after);
+    }
+  });
+  if (is_by_release) {
+    const History after = body.history_of(result.histories);
+    result.energy_lost = body.energy(at).energy -
+                         body.energy({at.displacement, after, at.damage, at.environment}).energy;
+  }
+  return result;
+}
+
+std::vector<UtilisedBond> utilised_bonds(Assembler& body, const StateView& at,
+                                         std::span<const double> borne, double least) {
+  std::vector<std::vector<UtilisedBond>> parts(static_cast<std::size_t>(body.threads()));
+  for_each_driven(body, at, borne, {}, [&](int thread, Index i, Offset bond, const auto& drive) {
+    const double stretch = driving(drive);
+    const double utilisation = stretch / borne[std::size_t(bond)];
+    if (utilisation >= least) {
+      parts[std::size_t(thread)].push_back({bond, i, utilisation, stretch});
+    }
+  });
+  std::vector<UtilisedBond> found;
+  for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());
+  std::ranges::sort(found, [](const UtilisedBond& a, const UtilisedBond& b) {
+    return std::tuple(-a.utilisation, a.bond) < std::tuple(-b.utilisation, b.bond);
+  });
+  return found;
+}
+
+AdmissibleRange admissible_range(Assembler& body, const StateView& at,
+                                 std::span<const double> borne, std::span<const double> rate,
+                                 std::span<const double> eigenstretch_rate, double share) {
+  const auto narrow = [](AdmissibleRange& range, const AdmissibleRange& by) {
+    range.low = std::max(range.low, by.low);
+    range.high = std::min(range.high, by.high);
+    range.utilisation = std::max(range.utilisation, by.utilisation);
+  };
+  std::vector<AdmissibleRange> parts(static_cast<std::size_t>(body.threads()));
+  for_each_driven(body, at, borne, {rate, eigenstretch_rate},
+                  [&](int thread, Index, Offset bond, const auto& drive) {
+                    const double strength = borne[std::size_t(bond)];
+                    AdmissibleRange of_bond = admissible_range(drive, share * strength);
+                    of_bond.utilisation = driving(drive) / strength;
+                    narrow(parts[std::size_t(thread)], of_bond);
+                  });
+  AdmissibleRange range;
+  for (const AdmissibleRange& part : parts) narrow(range, part);
+  return range;
+}
+
+double largest_utilisation(Assembler& body, const StateView& at, std::span<const double> borne) {
+  std::vector<double> parts(static_cast<std::size_t>(body.threads()), 0.0);
+  for_each_driven(body, at, borne, {}, [&](int thread, Index, Offset bond, const auto& drive) {
+    double& part = parts[std::size_t(thread)];
+    part = std::max(part, driving(drive) / borne[std::size_t(bond)]);
+  });
+  return *std::ranges::max_element(parts);
+}
+
+}  // namespace peristat
