@@ -65,6 +65,8 @@ void check_data(const DamageSpecification& damage, const std::string& table) {
   require_positive(damage.fracture_energy, table + "fracture_energy");
   require_positive(damage.fracture_toughness, table + "fracture_toughness");
   require_positive(damage.strength, table + "strength");
+  require_absent(damage.drive && !damage.breaks_bonds(), table + "drive",
+                 "is for laws by which bonds fail");
   if (damage.law == DamageLaw::none) {
     for (const std::string key :
          {"fracture_energy", "fracture_toughness", "strength", "critical", "stretches"}) {

@@ -22,6 +22,8 @@ double lame_ratio(const MaterialSpecification& material, int dimension) {
 void check_material(const MaterialSpecification& material, const std::string& key, int dimension) {
   check_solid_constants(material, key, dimension);
   if (material.damage.law == DamageLaw::none) return;
+  require(material.damage.drive != DamageDrive::stretch, key + ".damage.drive", "stretch",
+          "must be \"release\" with model \"state\"");
   require(lame_ratio(material, dimension) <= most_ratio * (1.0 + 1e-9), key + ".poisson_ratio",
           number_text(*material.poisson_ratio),
           "is too near 1/2 for damage with model \"state\": cracks would run far above their "
@@ -57,7 +59,7 @@ const Formulation& state_formulation() {
       .label = "\"state\"",
       .takes = {Option::plane, Option::poisson_ratio, Option::thermal_expansion,
                 Option::volume_correction, Option::surface_correction, Option::eigenstrains,
-                Option::pressures, Option::softening, Option::critical_stretch},
+                Option::pressures, Option::softening, Option::critical_stretch, Option::drive},
       .least_dimension = 2,
       .default_influence = InverseInfluence::name,
       .part_bonds = PartBonds::of_neighbours,
@@ -72,6 +74,7 @@ const Formulation& state_formulation() {
       .moduli = moduli_of_solid,
       .describe = describe_solid,
       .fracture_scale = scale_of_states,
+      .default_drive = [](const DamageSpecification&) { return DamageDrive::release; },
       .fracture_warning = warning_of_late_cracks};
   return formulation;
 }
