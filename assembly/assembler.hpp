@@ -51,8 +51,8 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   /// Commits a state: updates the history of every bond that the state damages. E is then the
   /// energy that is stored after the update. dE/dx, unless it is left out, has the bonds' forces,
   /// which the update does not change unless it is by release, and the forces of other terms after
-  /// they have lost stiffness with the bonds. Only accepted states are committed; relaxation that breaks bonds on the way
-  /// commits every iteration.
+  /// they have lost stiffness with the bonds. Only accepted states are committed; relaxation that
+  /// breaks bonds on the way commits every iteration.
   Evaluation commit(std::span<const double> displacement, History& history,
                     std::span<double> gradient = {}, const SharedEnvironment& environment = {});
 

@@ -356,7 +356,7 @@ namespace {
 void check_drives(const BodySpecification& of) {
   std::optional<DamageDrive> first;
   for_each_material(of, [&](const MaterialSpecification& material, const std::string& key) {
-    if (material.damage.law == DamageLaw::none) return;
+    if (!material.damage.breaks_bonds()) return;
     const DamageDrive drive = drive_of(formulation_of(of), material.damage);
     require(!first || drive == *first, key + ".damage.drive",
             drive == DamageDrive::release ? "release" : "stretch",

@@ -117,7 +117,7 @@ void resolve_drives(BodySpecification& of) {
   if (!takes(of, Option::drive)) return;
   for_each_material(of, [&](MaterialSpecification& material, const std::string&) {
     DamageSpecification& damage = material.damage;
-    if (damage.law != DamageLaw::none) damage.drive = drive_of(formulation, damage);
+    if (damage.breaks_bonds()) damage.drive = drive_of(formulation, damage);
   });
 }
 

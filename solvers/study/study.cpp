@@ -50,9 +50,15 @@ void refuse_modes_without_potential(const Body& body, const StudyOptions& option
 /// Refuses mode path for bodies whose points have states: it assumes that a body loses just what
 /// its bonds lose.
 void refuse_events_of_states(const Body& body, const StudyOptions& options) {
+  if (options.loading.mode != Mode::path) return;
   const OptionSet can = options_of(body.specification);
+  if (can.has(Option::events) && body.model.failing_bonds() && body.model.fails_in_avalanches()) {
+    throw InputError("loading.mode", std::string(options.loading.mode.name),
+                     "is for damage by stretch with this model; give drive = \"stretch\" in the "
+                     "table of its damage, or another mode");
+  }
   const bool loses_more = can.has(Option::critical_stretch) && !can.has(Option::events);
-  if (!loses_more || options.loading.mode != Mode::path) return;
+  if (!loses_more) return;
   throw InputError("loading.mode", std::string(options.loading.mode.name),
                    is_for(Option::events) +
                        ": when a bond of this model breaks, its points also lose dilatation");

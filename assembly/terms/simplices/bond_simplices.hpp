@@ -59,8 +59,9 @@ class BondSimplices {
   void find_apexes(Index i, Index j) {
     of_first_.clear();
     apexes_.clear();
-    below_.for_each_neighbour(bonds_, i,
-                              [&](Index k, Offset bond) { of_first_.push_back({k, bond, 0}); });
+    below_.for_each_neighbour(bonds_, i, [&](Index k, Offset bond) {
+      of_first_.push_back({k, bond, 0});
+    });
     auto next = of_first_.begin();
     below_.for_each_neighbour(bonds_, j, [&](Index k, Offset bond) {
       while (next != of_first_.end() && next->point < k) ++next;

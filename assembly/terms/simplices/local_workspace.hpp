@@ -248,13 +248,13 @@ struct LocalWorkspace {
   std::size_t stride_;
   bool is_degraded_ = false, has_eigenstretch_ = false;
   double own_eigenstretch_ = 0.0;
-  std::vector<double> eigenstretch_;    // of the partners
-  std::vector<double> own_integrity_;   // of the bonds to the partners
-  std::vector<double> pair_integrity_;  // of those between partners a < b
+  std::vector<double> eigenstretch_;                // of the partners
+  std::vector<double> own_integrity_;               // of the bonds to the partners
+  std::vector<double> pair_integrity_;              // of those between partners a < b
   std::vector<double> own_release_, pair_release_;  // what these would set free
-  AlignedVector<double> of_fixed_;      // [partner][width][lane]
-  AlignedVector<double> of_last_;       // [block][width][lane]
-  AlignedVector<double> hessian_;       // [partner][block][entry][lane]
+  AlignedVector<double> of_fixed_;                  // [partner][width][lane]
+  AlignedVector<double> of_last_;                   // [block][width][lane]
+  AlignedVector<double> hessian_;                   // [partner][block][entry][lane]
 };
 
 }  // namespace peristat

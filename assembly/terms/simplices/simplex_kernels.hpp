@@ -293,8 +293,8 @@ struct SimplexKernels {
         const RowRange other = a.threads.ranges[std::size_t(earlier)];
         const Offset last = bonds.offset[std::min(range.last, other.touched_end)];
         for (Offset bond = bonds.offset[range.first]; bond < last; ++bond) {
-          of_bond[std::size_t(bond)] += a.releases_beyond[std::size_t(
-              earlier)][std::size_t(bond - bonds.offset[other.last])];
+          of_bond[std::size_t(bond)] +=
+              a.releases_beyond[std::size_t(earlier)][std::size_t(bond - bonds.offset[other.last])];
         }
       }
     };

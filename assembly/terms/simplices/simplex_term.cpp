@@ -71,8 +71,8 @@ class SimplexPasses : public TermPasses, BlockTangent {
       failure_.with_damage_law([&](const auto& law) {
         const auto bond = std::size_t(one.bond);
         const Index j = term_.bonds().partner[one.bond];
-        const double release = simplices_of_bond().release(one.point, j, at.displacement,
-                                                           influences());
+        const double release =
+            simplices_of_bond().release(one.point, j, at.displacement, influences());
         const auto& of_bond = law.of_bond(one.bond);
         double& stretch = history.change(slot_of_bonds_)[bond];
         const double driving = equivalent_stretch(of_bond, one.bond, one.stretch, release);

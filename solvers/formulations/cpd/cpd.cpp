@@ -17,8 +17,9 @@ namespace {
 /// depend on its triangles and tetrahedra.
 FractureScale scale_by_release(FractureScale scale, const MaterialSpecification& material,
                                const std::string& key, const BondSetting& setting) {
-  scale.crossing =
-      CpdTear(setting, scale.spacing, {scale.micromodulus, 0.0, 0.0}).mean_crossing();
+  scale.tear =
+      std::make_shared<CpdTear>(setting, scale.spacing, CpdConstants{scale.micromodulus, 0.0, 0.0});
+  scale.crossing = scale.tear->mean_crossing();
   if (!material.damage.strength) return scale;
   throw InputError(key + ".damage.strength", number_text(*material.damage.strength),
                    "is not known with drive = \"release\" of cpd; give onset, or drive = "

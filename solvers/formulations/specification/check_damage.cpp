@@ -18,6 +18,7 @@ bool is_given(const DamageSpecification& damage, std::string_view key) {
   if (key == "critical") return damage.critical != 0.0;
   if (key == "onset") return damage.onset != 0.0;
   if (key == "stretches") return !damage.stretches.empty();
+  if (key == "drive") return damage.drive.has_value();
   if (key == "forces") return !damage.forces.empty();
   return key == "peak" && damage.peak != 0.0;
 }
@@ -65,11 +66,9 @@ void check_data(const DamageSpecification& damage, const std::string& table) {
   require_positive(damage.fracture_energy, table + "fracture_energy");
   require_positive(damage.fracture_toughness, table + "fracture_toughness");
   require_positive(damage.strength, table + "strength");
-  require_absent(damage.drive && !damage.breaks_bonds(), table + "drive",
-                 "is for laws by which bonds fail");
   if (damage.law == DamageLaw::none) {
     for (const std::string key :
-         {"fracture_energy", "fracture_toughness", "strength", "critical", "stretches"}) {
+         {"fracture_energy", "fracture_toughness", "strength", "critical", "stretches", "drive"}) {
       require_absent(is_given(damage, key), table + key, "needs a law");
     }
     return;
