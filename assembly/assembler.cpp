@@ -115,9 +115,25 @@ Evaluation Assembler::of_all(const Evaluation& mine, std::span<double> gradient)
   return sum_of(index_map_.ranks(), mine);
 }
 
+Evaluation Assembler::release(std::span<const double> displacement, History& history,
+                              const SharedEnvironment& environment) {
+  Evaluation found;
+  if (!model_.failing_bonds() || !model_.fails_in_avalanches()) return found;
+  bool is_known = false;
+  for_each_term([&](TermPasses& term, Write) {
+    const auto growth = term.release({displacement, history, Damage::grows, environment}, history);
+    if (!growth) return;
+    is_known = true;
+    found.growth = *growth;
+  });
+  if (!is_known) throw std::logic_error("Assembler: no term knows what bonds would set free");
+  found.moves_equilibrium = found.growth.degrading > 0;
+  return found;
+}
+
 Evaluation Assembler::commit(std::span<const double> displacement, History& history,
                              std::span<double> gradient, const SharedEnvironment& environment) {
-  Evaluation found;
+  Evaluation found = release(displacement, history, environment);
   for_each_term([&](TermPasses& term, Write how) {
     const Evaluation of_term = term.commit(displacement, environment, history, gradient, how);
     found += of_part(term, {displacement, history, Damage::grows, environment}, of_term);
@@ -128,7 +144,7 @@ Evaluation Assembler::commit(std::span<const double> displacement, History& hist
 Evaluation Assembler::commit_forces(std::span<const double> displacement, History& history,
                                     std::span<double> gradient,
                                     const SharedEnvironment& environment) {
-  Evaluation found;
+  Evaluation found = release(displacement, history, environment);
   for_each_term([&](TermPasses& term, Write how) {
     found += term.commit_forces(displacement, environment, history, gradient, how);
   });

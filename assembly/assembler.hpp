@@ -54,9 +54,9 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
 
   /// Commits a state: updates the history of every bond that the state damages. E is then the
   /// energy that is stored after the update. dE/dx, unless it is left out, has the bonds' forces,
-  /// which the update does not change, and the forces of other terms after they have lost stiffness
-  /// with the bonds. Only accepted states are committed; relaxation that breaks bonds on the way
-  /// commits every iteration.
+  /// which the update does not change unless it is by release, and the forces of other terms after
+  /// they have lost stiffness with the bonds. Only accepted states are committed; relaxation that
+  /// breaks bonds on the way commits every iteration.
   Evaluation commit(std::span<const double> displacement, History& history,
                     std::span<double> gradient = {}, const SharedEnvironment& environment = {});
 
@@ -114,6 +114,9 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   [[nodiscard]] double seconds_spent() const { return seconds_; }  ///< wall time of all calls [s]
 
  private:
+  /// Damages by release, if the model's bonds fail so. Returns its growth.
+  Evaluation release(std::span<const double> displacement, History& history,
+                     const SharedEnvironment& environment);
   /// Returns a term's evaluation, on a part of a body with the energy of owned points alone.
   [[nodiscard]] Evaluation of_part(TermPasses& term, const StateView& at, Evaluation found);
   /// Sums the ranks' evaluations to that of the whole body, and clears the forces of ghosts.

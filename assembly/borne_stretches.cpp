@@ -6,9 +6,9 @@
 #include <tuple>
 #include <utility>
 
+#include "assembly/terms/bonds/bond_look.hpp"
 #include "assembly/terms/damage.hpp"
 #include "src/core/threads.hpp"
-#include "src/measures/length.hpp"
 
 namespace peristat {
 namespace {
@@ -20,51 +20,6 @@ template <class Visit>
 void with_law(const Model& model, const Visit& visit) {
   if (const BondFailure* const bonds = model.failing_bonds()) bonds->with_damage_law(visit);
 }
-
-/// The stretch of a bond and its rate along a direction.
-struct BondStretch {
-  double value = 0.0, rate = 0.0;
-};
-
-/// Kinematics of the bonds of a body at a state.
-template <int D>
-class BondLook {
- public:
-  BondLook(const Points& points, const Bonds& bonds, const StateView& at)
-      : points_(points), bonds_(bonds), displacement_(at.displacement), free_(at.eigenstretch()) {}
-
-  /// @param direction rate of the displacement, or empty
-  [[nodiscard]] BondStretch along(Index i, Offset bond, std::span<const double> direction,
-                                  std::span<const double> free_rate) const {
-    const Index j = bonds_.partner[bond];
-    const auto found =
-        Length::at<D, double>(bonds_.inverse_length(bond), {difference(points_.reference, i, j)},
-                              {difference(displacement_, i, j)});
-    BondStretch stretch{found.relative_change - mean(free_, i, bond)};
-    if (direction.empty()) return stretch;
-    stretch.rate =
-        dot<D>(found.gradient[0], difference(direction, i, j)) * found.inverse_reference -
-        mean(free_rate, i, bond);
-    return stretch;
-  }
-
- private:
-  [[nodiscard]] Vector<D, double> difference(std::span<const double> field, Index i,
-                                             Index j) const {
-    Vector<D, double> result;
-    for (int c = 0; c < D; ++c) {
-      result[c] = field[std::size_t(j) * D + c] - field[std::size_t(i) * D + c];
-    }
-    return result;
-  }
-  [[nodiscard]] double mean(std::span<const double> of_point, Index i, Offset bond) const {
-    return of_point.empty() ? 0.0 : 0.5 * (of_point[i] + of_point[bonds_.partner[bond]]);
-  }
-
-  const Points& points_;
-  const Bonds& bonds_;
-  std::span<const double> displacement_, free_;
-};
 
 /// Current unit vector along the bond between two points.
 Coordinates direction(const Points& points, const StateView& at, Index i, Index j) {

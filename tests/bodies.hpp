@@ -81,6 +81,7 @@ struct BoxSetting {
   /// Stiffness of triangles and tetrahedra relative to that of the bonds, roughly; 0: none.
   double triangles = 0.0, tetrahedra = 0.0;
   bool stored = false;  ///< store the triangles and tetrahedra
+  DamageDrive drive = DamageDrive::stretch;
   /// Potential of the bonds as a function of their micromodulus; empty: Harmonic.
   std::function<BondPotential(double micromodulus)> potential{};
 };
@@ -133,7 +134,7 @@ struct BoxBody {
       : points(std::move(from)),
         setting(bond_setting(box)),
         model(make_bonds(points, box.quadrature.surface, setting, threads),
-              bond_potential(box, setting)) {
+              bond_potential(box, setting), {}, box.drive) {
     auto triangles = simplices<Area>(box.triangles, box, threads);
     auto tetrahedra = simplices<Volume>(box.tetrahedra, box, threads);
     if (triangles || tetrahedra) {
@@ -174,7 +175,8 @@ struct BoxBody {
 
   /// Other bonds with the same potentials.
   void replace_bonds(Bonds bonds, std::vector<char> never_fails = {}) {
-    Model changed(std::move(bonds), potential(), std::move(never_fails));
+    Model changed(std::move(bonds), potential(), std::move(never_fails),
+                  model.bond_failure()->drive());
     if (const SimplexTerm* const simplices = simplex_term()) {
       changed.add(std::make_shared<SimplexTerm>(changed.bond_failure(), simplices->triangles(),
                                                 simplices->tetrahedra()));

@@ -7,10 +7,11 @@
 
 namespace peristat {
 
-Model::Model(Bonds network, BondPotential potential, std::vector<char> never_fails)
+Model::Model(Bonds network, BondPotential potential, std::vector<char> never_fails,
+             DamageDrive drive)
     : Model(std::make_shared<BondTerm>(
           std::make_shared<BondFailure>(std::make_shared<const Bonds>(std::move(network)),
-                                        std::move(potential), std::move(never_fails)))) {}
+                                        std::move(potential), std::move(never_fails), drive))) {}
 
 Model::Model(std::shared_ptr<Term> term) : failure_(term->failure()), terms_{std::move(term)} {
   if (!failure_) throw std::logic_error("a model is made with a term that has a failure model");

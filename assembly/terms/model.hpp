@@ -22,7 +22,9 @@ class Model {
 
   /// Bonds with the energy sum_b w psi(l; L).
   /// @param never_fails per bond, 1: no damage whatever the stretch; empty: none
-  Model(Bonds network, BondPotential potential, std::vector<char> never_fails = {});
+  /// @param drive by release only beside a term that lowers their integrities
+  Model(Bonds network, BondPotential potential, std::vector<char> never_fails = {},
+        DamageDrive drive = DamageDrive::stretch);
 
   /// A term that has a failure model, and the network of that.
   /// @throws std::logic_error if it has none

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,6 +39,12 @@ class TermPasses {
                             const SharedEnvironment& environment, History& history,
                             std::span<double> gradient, Write how) {
     return this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
+  }
+
+  /// Lowers the integrities of the bonds that the state damages by release, before the terms
+  /// commit: the forces of all of them depend on it. Nothing: it is no matter of this term.
+  virtual std::optional<DamageGrowth> release(const StateView& /*at*/, History& /*history*/) {
+    return std::nullopt;
   }
 
   /// As `commit`, but the energy may be left out.

@@ -197,6 +197,9 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
           {{"continuum", Calibration::continuum}, {"lattice", Calibration::lattice}}));
   add("--influence", material.influence, "influence function, as in case files");
   add_of_bonds("--micromodulus", material.micromodulus, "bond: c [N/m6]");
+  add("--drive", damage.drive, "cpd: release (default with --fracture-energy) or stretch")
+      ->transform(names<DamageDrive>(
+          {{"release", DamageDrive::release}, {"stretch", DamageDrive::stretch}}));
   add("--law", damage.law, "law of damage, as in case files")
       ->transform(names<Law>({{"critical_stretch", Law::critical_stretch},
                               {"tanh", Law::tanh},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "solvers/formulations/formulations.hpp"
@@ -351,6 +352,20 @@ void check_material(const MaterialSpecification& material, const std::string& ke
 
 namespace {
 
+/// Refuses materials whose damage is driven differently: bonds between them would have no rule.
+void check_drives(const BodySpecification& of) {
+  std::optional<DamageDrive> first;
+  for_each_material(of, [&](const MaterialSpecification& material, const std::string& key) {
+    if (!material.damage.breaks_bonds()) return;
+    const DamageDrive drive = drive_of(formulation_of(of), material.damage);
+    require(!first || drive == *first, key + ".damage.drive",
+            drive == DamageDrive::release ? "release" : "stretch",
+            "must be the same for all materials of a body, but another one has the other drive; "
+            "without this key a fracture energy means release, and stretches mean stretch");
+    first = drive;
+  });
+}
+
 void check_all_materials(const BodySpecification& of, int dimension, const OptionSet& options) {
   for (const auto& [option, key, is_given] : options_of_body) {
     require_absent(is_given(of) && !options.has(option), key, is_for(option));
@@ -359,6 +374,7 @@ void check_all_materials(const BodySpecification& of, int dimension, const Optio
     check_material_of(of.material, "material", dimension, formulation_of(of), options);
   }
   check_regions(of, dimension, options);
+  check_drives(of);
   check_mirrored_fibres(of, dimension);
   if (of.horizon_per_size != 0.0) check_for_horizons(of);
 }

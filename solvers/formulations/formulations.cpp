@@ -107,6 +107,20 @@ std::string is_for(Option option) {
   return text;
 }
 
+DamageDrive drive_of(const Formulation& formulation, const DamageSpecification& damage) {
+  if (damage.drive) return *damage.drive;
+  return formulation.default_drive ? formulation.default_drive(damage) : DamageDrive::stretch;
+}
+
+void resolve_drives(BodySpecification& of) {
+  const Formulation& formulation = formulation_of(of);
+  if (!takes(of, Option::drive)) return;
+  for_each_material(of, [&](MaterialSpecification& material, const std::string&) {
+    DamageSpecification& damage = material.damage;
+    if (damage.breaks_bonds()) damage.drive = drive_of(formulation, damage);
+  });
+}
+
 FractureScale fracture_scale_of(const MaterialSpecification& material, const std::string& key,
                                 const BondSetting& setting, double spacing) {
   const Formulation& formulation = formulation_of(material);
@@ -161,7 +175,8 @@ void find_stretches(const Formulation& formulation, MaterialSpecification& mater
   if (material.damage.law == DamageLaw::table)
     material.damage = with_stretches(material.damage, key, {});
   if (!material.damage.is_by_data()) return;
-  if (formulation.crack_energy_of_dilation) {
+  const bool is_by_stretch = drive_of(formulation, material.damage) == DamageDrive::stretch;
+  if (formulation.crack_energy_of_dilation && is_by_stretch) {
     const double energy = formulation.crack_energy_of_dilation(material, key, setting, spacing);
     material.damage.critical = std::sqrt(*material.damage.fracture_energy / energy);
     material.damage.fracture_energy.reset();
@@ -180,6 +195,7 @@ void find_stretches(const Formulation& formulation, MaterialSpecification& mater
 BodySpecification with_stretches(BodySpecification of, const BondSetting& setting, double spacing,
                                  double fineness) {
   const Formulation& formulation = formulation_of(of);
+  resolve_drives(of);
   for_each_material(of, [&](MaterialSpecification& material, const std::string& key) {
     find_stretches(formulation, material, key, setting, spacing, fineness);
   });

@@ -35,6 +35,12 @@ struct ModelName {
 /// "is for models \"bond\" and \"cpd\"": those that take the option.
 [[nodiscard]] std::string is_for(Option option);
 
+/// What drives the damage of a material of the formulation.
+[[nodiscard]] DamageDrive drive_of(const Formulation& formulation,
+                                   const DamageSpecification& damage);
+/// Says in each material with a law what drives its damage, where there is a choice.
+void resolve_drives(BodySpecification& of);
+
 /// Scale of the fracture energy and strength of a material without fibres, of a formulation with
 /// such a scale.
 [[nodiscard]] FractureScale fracture_scale_of(const MaterialSpecification& material,

@@ -264,7 +264,7 @@ double CpdTear::mean_crossing() const {
 
 double CpdTear::mean_energy(const AnyLaw& law) const {
   double sum = c1_ * mean_crossing() * law.work(Harmonic{1.0}, law.critical());
-  if (triangles_.empty() && tetrahedra_.empty()) return sum;
+  if (is_of_bonds_alone()) return sum;
   for (const auto& [normal, weight] : sector_directions(dimension_)) {
     sum += weight * of_simplices(law, normal);
   }

@@ -38,6 +38,9 @@ class CpdTear {
   /// Number of quadrature points that one mean takes for a law.
   [[nodiscard]] double quadrature_points(const AnyLaw& law) const;
 
+  /// True if there are no triangles and tetrahedra: G is then C1 A(n) M(s_c).
+  [[nodiscard]] bool is_of_bonds_alone() const { return triangles_.empty() && tetrahedra_.empty(); }
+
   /// Mean A of the bonds [m5].
   [[nodiscard]] double mean_crossing() const;
 

@@ -92,6 +92,12 @@ class Interactions {
   void for_each_group(const LocalNeighbourhood<D>& local, InteractionScratch& scratch,
                       const Visit& visit) const;
 
+  /// The interaction of these points, ascending, as the first lane of a block; without weight if
+  /// they have none.
+  template <int D>
+  [[nodiscard]] InteractionBlock of_points(
+      const Points& points, const std::array<Index, Measure::arms + 1>& ascending) const;
+
  private:
   struct StoredGroup {
     std::array<std::int32_t, fixed> partners;
@@ -210,6 +216,35 @@ void Interactions<Measure>::apply_factors(const UpperNeighbourhood& upper, const
     const Index last = upper.points()[std::size_t(block.first + l)];
     block.weight[l] *= factors_.factor[row * kinds + factors_.of_point[std::size_t(last)]];
   }
+}
+
+template <class Measure>
+template <int D>
+InteractionBlock Interactions<Measure>::of_points(
+    const Points& points, const std::array<Index, Measure::arms + 1>& ascending) const {
+  InteractionBlock block{{1.0, 1.0, 1.0, 1.0}, {}, 0, 0};
+  const Index own = ascending.front();
+  if (own >= own_) return block;
+  Arms<Measure::arms, D, Lanes> arms;
+  Vector<2, Lanes> shares{shares_[own], cell_shares_[own]};
+  for (std::size_t a = 0; a < Measure::arms; ++a) {
+    const Index partner = ascending[a + 1];
+    shares = plus<2>(shares, {shares_[partner], cell_shares_[partner]});
+    for (int c = 0; c < D; ++c) {
+      arms[a][c] = points.reference[std::size_t(partner) * D + c] -
+                   points.reference[std::size_t(own) * D + c];
+    }
+  }
+  InteractionBlock found = block;
+  if (!make_block<D>(arms, shares, 1U, found)) return block;
+  if (kernel_.influence) apply_influence<D>(arms, found);
+  if (factors_.factor.empty()) return found;
+  std::size_t row = 0;
+  for (const Index point : ascending) {
+    row = row * factors_.kinds + factors_.of_point[std::size_t(point)];
+  }
+  found.weight[0] *= factors_.factor[row];
+  return found;
 }
 
 template <class Measure>

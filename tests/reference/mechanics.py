@@ -142,6 +142,22 @@ class Mechanics:
                 kept *= [integrity[number[code]] for code in self.body.codes(tuples[:, [a, b]]).tolist()]
         return kept
 
+    def equivalent_stretches(self, u, history):
+        """Of stretched bonds, by the energy that a loss of their integrity would set free with all that stands on them:
+        sqrt(2 max(Y, 0) / (w L C1)), Y = dE/dT at fixed u."""
+        stretch, number = self.stretch(u), self.body.bond_number
+        integrity, released = self.integrity(history), numpy.zeros(len(self.body.bonds))
+        for order in sorted(set(self.reference_arms) - {1}):
+            tuples = self.body.tuples[order]
+            energy = self.body.constants[order] * self.body.weight[order] * numpy.abs(self.body.measure[order])
+            energy = energy * self.change(order, u) ** 2 / 2
+            sides = itertools.combinations(range(order + 1), 2)
+            bonds = numpy.array([[number[code] for code in self.body.codes(tuples[:, ends]).tolist()] for ends in map(list, sides)])
+            for k, bond in enumerate(bonds):
+                numpy.add.at(released, bond, energy * integrity[numpy.delete(bonds, k, axis=0)].prod(axis=0))
+        squared = stretch**2 + 2 * released / (self.body.constants[1] * self.body.weight[1] * self.body.lengths)
+        return numpy.sqrt(numpy.maximum(numpy.where(stretch > 0, squared, 0), 0))
+
     # ---- sums over the body ----------------------------------------------------------------------
 
     def energies(self, u, history, held=False):

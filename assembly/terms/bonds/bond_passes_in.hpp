@@ -82,7 +82,7 @@ auto BondPassesIn<dimension>::dispatch(const StateView& at, const Body& body) co
             throw std::logic_error("bonds that can be damaged are evaluated after their history");
           }
           P law = potential;
-          law.holds_damage = at.damage == Damage::held;
+          law.holds_damage = at.damage == Damage::held || failure_.fails_in_avalanches();
           return with_law(law, history.data());
         } else {
           return with_law(potential, nullptr);
@@ -121,8 +121,9 @@ template <bool with_energy>
 Evaluation BondPassesIn<dimension>::commit(std::span<const double> displacement,
                                            const SharedEnvironment& environment, History& history,
                                            std::span<double> gradient, Write how) {
-  const bool can_fail = failure_.can_fail();
   const StateView at{displacement, history, Damage::grows, environment};
+  if (failure_.fails_in_avalanches()) return this->gradient(at, gradient, how);
+  const bool can_fail = failure_.can_fail();
   double* const to_change = can_fail ? history.change(slot_).data() : nullptr;
   return dispatch(
       at, [&]<class P>(const P& law, const double* largest_stretch, const auto& eigenstretch) {
@@ -138,7 +139,7 @@ Evaluation BondPassesIn<dimension>::commit(std::span<const double> displacement,
 
 template <int dimension>
 DamageGrowth BondPassesIn<dimension>::growth(const StateView& at) {
-  if (!failure_.can_fail()) return {};
+  if (!failure_.can_fail() || failure_.fails_in_avalanches()) return {};
   return dispatch(
       at, [&]<class P>(const P& law, const double* largest_stretch, const auto& eigenstretch) {
         if constexpr (PotentialWithHistory<P>) {

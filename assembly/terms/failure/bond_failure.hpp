@@ -6,21 +6,25 @@
 #include <variant>
 #include <vector>
 
+#include "assembly/terms/failure/damage_drive.hpp"
 #include "assembly/terms/failure/failure_model.hpp"
 #include "src/potentials/potential.hpp"
 
 namespace peristat {
 
-/// What drives the damage of a bond.
-enum class DamageDrive {
-  stretch,  ///< its stretch s
-  release   ///< what its loss would set free, as an equivalent stretch: see StateTerm
-};
-
 /// Bonds that fail by their stretch, if their potential is one of damage, or by an equivalent one.
 ///
 /// The history is the largest (equivalent) stretch of each bond over the committed states, as far
 /// as it has damaged the bond: 0 before, Degraded::never_fails where that is said.
+///
+/// By release a bond is driven by what the energy Pi of all terms would lose with it. With its
+/// integrity T, weight w, length L, modulus C and stretch s
+///
+///   Y = dPi/dT,   s_eq = sqrt(2 max(Y, 0) / (w L C)) if s > 0, otherwise 0,
+///
+/// takes the place of s in the law. A bond thus takes w L C times the work of its law, whatever
+/// else is lost with it, and no loss sets less free than the bond takes. Integrities are constant
+/// in a search: the term that knows all of Y lowers them, see TermPasses::release.
 class BondFailure final : public FailureModel {
  public:
   /// @param never_fails per bond, 1: no damage whatever the stretch; empty: none

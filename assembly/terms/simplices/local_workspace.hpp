@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstddef>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "src/core/aligned_vector.hpp"
@@ -18,6 +19,12 @@ struct Influences {
   std::span<const double> of_point;      ///< smallest integrity of a point's bonds
   std::span<const double> eigenstretch;  ///< of points
 };
+
+/// Relative change m/M - 1 of an area or a volume whose points grow freely by this eigenstretch.
+template <int arms, class Real>
+[[nodiscard]] Real free_growth(const Real& stretch) {
+  return arms == 2 ? stretch * (2.0 + stretch) : stretch * (3.0 + stretch * (3.0 + stretch));
+}
 
 /// Sums of one thread over the interactions of one point with the partners above it. Everything is
 /// a function of the arms alone: sums belong to partners, and the point's own part follows from
@@ -90,8 +97,62 @@ struct LocalWorkspace {
     for (const int partner : fixed) known += eigenstretch_[std::size_t(partner)];
     const Lanes last(&eigenstretch_[std::size_t(block.first)]);
     constexpr int arms = MeasureAt::arms;
-    const Lanes mean = (known + last) / double(arms + 1);
-    measure.relative_change -= arms == 2 ? mean * (2.0 + mean) : mean * (3.0 + mean * (3.0 + mean));
+    measure.relative_change -= free_growth<arms>((known + last) / double(arms + 1));
+  }
+
+  /// Clears what bonds would set free.
+  void clear_releases() {
+    const std::size_t count = std::size_t(local.upper.count());
+    own_release_.resize(own_integrity_.size());
+    pair_release_.resize(pair_integrity_.size());
+    std::fill_n(own_release_.begin(), stride_, 0.0);
+    std::fill_n(pair_release_.begin(), count * stride_, 0.0);
+  }
+
+  /// Adds to each edge of a block's interactions their energies, these without integrities, times
+  /// the integrities of the other edges.
+  template <class Group>
+  void add_releases(const Group& group, const InteractionBlock& block, const Lanes& energy) {
+    constexpr std::size_t fixed = std::tuple_size_v<decltype(group.partners)>;
+    constexpr std::size_t edges = fixed == 1 ? 3 : 6;
+    struct Edge {
+      std::size_t place;  // of the first lane in the point's own bonds or in those of pairs
+      bool is_own, is_fixed;
+    };
+    std::array<Edge, edges> edge;
+    std::size_t count = 0;
+    const auto last = std::size_t(block.first);
+    edge[count++] = {last, true, false};
+    for (std::size_t p = 0; p < fixed; ++p) {
+      const std::size_t row = std::size_t(group.partners[p]) * stride_;
+      edge[count++] = {std::size_t(group.partners[p]), true, true};
+      edge[count++] = {row + last, false, false};
+      for (std::size_t q = p + 1; q < fixed; ++q) {
+        edge[count++] = {row + std::size_t(group.partners[q]), false, true};
+      }
+    }
+    std::array<Lanes, edges> integrity{};
+    for (std::size_t k = 0; k < edges && is_degraded_; ++k) {
+      const double* at = &(edge[k].is_own ? own_integrity_ : pair_integrity_)[edge[k].place];
+      integrity[k] = edge[k].is_fixed ? Lanes(*at) : Lanes(at);
+    }
+    for (std::size_t k = 0; k < edges; ++k) {
+      Lanes release = energy;
+      for (std::size_t other = 0; other < edges && is_degraded_; ++other) {
+        if (other != k) release *= integrity[other];
+      }
+      double* to = &(edge[k].is_own ? own_release_ : pair_release_)[edge[k].place];
+      if (edge[k].is_fixed) {
+        *to += sum(release);
+      } else {
+        add_lanes(to, release);
+      }
+    }
+  }
+
+  [[nodiscard]] double own_release(int a) const { return own_release_[std::size_t(a)]; }
+  [[nodiscard]] double pair_release(int a, int b) const {
+    return pair_release_[std::size_t(a) * stride_ + std::size_t(b)];
   }
 
   void clear(int width) {
@@ -187,12 +248,13 @@ struct LocalWorkspace {
   std::size_t stride_;
   bool is_degraded_ = false, has_eigenstretch_ = false;
   double own_eigenstretch_ = 0.0;
-  std::vector<double> eigenstretch_;    // of the partners
-  std::vector<double> own_integrity_;   // of the bonds to the partners
-  std::vector<double> pair_integrity_;  // of those between partners a < b
-  AlignedVector<double> of_fixed_;      // [partner][width][lane]
-  AlignedVector<double> of_last_;       // [block][width][lane]
-  AlignedVector<double> hessian_;       // [partner][block][entry][lane]
+  std::vector<double> eigenstretch_;                // of the partners
+  std::vector<double> own_integrity_;               // of the bonds to the partners
+  std::vector<double> pair_integrity_;              // of those between partners a < b
+  std::vector<double> own_release_, pair_release_;  // what these would set free
+  AlignedVector<double> of_fixed_;                  // [partner][width][lane]
+  AlignedVector<double> of_last_;                   // [block][width][lane]
+  AlignedVector<double> hessian_;                   // [partner][block][entry][lane]
 };
 
 }  // namespace peristat

@@ -252,6 +252,56 @@ struct SimplexKernels {
                                    [&](Index i, const double* total) { energies[i] += *total; });
   }
 
+  /// Writes what each bond would set free by its triangles and tetrahedra with its integrity, their
+  /// energy times the integrities of their other bonds [J].
+  static void releases(SimplexWorkspace<D>& a, Span displacement, const Influences& influences,
+                       std::vector<double>& of_bond) {
+    const Bonds& bonds = a.term.bonds();
+    of_bond.assign(std::size_t(bonds.count()), 0.0);
+    a.releases_beyond.resize(a.threads.ranges.size());
+    const auto body = [&](int thread, RowRange range, double*) {
+      LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
+      const Offset first_beyond = bonds.offset[range.last];
+      std::vector<double>& beyond = a.releases_beyond[std::size_t(thread)];
+      beyond.assign(std::size_t(bonds.offset[range.touched_end] - first_beyond), 0.0);
+      for (Index i = range.first; i < range.last; ++i) {
+        move_to(a, w, i, displacement, influences, true);
+        w.clear_releases();
+        for_each_kind(a.term, [&](auto kind, const auto& interactions, const auto& potential) {
+          using Measure = decltype(kind);
+          interactions.template for_each_group<D>(w.local, w.scratch, [&](const auto& group) {
+            BatchArms<Measure, D> arms(w, group);
+            for (const InteractionBlock& block : group.blocks) {
+              const auto psi =
+                  interaction_energy(Lanes(block.weight), potential, arms.measure(block));
+              w.add_releases(group, block, psi.value);
+            }
+          });
+        });
+        for (int k = 0; k < w.local.upper.count(); ++k) {
+          of_bond[std::size_t(bonds.offset[i] + k)] += w.own_release(k);
+        }
+        for (const UpperNeighbourhood::Pair& pair : w.local.upper.pairs()) {
+          double& to = pair.bond < first_beyond ? of_bond[std::size_t(pair.bond)]
+                                                : beyond[std::size_t(pair.bond - first_beyond)];
+          to += w.pair_release(pair.a, pair.b);
+        }
+      }
+    };
+    const auto add_spilled = [&](int thread, RowRange range) {
+      for (int earlier = 0; earlier < thread; ++earlier) {
+        const RowRange other = a.threads.ranges[std::size_t(earlier)];
+        const Offset last = bonds.offset[std::min(range.last, other.touched_end)];
+        for (Offset bond = bonds.offset[range.first]; bond < last; ++bond) {
+          of_bond[std::size_t(bond)] +=
+              a.releases_beyond[std::size_t(earlier)][std::size_t(bond - bonds.offset[other.last])];
+        }
+      }
+    };
+    a.threads.template sum_rows<1>(
+        body, [](Index, const double*) {}, add_spilled);
+  }
+
   /// Adds an equal share of every interaction's virial to each of its points: a pass per component
   /// of the force, as for bonds.
   static void add_virials(SimplexWorkspace<D>& a, Span displacement, const Influences& influences,

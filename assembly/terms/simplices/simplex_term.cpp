@@ -1,10 +1,16 @@
 #include "assembly/terms/simplices/simplex_term.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 
+#include "assembly/terms/bonds/bond_look.hpp"
+#include "assembly/terms/failure/one_by_one.hpp"
 #include "assembly/terms/model.hpp"
+#include "assembly/terms/simplices/bond_simplices.hpp"
 #include "assembly/terms/simplices/simplex_kernels.hpp"
 
 namespace peristat {
@@ -17,8 +23,10 @@ class SimplexPasses : public TermPasses, BlockTangent {
  public:
   SimplexPasses(const SimplexTerm& term, const TermSetting& setting)
       : term_(term),
+        failure_(term.bond_failure()),
         setting_(setting),
         slot_(setting.model.slot_of(term)),
+        slot_of_bonds_(setting.model.slot_of(term.bond_failure())),
         workspace_(term, setting) {}
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
@@ -28,6 +36,9 @@ class SimplexPasses : public TermPasses, BlockTangent {
 
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
                     History& history, std::span<double> gradient, Write how) override {
+    if (failure_.fails_in_avalanches()) {
+      return this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
+    }
     const History before = history;
     term_.follow(setting_.model, history);
     const auto after = [&](const History& past) {
@@ -43,6 +54,41 @@ class SimplexPasses : public TermPasses, BlockTangent {
       found.released = std::max(energy - left, 0.0);
     }
     return found;
+  }
+
+  DamageGrowth growth(const StateView& at) override {
+    if (!is_by_release()) return {};
+    return visit_driven(at, influences_at(at), [](int, const DrivenBond&) {});
+  }
+
+  std::optional<DamageGrowth> release(const StateView& at, History& history) override {
+    if (!is_by_release()) return std::nullopt;
+    std::vector<double> left;  // integrities of bonds and points
+    const auto influences = [&] { return influences_of(left, at); };
+    const auto find = [&](const auto& visit) { visit_driven(at, influences(), visit); };
+    const auto damage = [&](const DrivenBond& one, DamageGrowth& growth) {
+      if (left.empty()) left = integrities(at.history);
+      failure_.with_damage_law([&](const auto& law) {
+        const auto bond = std::size_t(one.bond);
+        const Index j = term_.bonds().partner[one.bond];
+        const double release =
+            simplices_of_bond().release(one.point, j, at.displacement, influences());
+        const auto& of_bond = law.of_bond(one.bond);
+        double& stretch = history.change(slot_of_bonds_)[bond];
+        const double driving = equivalent_stretch(of_bond, one.bond, one.stretch, release);
+        if (!damage_driven(of_bond, driving, stretch)) return;
+        left[bond] = of_bond.integrity_after(stretch);
+        for (const Index point : {one.point, j}) {
+          double& least = left[std::size_t(term_.bonds().count()) + std::size_t(point)];
+          least = std::min(least, left[bond]);
+        }
+        ++growth.degrading;
+        growth.breaking += of_bond.is_broken(stretch);
+      });
+    };
+    const DamageGrowth growth = damage_one_by_one(workspace_.threads.threads(), find, damage);
+    if (growth.degrading > 0) history.replace(slot_, std::move(left));
+    return growth;
   }
 
   [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
@@ -77,10 +123,74 @@ class SimplexPasses : public TermPasses, BlockTangent {
   using Kernels = SimplexKernels<D>;
 
   [[nodiscard]] Influences influences_at(const StateView& at) const {
-    const std::span<const double> integrity = at.history.of(slot_);
+    return influences_of(at.history.of(slot_), at);
+  }
+  /// @param integrity of bonds and points; empty: the history's
+  [[nodiscard]] Influences influences_of(std::span<const double> integrity,
+                                         const StateView& at) const {
+    if (integrity.empty()) integrity = at.history.of(slot_);
     if (integrity.empty()) return {{}, {}, at.eigenstretch()};
     const auto bonds = std::size_t(term_.bonds().count());
     return {integrity.first(bonds), integrity.subspan(bonds), at.eigenstretch()};
+  }
+
+  [[nodiscard]] bool is_by_release() const {
+    return failure_.can_fail() && failure_.fails_in_avalanches();
+  }
+
+  [[nodiscard]] std::vector<double> integrities(const History& history) const {
+    const std::span<const double> known = history.of(slot_);
+    if (!known.empty()) return {known.begin(), known.end()};
+    const Bonds& bonds = term_.bonds();
+    return std::vector<double>(std::size_t(bonds.count()) + std::size_t(bonds.points()), 1.0);
+  }
+
+  BondSimplices<D>& simplices_of_bond() {
+    if (!simplices_of_bond_) simplices_of_bond_.emplace(term_, setting_.points);
+    return *simplices_of_bond_;
+  }
+
+  /// s_eq of a bond of stretch s whose triangles and tetrahedra would set so much free [J].
+  template <class OfBond>
+  [[nodiscard]] double equivalent_stretch(const OfBond& of_bond, Offset bond, double stretch,
+                                          double release) const {
+    static_assert(std::is_same_v<decltype(OfBond::shape), Harmonic>);
+    const Bonds& bonds = term_.bonds();
+    if (!(stretch > 0.0)) return 0.0;
+    const double stiffness = bonds.weight(bond) * bonds.length(bond) * of_bond.modulus;
+    return std::sqrt(std::max(stretch * stretch + 2.0 * release / stiffness, 0.0));
+  }
+
+  /// Damage that committing the state would do by release.
+  /// @param visit(thread, DrivenBond) called for each bond whose damage would grow
+  template <class Visit>
+  DamageGrowth visit_driven(const StateView& at, const Influences& influences, const Visit& visit) {
+    Kernels::releases(workspace_, at.displacement, influences, releases_);
+    const Bonds& bonds = term_.bonds();
+    const BondLook<D> look(setting_.points, bonds, at);
+    const std::span<const double> history = at.history.of(slot_of_bonds_);
+    std::vector<Evaluation> found(workspace_.threads.ranges.size());
+    failure_.with_damage_law([&](const auto& law) {
+      run_on_threads(workspace_.threads.threads(), [&](int thread) {
+        const RowRange range = workspace_.threads.ranges[std::size_t(thread)];
+        DamageGrowth growth;
+        for (Index i = range.first; i < range.last; ++i) {
+          for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+            if (bonds.weight(bond) == 0.0) continue;
+            const auto& of_bond = law.of_bond(bond);
+            const double s = look.stretch(i, bond);
+            const double driving =
+                equivalent_stretch(of_bond, bond, s, releases_[std::size_t(bond)]);
+            judge_driven(of_bond, {0.0, i, bond, s}, driving, history[std::size_t(bond)], growth,
+                         [&](const DrivenBond& one) { visit(thread, one); });
+          }
+        }
+        found[std::size_t(thread)].growth = growth;
+      });
+    });
+    Evaluation all;
+    for (const Evaluation& of_thread : found) all += of_thread;
+    return all.growth;
   }
 
   /// Energy of the owned points of a part: summed over the ranks it counts each interaction once.
@@ -95,9 +205,12 @@ class SimplexPasses : public TermPasses, BlockTangent {
   }
 
   const SimplexTerm& term_;
+  const BondFailure& failure_;
   const TermSetting setting_;
-  std::size_t slot_;
+  std::size_t slot_, slot_of_bonds_;
   SimplexWorkspace<D> workspace_;
+  std::vector<double> releases_;                         // of bonds, by release
+  std::optional<BondSimplices<D>> simplices_of_bond_{};  // from the first driven bond on
 };
 
 /// True if some of them may store negative energy.
@@ -140,14 +253,18 @@ SimplexTerm::SimplexTerm(std::shared_ptr<const BondFailure> bonds,
       triangles_(std::move(triangles)),
       tetrahedra_(std::move(tetrahedra)),
       numbers_(std::move(numbers)) {
-  if (bonds_->can_fail() && (is_negative(triangles_) || is_negative(tetrahedra_))) {
+  if (bonds_->can_fail() && !bonds_->fails_in_avalanches() &&
+      (is_negative(triangles_) || is_negative(tetrahedra_))) {
     throw std::logic_error("what is lost with a bond must not hold negative energy");
   }
 }
 
 Balances SimplexTerm::balances() const {
   Balances balances;
-  balances.positive_energy = !is_negative(triangles_) && !is_negative(tetrahedra_);
+  // No loss by release creates energy, so that it stays positive where it is at rest.
+  const bool is_by_release = bonds_->can_fail() && bonds_->fails_in_avalanches();
+  balances.positive_energy =
+      is_by_release || (!is_negative(triangles_) && !is_negative(tetrahedra_));
   return balances;
 }
 
@@ -191,6 +308,10 @@ double SimplexTerm::stored_bytes() const {
   for_each_kind([&](const auto& kind) {
     if (kind.interactions.is_stored()) bytes += kind.interactions.stored_bytes();
   });
+  if (bonds_->can_fail() && bonds_->fails_in_avalanches()) {
+    // What bonds would set free, with the parts beyond threads' rows, and their lower neighbours.
+    bytes += double(bonds().count()) * (3.0 * sizeof(double) + sizeof(Index));
+  }
   return bytes;
 }
 

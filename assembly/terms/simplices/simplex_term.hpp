@@ -30,12 +30,20 @@ using PointNumbers = std::vector<GlobalIndex>;
 /// them. These are constant between commits, so that the product has no derivative, and forces and
 /// tangent are those of one energy. The history is the integrity of every bond, followed by that of
 /// every point, the smallest of its bonds'.
+///
+/// By stretch, their energy is lost as their bonds fail, whatever it was. By release, a bond is
+/// driven by what it would set free with all that stands on it,
+///
+///   Y_b = w_b psi_1(e_b) + sum over I on b of w_I psi_I times the integrities of I's other bonds,
+///
+/// so that constants may be negative: see BondFailure. The drop of energy is exactly Y_b times the
+/// loss of integrity, as the energy is linear in each of them.
 class SimplexTerm : public Term {
  public:
   /// @param bonds that are their edges
   /// @param numbers from which projected tangents choose the same origin of arms on all ranks
-  /// @throws std::logic_error for a negative constant if the bonds can be damaged: their loss would
-  ///         then raise the energy without any supply
+  /// @throws std::logic_error for a negative constant if the bonds can be damaged by stretch: their
+  ///         loss would then raise the energy without any supply
   SimplexTerm(std::shared_ptr<const BondFailure> bonds, std::optional<Simplices<Area>> triangles,
               std::optional<Simplices<Volume>> tetrahedra, PointNumbers numbers = {});
 
@@ -43,6 +51,7 @@ class SimplexTerm : public Term {
   [[nodiscard]] const std::optional<Simplices<Area>>& triangles() const { return triangles_; }
   [[nodiscard]] const std::optional<Simplices<Volume>>& tetrahedra() const { return tetrahedra_; }
 
+  [[nodiscard]] const BondFailure& bond_failure() const { return *bonds_; }
   [[nodiscard]] const PointNumbers& numbers() const { return numbers_; }
 
   /// Calls visit(simplices) for the triangles and for the tetrahedra, if there are any.

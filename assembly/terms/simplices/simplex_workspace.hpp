@@ -30,6 +30,8 @@ struct SimplexWorkspace {
   std::vector<std::unique_ptr<LocalWorkspace<D>>> local;  ///< per thread
   std::vector<std::vector<double>>
       blocks;  ///< per thread, off-diagonal blocks of rows last..touched_end
+  std::vector<std::vector<double>>
+      releases_beyond;  ///< per thread, of the bonds of these rows; empty without need
 
   /// Position of a bond's block in the pattern.
   [[nodiscard]] Offset place(Offset bond) const {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "assembly/terms/bond_drive.hpp"
 #include "assembly/terms/bonds/bond_kernels.hpp"
 #include "assembly/terms/bonds/bond_workspace.hpp"
+#include "assembly/terms/failure/one_by_one.hpp"
 #include "assembly/terms/states/state_network.hpp"
 #include "src/core/aligned_vector.hpp"
 #include "src/core/threads.hpp"
@@ -241,16 +243,8 @@ class StateKernels {
     });
   }
 
-  /// A bond that is driven beyond what it bears.
-  struct Driven {
-    double utilisation;
-    Index point;  ///< its first
-    Offset bond;
-    double stretch;  ///< s
-  };
-
   /// Damage that committing the state would do by release, after find_states of it.
-  /// @param visit(thread, Driven) called for each bond whose damage would grow
+  /// @param visit(thread, DrivenBond) called for each bond whose damage would grow
   template <class P, class E, class Visit>
   DamageGrowth growth_by_release(Span u, const P& law, const E& eigenstretch, const double* history,
                                  const Visit& visit) {
@@ -267,13 +261,8 @@ class StateKernels {
           const Lanes driving = equivalent_stretch(batch, i, s, drop);
           for (int l = 0; l < batch.count; ++l) {
             const Offset bond = batch.first + l;
-            const auto& of_bond = law.of_bond(bond);
-            const double utilisation = of_bond.utilisation(driving[l], history[bond]);
-            found.utilisation = std::max(found.utilisation, utilisation);
-            if (!grows(of_bond, driving[l], history[bond])) continue;
-            ++found.degrading;
-            found.breaking += of_bond.is_broken(driving[l]);
-            visit(thread, Driven{utilisation, i, bond, s[l]});
+            judge_driven(law.of_bond(bond), {0.0, i, bond, s[l]}, driving[l], history[bond], found,
+                         [&](const DrivenBond& one) { visit(thread, one); });
           }
         });
       }
@@ -326,7 +315,7 @@ class StateKernels {
   /// Damages a bond, if what the ones before it have left of the dilatations still drives it.
   /// Returns true if it has. The states are those of the present displacements and histories.
   template <class OfBond>
-  bool damage_by_release(const Driven& driven, const OfBond& of_bond, double& history) {
+  bool damage_by_release(const DrivenBond& driven, const OfBond& of_bond, double& history) {
     const auto bond = std::size_t(driven.bond);
     const auto i = std::size_t(driven.point), j = std::size_t(buffers_.bonds.partner[driven.bond]);
     const double s = driven.stretch, r = buffers_.bonds.length(driven.bond);
@@ -335,15 +324,12 @@ class StateKernels {
     const double stiffness = stiffness_[i] + stiffness_[j];
     const double whole = whole_[driven.bond].weight;
     const double squared = s * (s + 2.0 * p / q - drop * whole * r * s * stiffness / q);
-    // The digits that rounding of another order takes must not keep a bond from its damage.
-    const double driving =
-        s > 0.0 && squared > 0.0 ? std::sqrt(squared) * (1.0 + 0.5 * least_growth) : 0.0;
-    if (!of_bond.is_loading(driving, history)) return false;
-    const double lost = of_bond.integrity_after(history) - of_bond.integrity_after(driving);
-    history = driving;
-    integrity_[bond] -= lost;
+    const double driving = s > 0.0 && squared > 0.0 ? std::sqrt(squared) : 0.0;
+    const std::optional<double> lost = damage_driven(of_bond, driving, history);
+    if (!lost) return false;
+    integrity_[bond] -= *lost;
     for (const std::size_t end : {i, j}) {
-      ends_[2 * end + 1] -= stiffness_[end] * lost * whole * r * s;
+      ends_[2 * end + 1] -= stiffness_[end] * *lost * whole * r * s;
     }
     return true;
   }
@@ -387,16 +373,6 @@ class StateKernels {
   }
 
  private:
-  /// Relative growth of a history below which it counts as none: solving and damaging in turns
-  /// would never end otherwise.
-  static constexpr double least_growth = 1e-9;
-
-  /// True if a driving stretch would damage a bond noticeably.
-  template <class OfBond>
-  [[nodiscard]] static bool grows(const OfBond& of_bond, double driving, double history) {
-    return of_bond.is_loading(driving, history) && driving > history * (1.0 + least_growth);
-  }
-
   /// Equivalent stretches of bonds that would lose `drop` of their integrity,
   ///
   ///   s_eq^2 = s^2 + 2 (p_i + p_j) s / (q_i + q_j)
@@ -518,11 +494,7 @@ class StateKernels {
   /// Calls visit(neighbour, bond), neighbours ascending.
   template <class Visit>
   void for_neighbours(const StateNetwork& network, Index i, const Visit& visit) const {
-    for (Offset e = network.offset[i]; e < network.offset[i + 1]; ++e) {
-      visit(network.lower[e], network.bond[e]);
-    }
-    const Bonds& bonds = buffers_.bonds;
-    for (Offset b = bonds.offset[i]; b < bonds.offset[i + 1]; ++b) visit(bonds.partner[b], b);
+    network.for_each_neighbour(buffers_.bonds, i, visit);
   }
 
   [[nodiscard]] bool is_broken(Offset bond) const {

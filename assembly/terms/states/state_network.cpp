@@ -49,21 +49,9 @@ std::vector<double> moments_of(const Points& points, const Bonds& bonds) {
   return moment;
 }
 
-StateNetwork::StateNetwork(const Bonds& bonds, bool reaches_twice, int threads) {
+StateNetwork::StateNetwork(const Bonds& bonds, bool reaches_twice, int threads)
+    : LowerNeighbours(bonds) {
   const Index points = bonds.points();
-  offset.assign(std::size_t(points) + 1, 0);
-  for (const Index upper : bonds.partner) ++offset[std::size_t(upper) + 1];
-  for (Index i = 0; i < points; ++i) offset[i + 1] += offset[i];
-  std::vector<Offset> next(offset.begin(), offset.end() - 1);
-  lower.resize(std::size_t(bonds.count()));
-  bond.resize(std::size_t(bonds.count()));
-  for (Index i = 0; i < points; ++i) {
-    for (Offset b = bonds.offset[i]; b < bonds.offset[i + 1]; ++b) {
-      const auto place = std::size_t(next[bonds.partner[b]]++);
-      lower[place] = i;
-      bond[place] = b;
-    }
-  }
   if (!reaches_twice) {
     block_offset = bonds.offset;
     partner = bonds.partner;
@@ -81,16 +69,10 @@ StateNetwork::StateNetwork(const Bonds& bonds, bool reaches_twice, int threads) 
         };
         const auto meet_neighbours_of = [&](Index centre) {
           meet(centre);
-          for (Offset e = offset[centre]; e < offset[centre + 1]; ++e) meet(lower[e]);
-          for (Offset b = bonds.offset[centre]; b < bonds.offset[centre + 1]; ++b) {
-            meet(bonds.partner[b]);
-          }
+          for_each_neighbour(bonds, centre, [&](Index j, Offset) { meet(j); });
         };
         meet_neighbours_of(i);
-        for (Offset e = offset[i]; e < offset[i + 1]; ++e) meet_neighbours_of(lower[e]);
-        for (Offset b = bonds.offset[i]; b < bonds.offset[i + 1]; ++b) {
-          meet_neighbours_of(bonds.partner[b]);
-        }
+        for_each_neighbour(bonds, i, [&](Index j, Offset) { meet_neighbours_of(j); });
       }
     });
   };
@@ -98,7 +80,7 @@ StateNetwork::StateNetwork(const Bonds& bonds, bool reaches_twice, int threads) 
   for_rows([&](Index i, Index) { ++block_offset[std::size_t(i) + 1]; });
   for (Index i = 0; i < points; ++i) block_offset[i + 1] += block_offset[i];
   partner.resize(std::size_t(block_offset.back()));
-  next.assign(block_offset.begin(), block_offset.end() - 1);
+  std::vector<Offset> next(block_offset.begin(), block_offset.end() - 1);
   for_rows([&](Index i, Index j) { partner[std::size_t(next[i]++)] = j; });
   for (Index i = 0; i < points; ++i) {
     std::sort(partner.begin() + block_offset[i], partner.begin() + block_offset[i + 1]);

@@ -5,6 +5,7 @@
 #include "src/geometry/points.hpp"
 #include "src/materials/lame_constants.hpp"
 #include "src/neighbourhood/bonds.hpp"
+#include "src/neighbourhood/lower_neighbours.hpp"
 
 namespace peristat {
 
@@ -22,10 +23,7 @@ struct StateShares {
 
 /// Lower neighbours of each point, and pairs of points with a common neighbour: connectivity that
 /// the bonds do not store.
-struct StateNetwork {
-  std::vector<Offset> offset;  ///< points + 1, of the neighbours below
-  std::vector<Index> lower;    ///< ascending
-  std::vector<Offset> bond;    ///< bond to each of these
+struct StateNetwork : LowerNeighbours {
   /// Blocks of the tangent: partners above a point within two bonds of it.
   std::vector<Offset> block_offset;
   std::vector<Index> partner;

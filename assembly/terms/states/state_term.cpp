@@ -48,9 +48,9 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
                     History& history, std::span<double> gradient, Write how) override {
     const StateView now{displacement, history, Damage::grows, environment};
-    if (failure_.fails_in_avalanches()) return release(now, history, gradient, how);
     // On all ranks: a bond that is damaged here may be counted by another rank.
-    if (!failure_.can_fail() || !any_of_all(index_map_.ranks(), growth(now).degrading > 0)) {
+    if (!failure_.can_fail() || failure_.fails_in_avalanches() ||
+        !any_of_all(index_map_.ranks(), growth(now).degrading > 0)) {
       return this->gradient(now, gradient, how);
     }
     const History before = history;
@@ -73,7 +73,24 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
   DamageGrowth growth(const StateView& at) override {
     if (!failure_.can_fail()) return {};
     if (!failure_.fails_in_avalanches()) return stretches_->growth(at);
-    return visit_driven(at, [](int, const Driven&) {});
+    return visit_driven(at, [](int, const DrivenBond&) {});
+  }
+
+  std::optional<DamageGrowth> release(const StateView& at, History& history) override {
+    const auto now = [&] {
+      return StateView{at.displacement, history, Damage::grows, at.environment};
+    };
+    return damage_one_by_one(
+        threads_, [&](const auto& visit) { visit_driven(now(), visit); },
+        [&](const DrivenBond& one, DamageGrowth& growth) {
+          double& stretch = history.change(slot_)[std::size_t(one.bond)];
+          failure_.with_damage_law([&](const auto& law) {
+            const auto& of_bond = law.of_bond(one.bond);
+            if (!kernels_.damage_by_release(one, of_bond, stretch)) return;
+            ++growth.degrading;
+            growth.breaking += of_bond.is_broken(stretch);
+          });
+        });
   }
 
   void add_drive(const StateView& at, std::span<BondDrive> drives) override {
@@ -152,8 +169,6 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
     return found;
   }
 
-  using Driven = typename StateKernels<D, Measure>::Driven;
-
   template <class Visit>
   DamageGrowth visit_driven(const StateView& at, const Visit& visit) {
     if (!are_found(at)) find_states(at);
@@ -165,50 +180,6 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
       });
     });
     return found;
-  }
-
-  /// Commits damage by release, one bond after another, each with the dilatations that those before
-  /// it have left, in the order of their utilisation, until none is driven: bonds share
-  /// dilatations, and all at once would count these more than once.
-  Evaluation release(const StateView& at, History& history, std::span<double> gradient, Write how) {
-    DamageGrowth growth;
-    std::vector<Driven> driven = driven_bonds(at);
-    if (driven.empty()) return this->gradient(at, gradient, how);
-    while (!driven.empty()) {
-      const std::span<double> stretches = history.change(slot_);
-      const Index before_pass = growth.degrading;
-      failure_.with_damage_law([&](const auto& law) {
-        for (const Driven& one : driven) {
-          const auto& of_bond = law.of_bond(one.bond);
-          double& stretch = stretches[std::size_t(one.bond)];
-          if (!kernels_.damage_by_release(one, of_bond, stretch)) continue;
-          ++growth.degrading;
-          growth.breaking += of_bond.is_broken(stretch);
-        }
-      });
-      if (growth.degrading == before_pass) break;  // round-off alone has driven them
-      driven = driven_bonds({at.displacement, history, Damage::grows, at.environment});
-    }
-    Evaluation found =
-        this->gradient({at.displacement, history, Damage::grows, at.environment}, gradient, how);
-    found.growth = growth;
-    found.moves_equilibrium = growth.degrading > 0;
-    return found;
-  }
-
-  /// Bonds that are driven beyond what they bear, the most utilised first.
-  std::vector<Driven> driven_bonds(const StateView& at) {
-    std::vector<std::vector<Driven>> of_thread;
-    of_thread.resize(std::size_t(threads_));
-    visit_driven(at, [&](int thread, const Driven& driven) {
-      of_thread[std::size_t(thread)].push_back(driven);
-    });
-    std::vector<Driven> all;
-    for (const auto& some : of_thread) all.insert(all.end(), some.begin(), some.end());
-    std::ranges::sort(all, [](const Driven& a, const Driven& b) {
-      return a.utilisation != b.utilisation ? a.utilisation > b.utilisation : a.bond < b.bond;
-    });
-    return all;
   }
 
   /// True if the kernels have the states of `at`: solvers multiply many times at one state.

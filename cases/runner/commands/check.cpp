@@ -129,7 +129,8 @@ void print_fracture(std::FILE* out, const Formulation& formulation,
                heading("fracture", name), bearable_energy_density(damage, setting.horizon));
     return;
   }
-  if (formulation.crack_energy_of_dilation) {
+  if (formulation.crack_energy_of_dilation &&
+      drive_of(formulation, damage) == DamageDrive::stretch) {
     const double energy = formulation.crack_energy_of_dilation(*of.of, of.key, setting, spacing);
     fmt::print(
         out, "{} critical stretch {:.6g}: fracture energy {:.6g} J/m2 under a uniform dilation\n",

@@ -11,6 +11,7 @@
 #include "cases/runner/input/toml_table.hpp"
 #include "cases/runner/input/unit_system.hpp"
 #include "solvers/formulations/check_specification.hpp"
+#include "solvers/formulations/formulations.hpp"
 #include "solvers/observe/point_fields.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/core/input_error.hpp"
@@ -189,6 +190,7 @@ Case read_case(const std::filesystem::path& file, const std::string& text,
     refuse_idle_tables(result);
     resolve_size(result);
     check_materials(result, result.dimension);
+    resolve_drives(result);
   } catch (const InputError& error) {
     throw located(result, error);
   }

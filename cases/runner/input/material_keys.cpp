@@ -35,7 +35,7 @@ namespace {
 void require_law(const Entry& at, DamageSpecification&) {
   if (at.from.has("law")) return;
   for (const char* key : {"fracture_energy", "fracture_toughness", "strength", "critical", "onset",
-                          "peak", "hardening", "rate", "stretches", "forces"}) {
+                          "peak", "hardening", "rate", "stretches", "forces", "drive"}) {
     if (!at.from.has(key)) continue;
     at.from.refuse(key,
                    "needs a law in the same table, such as law = \"linear\"; write law = \"none\" "
@@ -91,7 +91,8 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
            .early(),
        K("fracture_energy", &Spec::fracture_energy, positive("J/m2"),
          "$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` follows "
-         "from it. `cpd` accepts it at horizon ratios up to 12 in 2D, 3.2 in 3D")
+         "from it. `cpd` with `drive = \"stretch\"` accepts it at horizon ratios up to 12 in 2D, "
+         "3.2 in 3D")
            .unless(is_whole, "")
            .by_rules(damage_rules)
            .early(),
@@ -107,8 +108,8 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the "
          "mean over directions ([theory](theory.md#strength)); `onset` follows from it, for "
          "`blended` the `peak`, for `critical_stretch` the value of `critical`. `cpd` accepts it "
-         "at the horizon ratios of `fracture_energy`, in 3D only at smaller ones, where the "
-         "computation takes less than minutes")
+         "with `drive = \"stretch\"`, at the horizon ratios of `fracture_energy`, in 3D only at "
+         "smaller ones, where the computation takes less than minutes")
            .unless(is_whole, "")
            .by_rules(damage_rules)
            .early(),
@@ -165,6 +166,18 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
            .by_rules(damage_rules)
            .written_if([](auto& damage, auto&) { return !damage.forces.empty(); })
            .default_words("required with law `table`"),
+       K("drive", &Spec::drive,
+         choice<DamageDrive>(
+             {{"stretch", DamageDrive::stretch}, {"release", DamageDrive::release}}),
+         "`cpd`, `state`, and `lps` as an energy: what drives the damage of a bond. "
+         "`\"stretch\"`: its stretch; `\"release\"`: [what its loss would set "
+         "free](theory.md#damage-by-release) with all that depends on it, as an equivalent stretch "
+         "that the law takes. `state` has `\"release\"` alone")
+           .unless(is_whole, "")
+           .by_rules(damage_rules)
+           .default_words("`\"release\"` with `state`, and with `fracture_energy` or "
+                          "`fracture_toughness`; otherwise `\"stretch\"`")
+           .moreover("the same for all materials of a body"),
        K("no_fail", &Spec::no_fail, known_sets(),
          "sets of points whose bonds stay elastic at any stretch, including bonds to points "
          "outside the sets")
@@ -362,8 +375,10 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
          "Poisson's ratio, for `cpd`, `lps` and `correspondence` with `youngs_modulus`")
            .unless(without(Option::poisson_ratio), is_for(Option::poisson_ratio))
            .unless(has_constants, with_moduli)
-           .moreover("`lps`, `correspondence`: to 0.5; `cpd`: in 3D to 0.5; these limits are "
-                     "excluded; `cpd` with damage: at least 1/3 (2D) or 1/4 (3D)")
+           .moreover(
+               "`lps`, `correspondence`: to 0.5; `cpd`: in 3D to 0.5; these limits are "
+               "excluded; `cpd` with damage: at least 0, by `drive = \"stretch\"` at least 1/3 "
+               "(2D) or 1/4 (3D)")
            .required("required with `youngs_modulus`")
            .on_ranks(),
        K("stabilisation", &Spec::stabilisation, positive("-"),
@@ -386,8 +401,8 @@ Table<MaterialSpecification> material_keys(const std::string& name) {
                },
                "follows from youngs_modulus and poisson_ratio in 2D; to choose c2, give c1 instead "
                "of the moduli")
-           .moreover("a negative one is refused with damage, and where it makes the body "
-                     "[unstable at rest](theory.md#stability-at-rest)")
+           .moreover("a negative one is refused with damage by `stretch`, and where it makes the "
+                     "body [unstable at rest](theory.md#stability-at-rest)")
            .on_ranks(),
        K("c3", &Spec::c3, stiffness("N/m14"),
          "`cpd`: three-neighbour constant, 3D; it follows from `youngs_modulus` if that is given")

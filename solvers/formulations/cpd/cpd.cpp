@@ -13,15 +13,30 @@
 namespace peristat {
 namespace {
 
-/// The fracture scale, with a tear and a pull as far as they take no minutes.
+/// By release G_c = c A times the work of the law, as with bonds alone: what a tear takes does not
+/// depend on its triangles and tetrahedra.
+FractureScale scale_by_release(FractureScale scale, const MaterialSpecification& material,
+                               const std::string& key, const BondSetting& setting) {
+  scale.tear =
+      std::make_shared<CpdTear>(setting, scale.spacing, CpdConstants{scale.micromodulus, 0.0, 0.0});
+  scale.crossing = scale.tear->mean_crossing();
+  if (!material.damage.strength) return scale;
+  throw InputError(key + ".damage.strength", number_text(*material.damage.strength),
+                   "is not known with drive = \"release\" of cpd; give onset, or drive = "
+                   "\"stretch\"");
+}
+
+/// The fracture scale; by stretch with a tear and a pull as far as they take no minutes.
 FractureScale scale_of_cpd(const MaterialSpecification& material, const std::string& key,
                            const BondSetting& setting, double spacing) {
   FractureScale scale;
   scale.spacing = spacing;
   scale.youngs_modulus = material.youngs_modulus.value_or(0.0);
   const CpdConstants constants = cpd_constants_of(material, key, setting, spacing);
-  refuse_damage_of_negative_constants(material, key, constants, setting, spacing);
+  const DamageDrive drive = material.damage.drive.value_or(release_by_energy(material.damage));
+  refuse_damage_of_negative_constants(material, key, constants, setting, spacing, drive);
   scale.micromodulus = constants.c1;
+  if (drive == DamageDrive::release) return scale_by_release(scale, material, key, setting);
   const double largest = largest_ratio_of_tear(setting.dimension);
   if (setting.horizon <= largest * spacing * (1.0 + horizon_tolerance)) {
     scale.tear = std::make_shared<CpdTear>(setting, spacing, constants);
@@ -40,7 +55,9 @@ FractureScale scale_of_cpd(const MaterialSpecification& material, const std::str
         number_text(by_energy ? *material.damage.fracture_energy : *material.damage.strength),
         "is for horizon ratios up to " + number_text(largest) + " with cpd in " +
             std::to_string(setting.dimension) +
-            "D: computing it for longer interactions takes minutes; give stretches");
+            "D and drive = \"stretch\": computing it for longer interactions takes minutes; give "
+            "stretches" +
+            (by_energy ? ", or drive = \"release\"" : ""));
   }
   return scale;
 }
@@ -125,7 +142,7 @@ const Formulation& cpd_formulation() {
       .takes = {Option::potential, Option::poisson_ratio, Option::constants, Option::calibration,
                 Option::thermal_expansion, Option::strength, Option::softening,
                 Option::critical_stretch, Option::weights, Option::interfaces, Option::eigenstrains,
-                Option::pressures, Option::images, Option::events},
+                Option::pressures, Option::images, Option::events, Option::drive},
       .least_dimension = 2,
       .part_bonds = PartBonds::among_neighbours,
       .most_points = [](int dimension) { return dimension + 1; },
@@ -139,6 +156,7 @@ const Formulation& cpd_formulation() {
       .moduli = moduli_of_cpd,
       .describe = describe_cpd,
       .fracture_scale = scale_of_cpd,
+      .default_drive = release_by_energy,
       .negative_constant = negative_constant_of};
   return formulation;
 }

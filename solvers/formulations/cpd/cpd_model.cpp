@@ -164,24 +164,39 @@ std::string negative_constant(const CpdConstants& constants) {
 
 void refuse_damage_of_negative_constants(const MaterialSpecification& material,
                                          const std::string& key, const CpdConstants& constants,
-                                         const BondSetting& setting, double spacing) {
+                                         const BondSetting& setting, double spacing,
+                                         DamageDrive drive) {
   const std::string negative = negative_constant(constants);
   if (negative.empty()) return;
+  const CpdStiffness stiffness = stiffness_of(material, setting, spacing);
+  const int d = setting.dimension;
+  const auto ratio_of = [&](const CpdConstants& of) {
+    return poisson_ratio_of(stiffness.moduli(of), d);
+  };
+  if (drive == DamageDrive::release) {
+    constexpr double round_off = 1e-9;
+    const double ratio = ratio_of(constants);
+    if (ratio >= -round_off) return;
+    throw InputError(
+        key + (material.poisson_ratio ? ".poisson_ratio" : "." + negative),
+        number_text(
+            material.poisson_ratio.value_or(negative == "c2" ? constants.c2 : constants.c3)),
+        "damage of cpd needs a Poisson's ratio of at least 0; here it is " + number_text(ratio) +
+            ", at which a tear takes a multiple of the fracture energy");
+  }
   const double value = negative == "c2" ? constants.c2 : constants.c3;
-  std::string advice = "give " + negative + " of at least 0";
+  std::string larger = "give " + negative + " of at least 0";
   if (material.poisson_ratio) {
-    const CpdStiffness stiffness = stiffness_of(material, setting, spacing);
-    const double least = poisson_ratio_of(stiffness.moduli({1.0, 0.0, 0.0}), setting.dimension);
-    advice = "it is negative for a poisson_ratio below " + number_text(least) +
-             (setting.dimension == 3 ? " (with c2 = 0; a positive c2 needs a larger one)" : "") +
-             ". Give a larger poisson_ratio, or model = \"bond\"";
+    larger = "it is negative for a poisson_ratio below " + number_text(ratio_of({1.0, 0.0, 0.0})) +
+             (d == 3 ? " (with c2 = 0; a positive c2 needs a larger one)" : "") +
+             ". Give a larger poisson_ratio";
   }
   throw InputError(key + ".damage.law", "",
-                   "damage needs constants of at least 0, but " + negative + " is " +
+                   "damage by stretch needs constants of at least 0, but " + negative + " is " +
                        number_text(value) +
                        ": interactions of negative energy that are lost with a broken bond would "
                        "create energy; " +
-                       advice);
+                       larger + ", drive = \"release\" in this table, or model = \"bond\"");
 }
 
 CpdConstants cpd_constants_of(const MaterialSpecification& material, const std::string& key,
@@ -197,6 +212,21 @@ CpdConstants cpd_constants_of(const MaterialSpecification& material, const std::
   }
 }
 
+namespace {
+
+/// Refuses bodies in which damage by release is not known.
+void refuse_release(const ModelSetting& of, const std::string& key) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(key + ".damage.drive", "release",
+                     why + " with model \"cpd\"; give drive = \"stretch\"");
+  };
+  if (!of.points.images.kinds.empty()) refuse("is not for planes of symmetry and periods");
+  // Damage goes from bond to bond in one order, which ranks do not have.
+  if (!of.index_map.is_whole()) refuse("is for one rank");
+}
+
+}  // namespace
+
 MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds) {
   const auto& [from, materials, factors, points, setting, index_map, threads] = of_model;
   // Tables have entries for the materials of four points.
@@ -207,14 +237,18 @@ MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds) {
                          " materials; at most " + std::to_string(most) + " with model \"cpd\"");
   }
   const std::vector<PointMaterials::Material> kinds = all_materials(from, materials);
-  const bool fails = std::ranges::any_of(
+  const auto failing = std::ranges::find_if(
       kinds, [](const auto& kind) { return kind.of->damage.law != DamageLaw::none; });
+  const bool fails = failing != kinds.end();
+  DamageDrive drive =
+      fails ? failing->of->damage.drive.value_or(DamageDrive::stretch) : DamageDrive::stretch;
   std::vector<DirectedConstant> c1;
   std::vector<double> c2, c3;
   for (const auto& kind : kinds) {
     const CpdConstants constants = cpd_constants_of(*kind.of, kind.key, setting, points.spacing);
     if (fails) {
-      refuse_damage_of_negative_constants(*kind.of, kind.key, constants, setting, points.spacing);
+      refuse_damage_of_negative_constants(*kind.of, kind.key, constants, setting, points.spacing,
+                                          drive);
     }
     c1.push_back({{constants.c1, 0.0, 0.0}, {}});
     c2.push_back(constants.c2);
@@ -222,6 +256,10 @@ MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds) {
   }
   const HigherConstant of_triangles = MixedConstant(materials, kinds, c2, "c2").over(3);
   const HigherConstant of_tetrahedra = MixedConstant(materials, kinds, c3, "c3").over(4);
+
+  // Bonds alone set free what they hold: then both drives are one.
+  if (of_triangles.constant == 0.0 && of_tetrahedra.constant == 0.0) drive = DamageDrive::stretch;
+  if (drive == DamageDrive::release) refuse_release(of_model, failing->key);
 
   const BulkNeighbourhood bulk =
       bulk_neighbourhood(points.dimension, points.spacing, setting.horizon, setting.cross_section);
@@ -242,7 +280,7 @@ MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds) {
   if (!index_map.is_whole()) agree_on_kinds(left, points, index_map.numbered(), index_map.ranks());
   CutBonds cut = cut_bonds(left, points, from.cracks);
   auto [potential, never_fails] = mixed.potential(left);
-  Model model(std::move(left), std::move(potential), std::move(never_fails));
+  Model model(std::move(left), std::move(potential), std::move(never_fails), drive);
   std::optional<Simplices<Area>> triangles;
   std::optional<Simplices<Volume>> tetrahedra;
   if (of_triangles.constant != 0.0) {

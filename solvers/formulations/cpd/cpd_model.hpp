@@ -24,15 +24,18 @@ namespace peristat {
 /// there is none.
 [[nodiscard]] std::string negative_constant(const CpdConstants& constants);
 
-/// @throws InputError ("….damage.law") for a negative constant: the triangles and tetrahedra that
-///         are lost with a broken bond would release energy that was never supplied
+/// @throws InputError ("….damage.law") for a negative constant if stretch drives damage: the
+///         triangles and tetrahedra that are lost with a broken bond would release energy that was
+///         never supplied. By release, for a negative Poisson's ratio: such triangles hold bonds
+///         back so long that a tear takes several times the fracture energy
 void refuse_damage_of_negative_constants(const MaterialSpecification& material,
                                          const std::string& key, const CpdConstants& constants,
-                                         const BondSetting& setting, double spacing);
+                                         const BondSetting& setting, double spacing,
+                                         DamageDrive drive);
 
 /// Makes the model. Collective for a part.
 /// @param bonds without weights yet; of a part those among_neighbours
-/// @throws InputError for damage together with a negative constant
+/// @throws InputError for damage that its constants or the body do not allow
 [[nodiscard]] MadeModel make_cpd_model(const ModelSetting& setting, Bonds bonds);
 
 }  // namespace peristat

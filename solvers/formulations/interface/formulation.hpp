@@ -41,6 +41,11 @@ struct Moduli {
   bool is_thin = false;  ///< in plane stress
 };
 
+/// By release, so that the fracture energy is known in closed form, where one is given.
+[[nodiscard]] inline DamageDrive release_by_energy(const DamageSpecification& damage) {
+  return damage.has_fracture_energy() ? DamageDrive::release : DamageDrive::stretch;
+}
+
 /// A line of `check` about a material: "constants", and their text.
 struct MaterialLine {
   std::string topic, text;
@@ -111,9 +116,11 @@ struct Formulation {
   /// Scale of the fracture energy and strength of a material without fibres; null: they are no sums
   /// over bonds.
   OfMaterial<FractureScale> fracture_scale = nullptr;
-  /// Energy that a plane crack takes under a uniform dilation, per squared critical stretch [J/m2];
-  /// null: fracture_scale has it.
+  /// Energy that a plane crack takes under a uniform dilation, per squared critical stretch [J/m2],
+  /// if stretch drives damage; null: fracture_scale has it.
   OfMaterial<double> crack_energy_of_dilation = nullptr;
+  /// What drives damage whose material does not say; null: stretch alone can.
+  DamageDrive (*default_drive)(const DamageSpecification&) = nullptr;
   /// A sentence that warns of the fracture data of a material; empty: nothing to warn of.
   OfMaterial<std::string> fracture_warning = nullptr;
   /// Key of a constant below zero, whose interactions store less energy the more they deform; empty

@@ -25,6 +25,7 @@ enum class Option {
   softening,         ///< laws of damage by which bonds soften
   critical_stretch,  ///< the law by which bonds break at once
   energy_density,    ///< the law by which points fail
+  drive,             ///< of the damage of bonds, where release is possible
   // Of a body
   volume_correction,
   horizon_shape,
@@ -76,7 +77,7 @@ struct OptionOf {
 };
 
 using OptionOfMaterial = OptionOf<MaterialSpecification>;
-inline constexpr std::array<OptionOfMaterial, 13> options_of_material{{
+inline constexpr std::array<OptionOfMaterial, 14> options_of_material{{
     {Option::plane, "plane", [](auto& m) { return m.plane != PlaneState::stress; }},
     {Option::kinematics, "kinematics", [](auto& m) { return m.kinematics != Kinematics::finite; }},
     {Option::potential, "potential", [](auto& m) { return m.potential != Harmonic::name; }},
@@ -92,6 +93,7 @@ inline constexpr std::array<OptionOfMaterial, 13> options_of_material{{
      [](auto& m) { return m.thermal_expansion.has_value(); }},
     {Option::fibre, "fibre", [](auto& m) { return m.fibre.has_value(); }},
     {Option::strength, "damage.strength", [](auto& m) { return m.damage.strength.has_value(); }},
+    {Option::drive, "damage.drive", [](auto& m) { return m.damage.drive.has_value(); }},
 }};
 
 using OptionOfBody = OptionOf<BodySpecification>;

@@ -48,9 +48,37 @@ double energy_of_dilation(const MaterialSpecification& material, const std::stri
                                   state_setting(setting));
 }
 
-constexpr OptionSet options_of_states{
-    Option::plane, Option::kinematics,        Option::poisson_ratio, Option::critical_stretch,
-    Option::form,  Option::volume_correction, Option::pressures};
+bool is_by_release(const DamageSpecification& damage) {
+  return damage.breaks_bonds() &&
+         damage.drive.value_or(release_by_energy(damage)) == DamageDrive::release;
+}
+
+void check_lps_material(const MaterialSpecification& material, const std::string& key,
+                        int dimension) {
+  check_solid_constants(material, key, dimension);
+  if (is_by_release(material.damage)) return check_release_of_states(material, key, dimension);
+  require_absent(material.damage.softens(), key + ".damage.law",
+                 "must be \"critical_stretch\" with drive \"stretch\" of model \"lps\"");
+}
+
+std::string warning_of_lps(const MaterialSpecification& material, const std::string& key,
+                           const BondSetting& setting, double) {
+  return is_by_release(material.damage) ? warning_of_late_cracks(material, key, setting) : "";
+}
+
+MadeModel make_solid(const ModelSetting& setting, Bonds bonds) {
+  if (setting.of.is_convolved()) return make_convolved_solid(setting, std::move(bonds));
+  bool releases = false;
+  for (const auto& material : all_materials(setting.of, setting.materials)) {
+    releases |= is_by_release(material.of->damage);
+  }
+  return make_state_model(
+      setting, std::move(bonds),
+      {Extension::linear, releases ? DamageDrive::release : DamageDrive::stretch});
+}
+
+constexpr OptionSet options_of_states{Option::plane, Option::kinematics, Option::poisson_ratio,
+                                      Option::form, Option::volume_correction};
 
 }  // namespace
 
@@ -58,25 +86,24 @@ const Formulation& lps_energy_formulation() {
   static const Formulation formulation{
       .model = MaterialModel::lps,
       .label = "\"lps\" as an energy",
-      .takes = options_of_states,
+      .takes = options_of_states.with(
+          {Option::critical_stretch, Option::softening, Option::drive, Option::pressures}),
       .takes_convolved =
-          options_of_states.with({Option::convolutions, Option::energy_density, Option::images})
-              .without({Option::critical_stretch, Option::pressures}),
+          options_of_states.with({Option::convolutions, Option::energy_density, Option::images}),
       .least_dimension = 2,
       .default_influence = InverseInfluence::name,
       .part_bonds = PartBonds::of_neighbours,
       .couples_second_neighbours = true,
-      .check_material = check_solid_constants,
+      .check_material = check_lps_material,
       .check_body = check_form,
       .setting_of_bonds = state_setting,
-      .make_model =
-          [](const ModelSetting& setting, Bonds bonds) {
-            return setting.of.is_convolved() ? make_convolved_solid(setting, std::move(bonds))
-                                             : make_state_model(setting, std::move(bonds), {});
-          },
+      .make_model = make_solid,
       .moduli = moduli_of_solid,
       .describe = describe_solid,
-      .crack_energy_of_dilation = energy_of_dilation};
+      .fracture_scale = scale_of_states,
+      .crack_energy_of_dilation = energy_of_dilation,
+      .default_drive = release_by_energy,
+      .fracture_warning = warning_of_lps};
   return formulation;
 }
 

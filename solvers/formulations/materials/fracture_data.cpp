@@ -275,8 +275,9 @@ class TearSearch {
 /// The law whose bonds have this largest force; 0: no force is required.
 DamageSpecification law_of_peak(const DamageSpecification& damage, const std::string& key,
                                 const FractureScale& scale, double peak) {
-  return scale.tear && damage.fracture_energy ? TearSearch(damage, key, scale, peak).found()
-                                              : Search(damage, key, scale, peak).found();
+  const bool is_torn = scale.tear && !scale.tear->is_of_bonds_alone();
+  return is_torn && damage.fracture_energy ? TearSearch(damage, key, scale, peak).found()
+                                           : Search(damage, key, scale, peak).found();
 }
 
 /// Finds the largest bond force with which a body has its strength under a pull: mostly below that

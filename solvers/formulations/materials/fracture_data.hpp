@@ -15,9 +15,10 @@ struct FractureScale {
   double micromodulus = 0.0;    ///< c, or C1 of cpd [N/m6]
   double crossing = 0.0;        ///< A of the bonds [m5], see BulkBonds
   double spacing = 0.0;         ///< [m], for messages
-  /// For cpd, with a horizon up to largest_ratio_of_tear; null otherwise.
+  /// For cpd: by stretch with a horizon up to largest_ratio_of_tear; by release that of the bonds
+  /// alone, which take it all. Null otherwise.
   std::shared_ptr<const CpdTear> tear{};
-  /// For bonds; for cpd if there is a `tear` and it is quickly computed.
+  /// For bonds; for cpd by stretch if there is a `tear` and it is quickly computed.
   std::shared_ptr<const BulkPull> pull{};
 
   /// Fracture energy G of a law, the mean over all directions of a tear [J/m2].
@@ -36,10 +37,9 @@ struct FractureScale {
 /// brittle bonds to 1.5 E f_p of tough ones (2D), because bonds oblique to the pull soften later.
 ///
 /// A law that softens, given by a fracture energy alone, has as onset half the stretch of a brittle
-/// bond of the same energy (blended: a quarter, and a peak force of half). In cpd G is that of a
-/// CpdTear: c A is replaced by the G/W of the law that is found, and the brittle bond is one of the
-/// same W.
-/// A table has its own onset and critical stretch.
+/// bond of the same energy (blended: a quarter, and a peak force of half). In cpd by stretch G is
+/// that of a CpdTear: c A is replaced by the G/W of the law that is found, and the brittle bond is
+/// one of the same W. A table has its own onset and critical stretch.
 /// @param key of the material, for errors
 /// @throws InputError ("material.damage.strength", …) if there are no such stretches, with the
 ///         largest spacing that has them

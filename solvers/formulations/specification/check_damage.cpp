@@ -18,6 +18,7 @@ bool is_given(const DamageSpecification& damage, std::string_view key) {
   if (key == "critical") return damage.critical != 0.0;
   if (key == "onset") return damage.onset != 0.0;
   if (key == "stretches") return !damage.stretches.empty();
+  if (key == "drive") return damage.drive.has_value();
   if (key == "forces") return !damage.forces.empty();
   return key == "peak" && damage.peak != 0.0;
 }
@@ -67,7 +68,7 @@ void check_data(const DamageSpecification& damage, const std::string& table) {
   require_positive(damage.strength, table + "strength");
   if (damage.law == DamageLaw::none) {
     for (const std::string key :
-         {"fracture_energy", "fracture_toughness", "strength", "critical", "stretches"}) {
+         {"fracture_energy", "fracture_toughness", "strength", "critical", "stretches", "drive"}) {
       require_absent(is_given(damage, key), table + key, "needs a law");
     }
     return;

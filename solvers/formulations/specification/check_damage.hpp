@@ -23,7 +23,7 @@ struct DamageRule {
   bool (*is_idle)(const DamageSpecification&);
   const char* why;
 };
-inline constexpr std::array<DamageRule, 17> damage_rules{
+inline constexpr std::array<DamageRule, 18> damage_rules{
     {{"stretches", [](auto& damage) { return !is_given_by_table(damage); },
       "is for the law \"table\""},
      {"forces", [](auto& damage) { return !is_given_by_table(damage); },
@@ -36,6 +36,8 @@ inline constexpr std::array<DamageRule, 17> damage_rules{
      {"fracture_toughness", [](auto& damage) { return damage.fracture_energy.has_value(); },
       "is another way to give fracture_energy; give one of them"},
      {"strength", [](auto& damage) { return damage.law == DamageLaw::energy_density; },
+      "is for the laws of stretches"},
+     {"drive", [](auto& damage) { return damage.law == DamageLaw::energy_density; },
       "is for the laws of stretches"},
      {"critical", [](auto& damage) { return damage.law == DamageLaw::energy_density; },
       "is for the laws of stretches"},

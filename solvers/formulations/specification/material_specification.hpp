@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "assembly/terms/failure/damage_drive.hpp"
 #include "src/core/types.hpp"
 #include "src/materials/bond_constants.hpp"
 #include "src/materials/random_field.hpp"
@@ -63,6 +64,8 @@ struct DamageSpecification {
   /// In the place of `onset` (of `critical` for the law critical_stretch): largest stress of the
   /// bulk under a pull, see with_stretches [Pa].
   std::optional<double> strength{};
+  /// What drives the damage; none: see Formulation::default_drive.
+  std::optional<DamageDrive> drive{};
   /// True if the stretches were computed from a fracture energy: those of a bond then depend on the
   /// horizons of its points, and these are for the body's horizon.
   bool is_by_energy = false;

@@ -5,48 +5,22 @@
 #include "solvers/formulations/solid/solid_constants.hpp"
 #include "solvers/formulations/specification/require.hpp"
 #include "solvers/formulations/state/state_model.hpp"
-#include "src/materials/bulk_bonds.hpp"
 
 namespace peristat {
 namespace {
 
-/// lambda / mu from which dilatations, spread over the horizon, drive the bonds at a crack tip
-/// late, and up to which they may.
-constexpr double late_ratio = 2.5, most_ratio = 4.0;
-
-double lame_ratio(const MaterialSpecification& material, int dimension) {
-  const LamePair constants = lame_constants(material, dimension);
-  return constants.lambda / constants.mu;
-}
-
 void check_material(const MaterialSpecification& material, const std::string& key, int dimension) {
   check_solid_constants(material, key, dimension);
   if (material.damage.law == DamageLaw::none) return;
-  require(lame_ratio(material, dimension) <= most_ratio * (1.0 + 1e-9), key + ".poisson_ratio",
-          number_text(*material.poisson_ratio),
-          "is too near 1/2 for damage with model \"state\": cracks would run far above their "
-          "fracture energy; take at most 0.4");
+  require(material.damage.drive != DamageDrive::stretch, key + ".damage.drive", "stretch",
+          "must be \"release\" with model \"state\"");
+  check_release_of_states(material, key, dimension);
 }
 
-std::string warning_of_late_cracks(const MaterialSpecification& material, const std::string& key,
-                                   const BondSetting& setting, double) {
-  const double ratio = lame_ratio(material, setting.dimension);
-  if (material.damage.law == DamageLaw::none || ratio <= late_ratio) return "";
-  return key + ".poisson_ratio = " + number_text(*material.poisson_ratio) +
-         ": a crack of model \"state\" needs more than the fracture energy to run where lambda/mu "
-         "is above " +
-         number_text(late_ratio) + "; here it is " + number_text(ratio);
-}
-
-/// G_c = c A times the work of the law: what a tear takes does not depend on lambda.
-FractureScale scale_of_states(const MaterialSpecification& material, const std::string&,
-                              const BondSetting& setting, double spacing) {
-  FractureScale scale;
-  scale.spacing = spacing;
-  scale.micromodulus = micromodulus_of_states(material, setting);
-  scale.crossing = mean_crossing(state_setting(setting));
-  scale.youngs_modulus = *material.youngs_modulus;
-  return scale;
+std::string warning_of_states(const MaterialSpecification& material, const std::string& key,
+                              const BondSetting& setting, double) {
+  return material.damage.law == DamageLaw::none ? ""
+                                                : warning_of_late_cracks(material, key, setting);
 }
 
 }  // namespace
@@ -57,7 +31,8 @@ const Formulation& state_formulation() {
       .label = "\"state\"",
       .takes = {Option::plane, Option::poisson_ratio, Option::thermal_expansion,
                 Option::volume_correction, Option::surface_correction, Option::eigenstrains,
-                Option::pressures, Option::softening, Option::critical_stretch, Option::events},
+                Option::pressures, Option::softening, Option::critical_stretch, Option::drive,
+                Option::events},
       .least_dimension = 2,
       .default_influence = InverseInfluence::name,
       .part_bonds = PartBonds::of_neighbours,
@@ -72,7 +47,8 @@ const Formulation& state_formulation() {
       .moduli = moduli_of_solid,
       .describe = describe_solid,
       .fracture_scale = scale_of_states,
-      .fracture_warning = warning_of_late_cracks};
+      .default_drive = [](const DamageSpecification&) { return DamageDrive::release; },
+      .fracture_warning = warning_of_states};
   return formulation;
 }
 

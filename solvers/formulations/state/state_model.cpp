@@ -27,12 +27,22 @@ double micromodulus_of_states(const MaterialSpecification& material, const BondS
 
 namespace {
 
+/// lambda / mu from which dilatations, spread over the horizon, drive the bonds at a crack tip
+/// late, and up to which they may.
+constexpr double late_ratio = 2.5, most_ratio = 4.0;
+
+double lame_ratio(const MaterialSpecification& material, int dimension) {
+  const LamePair constants = lame_constants(material, dimension);
+  return constants.lambda / constants.mu;
+}
+
 /// Damage goes from bond to bond in one order, which ranks do not have.
-void refuse_damage_of_parts(const ModelSetting& setting) {
+void refuse_release_of_parts(const ModelSetting& setting) {
   if (setting.index_map.is_whole()) return;
   for (const auto& material : all_materials(setting.of, setting.materials)) {
     require(material.of->damage.law == DamageLaw::none, material.key + ".damage.law", "",
-            "is for one rank with model \"state\"");
+            "is for one rank with drive \"release\" of model \"" +
+                std::string(material.of->model == MaterialModel::lps ? "lps" : "state") + "\"");
   }
 }
 
@@ -52,11 +62,39 @@ void weigh_by_release(Bonds& bonds, const Points& points, const StateShares& sha
 
 }  // namespace
 
+void check_release_of_states(const MaterialSpecification& material, const std::string& key,
+                             int dimension) {
+  require(lame_ratio(material, dimension) <= most_ratio * (1.0 + 1e-9), key + ".poisson_ratio",
+          number_text(*material.poisson_ratio),
+          "is too near 1/2 for damage by release of states: cracks would run far above their "
+          "fracture energy; take at most 0.4");
+}
+
+std::string warning_of_late_cracks(const MaterialSpecification& material, const std::string& key,
+                                   const BondSetting& setting) {
+  const double ratio = lame_ratio(material, setting.dimension);
+  if (ratio <= late_ratio) return "";
+  return key + ".poisson_ratio = " + number_text(*material.poisson_ratio) +
+         ": a crack of model \"" + (material.model == MaterialModel::lps ? "lps" : "state") +
+         "\" needs more than the fracture energy to run where lambda/mu is above " +
+         number_text(late_ratio) + "; here it is " + number_text(ratio);
+}
+
+FractureScale scale_of_states(const MaterialSpecification& material, const std::string&,
+                              const BondSetting& setting, double spacing) {
+  FractureScale scale;
+  scale.spacing = spacing;
+  scale.micromodulus = micromodulus_of_states(material, setting);
+  scale.crossing = mean_crossing(state_setting(setting));
+  scale.youngs_modulus = *material.youngs_modulus;
+  return scale;
+}
+
 MadeModel make_state_model(const ModelSetting& setting, Bonds bonds, StateRules rules) {
   const BodySpecification& from = setting.of;
   const Points& points = setting.points;
   const bool is_by_release = rules.drive == DamageDrive::release;
-  if (is_by_release) refuse_damage_of_parts(setting);
+  if (is_by_release) refuse_release_of_parts(setting);
   const BondSetting of_states = state_setting(setting.bonds);
   std::vector<DirectedConstant> moduli;
   for (const auto& material : all_materials(from, setting.materials)) {

@@ -16,6 +16,19 @@ namespace peristat {
 [[nodiscard]] double micromodulus_of_states(const MaterialSpecification& material,
                                             const BondSetting& setting);
 
+/// Refuses damage by release with lambda / mu so large that cracks run far above their energy.
+/// @throws InputError ("….poisson_ratio")
+void check_release_of_states(const MaterialSpecification& material, const std::string& key,
+                             int dimension);
+/// A warning of cracks that need more than their energy, if damage is by release; or nothing.
+[[nodiscard]] std::string warning_of_late_cracks(const MaterialSpecification& material,
+                                                 const std::string& key,
+                                                 const BondSetting& setting);
+/// By release G_c = c A times the work of the law: what a tear takes does not depend on lambda.
+[[nodiscard]] FractureScale scale_of_states(const MaterialSpecification& material,
+                                            const std::string& key, const BondSetting& setting,
+                                            double spacing);
+
 /// Makes the model. Collective for a part.
 /// @param bonds with state_setting; of a part those of_neighbours
 [[nodiscard]] MadeModel make_state_model(const ModelSetting& setting, Bonds bonds,

@@ -1,0 +1,221 @@
+"""Damage of cpd by what a bond would set free, from the command line: compared with the reference, which knows the energy
+alone; with bonds; and what it refuses."""
+
+import json
+
+import numpy
+
+from tests.acceptance.folder import Folder
+from tests.acceptance.motions import columns
+from tests.reference.body import Body
+from tests.reference.case import Case
+from tests.reference.mechanics import Mechanics
+from tests.reference.results import Results
+
+SPACING, THICKNESS = 0.1, 0.5
+PLATE = {
+    "dimension": 2,
+    "lattice": {"spacing": SPACING, "horizon_ratio": 3.015, "thickness": THICKNESS,
+                "shape": [{"add": "box", "min": [0, 0], "max": [1.6, 1.2]}],
+                "layer": [{"name": name, "side": side, "thickness": 2} for name, side in (("low", "y-"), ("high", "y+"))]},
+    "support": [{"set": "low", "displacement": [0, 0]}, {"set": "high", "displacement": ["free", "0.012*load"]}],
+    "loading": {"steps": 6}, "solver": {"mode": "adaptive"},
+}  # fmt: skip
+BLOCK = {
+    "dimension": 3,
+    "lattice": {"spacing": SPACING, "horizon_ratio": 2.015,
+                "shape": [{"add": "box", "min": [0, 0, 0], "max": [0.5, 0.3, 0.8]}],
+                "layer": [{"name": name, "side": side, "thickness": 2} for name, side in (("low", "z-"), ("high", "z+"))]},
+    "support": [{"set": "low", "displacement": [0, 0, 0]}, {"set": "high", "displacement": ["free", "free", "0.012*load"]}],
+    "loading": {"steps": 6}, "solver": {"mode": "adaptive"},
+}  # fmt: skip
+CRACK = [{"from": [0, 0.6], "to": [0.4, 0.6]}]
+NO_FAIL = {"no_fail": ["low", "high"], "drive": "release"}
+BRITTLE = {"law": "critical_stretch", "critical": 0.01} | NO_FAIL
+SOFT = {"law": "linear", "onset": 0.005, "critical": 0.01} | NO_FAIL
+REGION = {"set": [{"name": "right", "where": "x > 0.8"}]}
+
+
+class CpdRelease(Folder):
+    threads = 2
+
+    def constants(self, nu, dimension=2):
+        """C1, C2 and C3 of E = 3 kPa."""
+        lattice = BLOCK["lattice"] if dimension == 3 else PLATE["lattice"]
+        words = ["--thickness", THICKNESS] if dimension == 2 else []
+        told = self.assert_completed(self.peristat("calibrate", "--dimension", dimension, "--spacing", SPACING, "--horizon-ratio",
+                                                   lattice["horizon_ratio"], *words, "--youngs-modulus", "3e3",
+                                                   "--poisson-ratio", nu)).json()["lattice"]  # fmt: skip
+        return {key: told[key] for key in ("c1", "c2", "c3")[:dimension]}
+
+    def body(self, nu, damage, crack=True, **more):
+        return PLATE | {"material": {"model": "cpd"} | self.constants(nu) | {"damage": damage}} | ({"crack": CRACK} if crack else {}) | more
+
+    def judge(self, tables):
+        """Every state is an equilibrium, no bond is driven beyond what it bears, and what is dissipated is what the bonds
+        have taken. Returns the rows."""
+        results = Results(self.run_case(tables, name="torn"))
+        rows = {row["step"]: row for row in results.table("history")}
+        mechanics = Mechanics(Body(Case(tables), results.reference, results.volume, sets=results.sets))
+        mechanics.spare(results.sets)
+        body, history = mechanics.body, mechanics.no_history()
+        free = ~(results.sets["low"] | results.sets["high"])
+        for step in results.steps:
+            if step.history is not None:
+                names = ("first_point", "second_point", "largest_stretch")
+                first, second, stretch = (step.history[name] for name in names)
+                for i, j, s in zip(first.tolist(), second.tolist(), stretch.tolist()):
+                    history[body.bond_number[i * len(body.volume) + j]] = max(s, 0)
+            row, u = rows[step.number], step.displacement
+            force = mechanics.gradient(u, history, held=True)
+            self.assertLess(numpy.linalg.norm(force[free]), 1e-8 * max(numpy.linalg.norm(force), 1e-3))
+            self.assertAlmostEqual(row["stored_energy"], mechanics.energy(u, history, held=True), delta=1e-10 * (row["stored_energy"] + 1e-9))
+            driving = mechanics.equivalent_stretches(u, history)[mechanics.fails]
+            borne = numpy.maximum(history, mechanics.law.onset)[mechanics.fails]
+            alive = ~mechanics.is_broken(history)[mechanics.fails]
+            self.assertLess((driving / borne)[alive].max(), 1 + 1e-8)
+            self.assertAlmostEqual(row["dissipated_energy"], mechanics.dissipated(history), delta=1e-9 * row["dissipated_energy"])
+        return list(rows.values())
+
+    def judge_ledger(self, rows, work=0.02):
+        column = {name: numpy.array([row[name] for row in rows]) for name in rows[0] if name.endswith(("energy", "work", "error"))}
+        self.assertTrue((numpy.diff(column["dissipated_energy"]) >= 0).all())
+        self.assertTrue((numpy.diff(column["drained_energy"]) >= -1e-12 * column["external_work"].max()).all())
+        self.assertGreaterEqual(column["stored_energy"].min(), 0)
+        self.assertLess(abs(column["balance_error"]).max(), work * column["external_work"].max())
+
+    # ---- every state ------------------------------------------------------------------------------
+
+    def test_every_state_of_a_torn_plate_is_an_equilibrium(self):
+        for nu in (0.0, 0.2, 0.45):
+            for damage in (BRITTLE, SOFT):
+                with self.subTest(nu=nu, law=damage["law"]):
+                    rows = self.judge(self.body(nu, damage))
+                    self.assertGreater(rows[-1]["broken_bonds"], 20)
+                    self.judge_ledger(rows)
+
+    def test_every_state_of_a_block_is_an_equilibrium(self):
+        for nu, damage in ((0.05, SOFT), (0.4, BRITTLE)):
+            with self.subTest(nu=nu):
+                tables = BLOCK | {"material": {"model": "cpd"} | self.constants(nu, 3) | {"damage": damage}}
+                rows = self.judge(tables)
+                self.assertGreater(rows[-1]["dissipated_energy"], 0)
+                self.judge_ledger(rows)
+
+    def test_every_state_of_two_materials_is_an_equilibrium(self):
+        soft = self.constants(0.1)
+        stiff = {key: 3 * value for key, value in self.constants(0.4).items()}
+        for rule in ("arithmetic", "weaker"):
+            tables = PLATE | REGION | {
+                "material": {"model": "cpd"} | soft | {"damage": SOFT}, "crack": CRACK,
+                "region": [{"set": "right", "material": stiff | {"damage": SOFT | {"critical": 0.008, "onset": 0.004}}}],
+                "interface": [{"rule": rule}]}  # fmt: skip
+            rows = self.judge(tables)
+            self.assertGreater(rows[-1]["broken_bonds"], 20)
+            self.judge_ledger(rows)
+
+    def test_bodies_expand_freely(self):
+        """A free expansion far beyond the onset damages nothing."""
+        tables = self.body(0.2, BRITTLE, crack=False) | {"temperature": {"change": "100*load"}, "loading": {"steps": 1}}
+        tables["material"]["thermal_expansion"] = 1e-3
+        tables["set"] = [{"name": "corner", "where": "x < 0.1 && y < 0.1"}, {"name": "other", "where": "x > 1.5 && y < 0.1"}]
+        tables["support"] = [{"set": "corner", "displacement": [0, 0]}, {"set": "other", "displacement": ["free", 0]}]
+        results = self.results(tables)
+        corner = results.reference[results.sets["corner"]][0]
+        numpy.testing.assert_allclose(results.steps[-1].displacement, 0.1 * (results.reference - corner), atol=1e-9)
+        self.assertEqual(results.summary["broken_bonds"], 0)
+
+    # ---- energy of a crack ------------------------------------------------------------------------
+
+    def data_sheet(self, nu, **more):
+        material = {"model": "cpd", "youngs_modulus": 3e3, "poisson_ratio": nu,
+                    "damage": {"law": "linear", "fracture_energy": 0.02, "no_fail": ["low", "high"]} | more}  # fmt: skip
+        return PLATE | {"material": material, "crack": CRACK}
+
+    def test_fracture_energy_is_what_a_torn_plate_takes(self):
+        for nu in (0.0, 0.2, 0.45):
+            rows = columns(self.run_case(self.data_sheet(nu), "loading.steps=15", name="torn"))
+            self.assertLess(abs(rows["reaction_y:high"][-1]), 0.1 * abs(rows["reaction_y:high"]).max())
+            taken = rows["dissipated_energy"][-1] / (0.02 * 1.2 * THICKNESS)
+            self.assertGreater(taken, 0.85, nu)
+            self.assertLess(taken, 1.35, nu)
+
+    def test_release_is_the_default_with_a_fracture_energy(self):
+        given = self.run_case(self.data_sheet(0.4, drive="release"), name="given")
+        default = self.run_case(self.data_sheet(0.4), name="default")
+        stretch = self.run_case(self.data_sheet(0.4, drive="stretch"), name="stretch")
+        self.assertEqual((given / "history.csv").read_text(), (default / "history.csv").read_text())
+        self.assertNotEqual((given / "history.csv").read_text(), (stretch / "history.csv").read_text())
+        self.assertIn('drive = "release"', (default / "case.resolved.toml").read_text())
+
+    def test_stretch_is_the_default_with_stretches(self):
+        damage = {key: value for key, value in BRITTLE.items() if key != "drive"}
+        given = self.run_case(self.body(0.4, damage | {"drive": "stretch"}), name="given")
+        default = self.run_case(self.body(0.4, damage), name="default")
+        self.assertEqual((given / "history.csv").read_text(), (default / "history.csv").read_text())
+
+    def test_check_tells_the_fracture_energy_of_any_horizon(self):
+        tables = self.data_sheet(0.0)
+        tables["lattice"] = tables["lattice"] | {"horizon_ratio": 13.0, "spacing": 0.02, "layer": [layer | {"thickness": 10} for layer in tables["lattice"]["layer"]]}
+        ended = self.assert_completed(self.command("check", tables))
+        self.assertIn("fracture energy 0.02 J/m2 in the mean over the directions of a crack (", ended.output)
+
+    def test_calibrated_stretches_take_the_bonds_share_alone(self):
+        words = ["calibrate", "--dimension", "2", "--spacing", SPACING, "--horizon-ratio", "3.015", "--thickness", THICKNESS,
+                 "--youngs-modulus", "3e3", "--law", "critical_stretch", "--fracture-energy", "0.02"]  # fmt: skip
+        told = {nu: self.assert_completed(self.peristat(*words, "--poisson-ratio", nu)).json() for nu in (0.0, 0.2, 0.45)}
+        # G_c = C1 A s0^2 / 2 with the A of the lattice, whatever C2 is.
+        scaled = [one["lattice"]["c1"] * one["damage"]["critical"] ** 2 for one in told.values()]
+        numpy.testing.assert_allclose(scaled, scaled[0], rtol=1e-12)
+        for one in told.values():
+            self.assertAlmostEqual(one["damage"]["fracture_energy"]["mean"] / 0.02, 1, delta=1e-12)
+        by_stretch = self.assert_completed(self.peristat(*words, "--poisson-ratio", "0.45", "--drive", "stretch")).json()
+        self.assertLess(by_stretch["damage"]["critical"], 0.99 * told[0.45]["damage"]["critical"])
+
+    # ---- going on, and refusals -------------------------------------------------------------------
+
+    def test_an_interrupted_tear_goes_on_to_the_same_bits(self):
+        tables = self.body(0.2, SOFT)
+        whole = self.run_case(tables, name="whole")
+        self.run_case(tables, name="split", words=("--stop-after", 3), code=130)
+        split = self.resume("split")
+        self.assertEqual(split.code, 0)
+        names = [name for name in columns(whole) if name != "seconds"]
+        for name in names:
+            numpy.testing.assert_array_equal(columns(whole)[name], columns(self.folder / "split")[name], name)
+
+    def test_a_run_does_not_go_on_with_another_drive(self):
+        self.run_case(self.body(0.4, BRITTLE), name="split", words=("--stop-after", 3), code=130)
+        ended = self.peristat("resume", self.folder / "split", "--set", 'material.damage.drive="stretch"')
+        self.assert_refused(ended, "material.damage.drive")
+
+    def test_what_it_does_not_do_is_refused(self):
+        tables = self.body(0.2, BRITTLE)
+        for change, words in (
+            ('solver.mode="path"', ("solver.mode", 'drive = "stretch"')),
+            ('symmetry=[{axis="x", at=0}]', ("material.damage.drive", "planes of symmetry", 'drive = "stretch"')),
+            ('material.damage={law="linear", critical=0.01, strength=10.0, drive="release"}', ("material.damage.strength", "onset")),
+            ('material.damage={law="critical_stretch", critical=0.01}', ("material.damage.law", "damage by stretch", 'drive = "release"')),
+            ('material={model="cpd", youngs_modulus=1e3, poisson_ratio=-0.1, damage={law="linear", fracture_energy=0.02}}',
+             ("material.poisson_ratio", "at least 0")),
+            ('material={youngs_modulus=1e3, damage={law="critical_stretch", critical=0.01, drive="release"}}',
+             ("material.damage.drive", 'is for models "cpd", "state" and "lps" as an energy')),
+            ('material={model="lps", youngs_modulus=1e3, poisson_ratio=0.2, damage={law="critical_stretch", critical=0.01, drive="stretch"}}',
+             ("material.damage.drive", 'is for models "cpd", "state" and "lps" as an energy')),
+            ('material={model="state", youngs_modulus=1e3, poisson_ratio=0.2, damage={law="critical_stretch", critical=0.01, drive="stretch"}}',
+             ("material.damage.drive", 'must be "release"')),
+            ('material={model="cpd", youngs_modulus=1e3, poisson_ratio=0.2, damage={drive="release"}}', ("material.damage.drive", "needs a law")),
+            ('region=[{set="low", material={c1=1.0, c2=0.1, damage={law="critical_stretch", critical=0.01, drive="stretch"}}}]',
+             ("region[0].material.damage.drive", "the same for all materials")),
+        ):  # fmt: skip
+            with self.subTest(change):
+                self.refusal(tables, change)
+                self.assert_refused(self.ended, *words)
+
+    def test_the_record_names_bonds_that_are_driven(self):
+        """A step far beyond the onset: all that is driven breaks in one avalanche, and no more energy than there is."""
+        tables = self.body(0.2, BRITTLE) | {"loading": {"steps": 1}}
+        rows = self.judge(tables)
+        self.judge_ledger(rows, work=0.05)
+        summary = json.loads((self.folder / "torn/summary.json").read_text())
+        self.assertEqual(summary["broken_bonds"], rows[-1]["broken_bonds"])
