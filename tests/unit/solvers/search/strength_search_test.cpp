@@ -50,7 +50,7 @@ struct Drawn : Problem {
   [[nodiscard]] StrengthResult search(const StrengthStep& step) {
     return search_strength(equilibrium, updated, state, step, NewtonOptions(), nobody);
   }
-  [[nodiscard]] double utilisation(const Trial& trial) const {
+  [[nodiscard]] double utilisation(const Trial& trial) {
     return largest_utilisation(assembler, trial.at(Damage::held), borne);
   }
   /// The state that a search by itself finds at the stage.
