@@ -15,6 +15,8 @@
 #include "assembly/terms/states/state_network.hpp"
 #include "src/core/aligned_vector.hpp"
 #include "src/core/threads.hpp"
+#include "src/geometry/counts_bond.hpp"
+#include "src/geometry/gather_images.hpp"
 #include "src/measures/linear_length.hpp"
 #include "src/measures/small_algebra.hpp"
 
@@ -31,7 +33,7 @@ class StateKernels {
 
   StateKernels(const Points& points, const Bonds& bonds, const StateShares& shares,
                const StateNetwork& network, Workspace& workspace)
-      : buffers_(points, bonds, workspace), network_(network) {
+      : buffers_(points, bonds, workspace), network_(network), twins_(shares.twins) {
     const auto count = points.volume.size(), bond_count = std::size_t(bonds.count());
     whole_.assign(bond_count + lane_count, 0.0);
     for (std::size_t b = 0; b < bond_count; ++b) {
@@ -43,12 +45,14 @@ class StateKernels {
          {&dilatational_, &per_moment_, &stiffness_, &energy_, &rate_}) {
       per_point->assign(count, 0.0);
     }
+    const auto own = std::size_t(points.own());
     for (std::size_t i = 0; i < count; ++i) {
       const auto& [lambda, mu] = shares.constants[i];
       // A point without neighbours has no states.
       per_moment_[i] = shares.moment[i] > 0.0 ? D / shares.moment[i] : 0.0;
       dilatational_[i] = points.volume[i] * (lambda - mu);
       stiffness_[i] = dilatational_[i] * per_moment_[i] * per_moment_[i];
+      if (i >= own) dilatational_[i] = 0.0;  // an image's dilatation is its source's
       ends_[2 * i] = points.volume[i] * (D + 2) * mu * per_moment_[i];
     }
   }
@@ -90,10 +94,15 @@ class StateKernels {
     };
     buffers_.threads.template sum_rows<2>(body, [&](Index point, const double* total) {
       const auto i = std::size_t(point);
-      const double theta = per_moment_[i] * total[0];
-      ends_[2 * i + 1] = stiffness_[i] * total[0];
-      energy_[i] = 0.5 * (dilatational_[i] * theta * theta + ends_[2 * i] * total[1]);
+      rate_[i] = total[0];
+      energy_[i] = ends_[2 * i] * total[1];
     });
+    gather_images(buffers_.points, rate_);
+    for (std::size_t i = 0; i < energy_.size(); ++i) {
+      const double theta = per_moment_[i] * rate_[i];
+      ends_[2 * i + 1] = stiffness_[i] * rate_[i];
+      energy_[i] = 0.5 * (dilatational_[i] * theta * theta + energy_[i]);
+    }
     Evaluation found;
     for (const double energy : energy_) found.energy += energy;
     found.degenerate = !std::isfinite(found.energy);
@@ -133,10 +142,10 @@ class StateKernels {
         sums[i] += sum(own);
       }
     };
-    buffers_.threads.template sum_rows<1>(rates, [&](Index point, const double* total) {
-      const auto i = std::size_t(point);
-      rate_[i] = stiffness_[i] * *total;
-    });
+    buffers_.threads.template sum_rows<1>(
+        rates, [&](Index point, const double* total) { rate_[std::size_t(point)] = *total; });
+    gather_images(buffers_.points, rate_);
+    for (std::size_t i = 0; i < rate_.size(); ++i) rate_[i] *= stiffness_[i];
     sum_forces(
         product, how,
         [&](const Batch<D>& batch, const Lanes& share, Index i) __attribute__((always_inline)) {
@@ -235,11 +244,15 @@ class StateKernels {
     double utilisation;
     Index point;  ///< its first
     Offset bond;
-    double stretch;  ///< s
+    double stretch;    ///< s
+    Offset twin = -1;  ///< another bond that is damaged with it
+    [[nodiscard]] int bonds() const { return twin < 0 ? 1 : 2; }
   };
 
-  /// Damage that committing the state would do by release, after find_states of it.
-  /// @param visit(thread, Driven) called for each bond whose damage would grow
+  /// Damage that committing the state would do by release, after find_states of it, of the bonds
+  /// that are counted here: they have complete states.
+  /// @param visit(thread, Driven) called for each bond whose damage would grow; a bond and its twin
+  ///        are one
   template <class P, class E, class Visit>
   DamageGrowth growth_by_release(Span u, const P& law, const E& eigenstretch, const double* history,
                                  const Visit& visit) {
@@ -254,14 +267,17 @@ class StateKernels {
                                     Lanes(0.0), Lanes(1.0));
           const Lanes driving = equivalent_stretch(batch, i, s, drop);
           for (int l = 0; l < batch.count; ++l) {
-            const Offset bond = batch.first + l;
+            const Offset bond = batch.first + l, twin = twin_of(bond).bond;
+            if (0 <= twin && twin < bond) continue;
+            if (!counts_bond(buffers_.points, i, batch.partner[l])) continue;
             const auto& of_bond = law.of_bond(bond);
-            const double utilisation = of_bond.utilisation(driving[l], history[bond]);
-            found.utilisation = std::max(found.utilisation, utilisation);
+            const Driven driven{of_bond.utilisation(driving[l], history[bond]), i, bond, s[l],
+                                twin > bond ? twin : -1};
+            found.utilisation = std::max(found.utilisation, driven.utilisation);
             if (!grows(of_bond, driving[l], history[bond])) continue;
-            ++found.degrading;
-            found.breaking += of_bond.is_broken(driving[l]);
-            visit(thread, Driven{utilisation, i, bond, s[l]});
+            found.degrading += driven.bonds();
+            found.breaking += of_bond.is_broken(driving[l]) ? driven.bonds() : 0;
+            visit(thread, driven);
           }
         });
       }
@@ -271,28 +287,40 @@ class StateKernels {
     return buffers_.threads.total_evaluation().growth;
   }
 
-  /// Damages a bond, if what the ones before it have left of the dilatations still drives it.
-  /// Returns true if it has. The states are those of the present displacements and histories.
+  /// What a bond loses, and what its points lose of sum g r s; nothing where driving is 0.
+  struct Loss {
+    double driving = 0.0, of_ends = 0.0;
+  };
+
+  /// What a bond and its twin lose, if what the ones before have left of the dilatations still
+  /// drives them. The states are those of the present displacements and histories.
   template <class OfBond>
-  bool damage_by_release(const Driven& driven, const OfBond& of_bond, double& history) {
-    const auto bond = std::size_t(driven.bond);
-    const auto i = std::size_t(driven.point), j = std::size_t(buffers_.bonds.partner[driven.bond]);
+  [[nodiscard]] Loss loss_by_release(const Driven& driven, const OfBond& of_bond,
+                                     double history) const {
+    const auto i = std::size_t(driven.point);
+    const auto j = std::size_t(buffers_.points.source(buffers_.bonds.partner[driven.bond]));
     const double s = driven.stretch, r = buffers_.bonds.length(driven.bond);
     const double q = ends_[2 * i] + ends_[2 * j], p = ends_[2 * i + 1] + ends_[2 * j + 1];
     const double drop = of_bond.law.onset() < of_bond.law.critical() ? 0.0 : 1.0;
-    const double stiffness = stiffness_[i] + stiffness_[j];
-    const double squared = s * (s + 2.0 * p / q - drop * whole_[bond] * r * s * stiffness / q);
+    const double stiffness = stiffness_[i] + stiffness_[j], whole = whole_of(driven.bond);
+    const double squared = s * (s + 2.0 * p / q - drop * whole * r * s * stiffness / q);
     // The digits that rounding of another order takes must not keep a bond from its damage.
     const double driving =
         s > 0.0 && squared > 0.0 ? std::sqrt(squared) * (1.0 + 0.5 * least_growth) : 0.0;
-    if (!of_bond.is_loading(driving, history)) return false;
+    if (!of_bond.is_loading(driving, history)) return {};
     const double lost = of_bond.integrity_after(history) - of_bond.integrity_after(driving);
-    history = driving;
-    share_[bond] -= lost * whole_[bond];
-    for (const std::size_t end : {i, j}) {
-      ends_[2 * end + 1] -= stiffness_[end] * lost * whole_[bond] * r * s;
-    }
-    return true;
+    return {driving, lost * whole * r * s};
+  }
+
+  /// Takes a bond's loss from its points; images are left behind.
+  void lose(const Driven& driven, const Loss& loss) {
+    lose_at(driven.point, loss);
+    if (twin_of(driven.bond).bond == driven.bond) return;  // with a point's own mirror image
+    lose_at(buffers_.points.source(buffers_.bonds.partner[driven.bond]), loss);
+  }
+  void lose_at(Index point, const Loss& loss) {
+    const auto i = std::size_t(point);
+    ends_[2 * i + 1] -= stiffness_[i] * loss.of_ends;
   }
 
   /// State before bonds fail, which their losses depend on.
@@ -352,17 +380,30 @@ class StateKernels {
     const auto [q, p] = of_ends(i, batch);
     const double own = stiffness_[std::size_t(i)];
     const Lanes stiffness([&](int l) { return own + stiffness_[std::size_t(batch.partner[l])]; });
-    const Lanes whole(&whole_[std::size_t(batch.first)]);
+    Lanes whole(&whole_[std::size_t(batch.first)]);
+    if (!twins_.empty()) {
+      whole = Lanes([&](int l) { return l < batch.count ? whole_of(batch.first + l) : 0.0; });
+    }
     const Lanes zero = 0.0;
     const Lanes squared =
         s * (s + 2.0 * p / q - drop * whole * s * stiffness / (q * batch.inverse_length));
     return sqrt(max(chosen(s > zero, squared, zero), zero));
   }
 
+  [[nodiscard]] BondTwin twin_of(Offset bond) const {
+    return twins_.empty() ? BondTwin() : twins_[std::size_t(bond)];
+  }
+
+  /// Share kappa r of a bond together with its twin.
+  [[nodiscard]] double whole_of(Offset bond) const {
+    return (twin_of(bond).bond < 0 ? 1.0 : 2.0) * whole_[std::size_t(bond)];
+  }
+
   /// Whether the direction of a bond changes with displacements.
   static constexpr bool bends = std::is_same_v<Measure, Length>;
 
-  /// Of each bond from its first to its second point: g n, and the block of the bond alone,
+  /// Of each bond from its first to its second point: g n, with its twin's g, which has the same
+  /// part in the dilatation of the first; and the block of the bond alone,
   /// g (q_i + q_j) / r n n^T + f / l (I - n n^T).
   struct BondBlocks {
     std::vector<double> direction, block;
@@ -489,8 +530,9 @@ class StateKernels {
         const Lanes along = share * q * batch.inverse_length - across;
         for (int l = 0; l < batch.count; ++l) {
           const auto bond = std::size_t(batch.first + l);
+          const double both = (twin_of(batch.first + l).bond < 0 ? 1.0 : 2.0) * share[l];
           for (int r = 0; r < D; ++r) {
-            of_bonds.direction[bond * D + std::size_t(r)] = share[l] * n[r][l];
+            of_bonds.direction[bond * D + std::size_t(r)] = both * n[r][l];
             for (int c = 0; c < D; ++c) {
               of_bonds.block[(bond * D + std::size_t(r)) * D + std::size_t(c)] =
                   along[l] * n[r][l] * n[c][l] + (r == c ? across[l] : 0.0);
@@ -540,6 +582,7 @@ class StateKernels {
 
   BondWorkspace buffers_;
   const StateNetwork& network_;
+  const std::vector<BondTwin>& twins_;
   AlignedVector<double> whole_, share_;  // per bond kappa r, and g = T kappa r; padded by a batch
   AlignedVector<double> ends_;           // per point q = V d (d + 2) mu / M and p, side by side
   std::vector<double> dilatational_;     // V (lambda - mu) [J]

@@ -9,6 +9,7 @@
 #include "assembly/energy/kept_state.hpp"
 #include "assembly/terms/bonds/bond_passes.hpp"
 #include "assembly/terms/model.hpp"
+#include "assembly/terms/states/shared_bonds.hpp"
 #include "assembly/terms/states/state_kernels.hpp"
 #include "assembly/terms/workspace.hpp"
 #include "src/geometry/counts_bond.hpp"
@@ -147,29 +148,97 @@ class StatePasses : public TermPasses, BlockTangent {
   /// it have left, in the order of their utilisation, until none is driven: bonds share
   /// dilatations, and all at once would count these more than once.
   Evaluation release(const StateView& at, History& history, std::span<double> gradient, Write how) {
+    const auto now = [&] {
+      return StateView{at.displacement, history, Damage::grows, at.environment};
+    };
     DamageGrowth growth;
+    bool any = false;
     std::vector<Driven> driven = driven_bonds(at);
-    if (driven.empty()) return this->gradient(at, gradient, how);
-    while (!driven.empty()) {
+    while (any_of_all(index_map_.ranks(), !driven.empty())) {
       const std::span<double> stretches = history.change(slot_);
-      const Index before_pass = growth.degrading;
+      const bool grows = index_map_.is_whole() ? damage(driven, stretches, growth)
+                                               : damage_on_ranks(driven, stretches, growth);
+      if (!grows) break;  // round-off alone has driven them
+      any = true;
+      driven = driven_bonds(now());
+    }
+    Evaluation found = this->gradient(any ? now() : at, gradient, how);
+    found.growth = growth;
+    found.moves_equilibrium = any;
+    return found;
+  }
+
+  /// Damages bonds in their order. Returns true if any is damaged.
+  bool damage(std::span<const Driven> driven, std::span<double> stretches, DamageGrowth& growth) {
+    const Index before = growth.degrading;
+    failure_.with_damage_law([&](const auto& law) {
+      for (const Driven& one : driven) {
+        const auto& of_bond = law.of_bond(one.bond);
+        const auto loss = kernels_.loss_by_release(one, of_bond, stretches[std::size_t(one.bond)]);
+        if (!(loss.driving > 0.0)) continue;
+        kernels_.lose(one, loss);
+        stretches[std::size_t(one.bond)] = loss.driving;
+        if (one.twin >= 0) stretches[std::size_t(one.twin)] = loss.driving;
+        growth.degrading += one.bonds();
+        growth.breaking += of_bond.is_broken(loss.driving) ? one.bonds() : 0;
+      }
+    });
+    return growth.degrading > before;
+  }
+
+  /// The same for the driven bonds of all ranks: bonds that share no point go together. Collective.
+  bool damage_on_ranks(std::span<const Driven> mine, std::span<double> stretches,
+                       DamageGrowth& growth) {
+    std::vector<SharedBond> all;
+    for (std::size_t k = 0; k < mine.size(); ++k) {
+      const Index j = term_.bonds().partner[mine[k].bond];
+      all.push_back({mine[k].utilisation,
+                     {index_map_.number_of(mine[k].point), index_map_.number_of(j)},
+                     index_map_.ranks().rank(),
+                     k});
+    }
+    all = in_order(index_map_.ranks(), std::move(all));
+    bool any = false;
+    for (const std::vector<std::size_t>& round : rounds_of(all)) {
+      std::vector<double> losses(2 * round.size());
       failure_.with_damage_law([&](const auto& law) {
-        for (const Driven& one : driven) {
-          const auto& of_bond = law.of_bond(one.bond);
-          double& stretch = stretches[std::size_t(one.bond)];
-          if (!kernels_.damage_by_release(one, of_bond, stretch)) continue;
-          ++growth.degrading;
-          growth.breaking += of_bond.is_broken(stretch);
+        for (std::size_t k = 0; k < round.size(); ++k) {
+          const SharedBond& one = all[round[k]];
+          if (one.rank != index_map_.ranks().rank()) continue;
+          const Driven& driven = mine[one.number];
+          const auto& of_bond = law.of_bond(driven.bond);
+          const auto loss =
+              kernels_.loss_by_release(driven, of_bond, stretches[std::size_t(driven.bond)]);
+          losses[2 * k] = loss.driving;
+          losses[2 * k + 1] = loss.of_ends;
+          growth.degrading += loss.driving > 0.0;
+          growth.breaking += loss.driving > 0.0 && of_bond.is_broken(loss.driving);
         }
       });
-      if (growth.degrading == before_pass) break;  // round-off alone has driven them
-      driven = driven_bonds({at.displacement, history, Damage::grows, at.environment});
+      add_up(index_map_.ranks(), losses);
+      for (std::size_t k = 0; k < round.size(); ++k) {
+        if (!(losses[2 * k] > 0.0)) continue;
+        any = true;
+        take_loss(all[round[k]], {losses[2 * k], losses[2 * k + 1]}, stretches);
+      }
     }
-    Evaluation found =
-        this->gradient({at.displacement, history, Damage::grows, at.environment}, gradient, how);
-    found.growth = growth;
-    found.moves_equilibrium = growth.degrading > 0;
-    return found;
+    return any;
+  }
+
+  /// Takes the loss of a bond of any rank, as far as its points and the bond itself are here.
+  void take_loss(const SharedBond& of, const typename StateKernels<D, Measure>::Loss& loss,
+                 std::span<double> stretches) {
+    const auto first = index_map_.find(of.ends[0]), second = index_map_.find(of.ends[1]);
+    if (first) kernels_.lose_at(*first, loss);
+    if (second) kernels_.lose_at(*second, loss);
+    if (!first || !second) return;
+    const Bonds& bonds = term_.bonds();
+    const auto [low, high] = std::minmax(*first, *second);
+    const auto begin = bonds.partner.begin() + bonds.offset[low];
+    const auto end = bonds.partner.begin() + bonds.offset[low + 1];
+    const auto found = std::lower_bound(begin, end, high);
+    if (found == end || *found != high) return;
+    stretches[std::size_t(found - bonds.partner.begin())] = loss.driving;
   }
 
   /// Bonds that are driven beyond what they bear, the most utilised first.

@@ -1,11 +1,13 @@
 #include "solvers/formulations/state/state.hpp"
 
+#include <memory>
 #include <utility>
 
 #include "solvers/formulations/solid/solid_constants.hpp"
 #include "solvers/formulations/specification/require.hpp"
 #include "solvers/formulations/state/state_model.hpp"
 #include "src/materials/bulk_bonds.hpp"
+#include "src/materials/bulk_pull.hpp"
 
 namespace peristat {
 namespace {
@@ -38,14 +40,17 @@ std::string warning_of_late_cracks(const MaterialSpecification& material, const 
          number_text(late_ratio) + "; here it is " + number_text(ratio);
 }
 
-/// G_c = c A times the work of the law: what a tear takes does not depend on lambda.
+/// G_c = c A times the work of the law: what a tear takes does not depend on lambda. Strengths do.
 FractureScale scale_of_states(const MaterialSpecification& material, const std::string&,
                               const BondSetting& setting, double spacing) {
+  const BondSetting of_states = state_setting(setting);
   FractureScale scale;
   scale.spacing = spacing;
   scale.micromodulus = micromodulus_of_states(material, setting);
-  scale.crossing = mean_crossing(state_setting(setting));
+  scale.crossing = mean_crossing(of_states);
   scale.youngs_modulus = *material.youngs_modulus;
+  scale.pull = std::make_shared<BulkPull>(of_states, scale.micromodulus,
+                                          lame_ratio(material, setting.dimension));
   return scale;
 }
 
@@ -57,11 +62,13 @@ const Formulation& state_formulation() {
       .label = "\"state\"",
       .takes = {Option::plane, Option::poisson_ratio, Option::thermal_expansion,
                 Option::volume_correction, Option::surface_correction, Option::eigenstrains,
-                Option::pressures, Option::softening, Option::critical_stretch},
+                Option::pressures, Option::images, Option::strength, Option::softening,
+                Option::critical_stretch},
       .least_dimension = 2,
       .default_influence = InverseInfluence::name,
       .part_bonds = PartBonds::of_neighbours,
       .couples_second_neighbours = true,
+      .has_quick_fracture_scale = true,
       .check_material = check_material,
       .setting_of_bonds = state_setting,
       .make_model =

@@ -6,6 +6,7 @@
 #include "solvers/formulations/solid/solid_constants.hpp"
 #include "solvers/formulations/specification/require.hpp"
 #include "src/materials/bulk_bonds.hpp"
+#include "src/materials/quadrature.hpp"
 #include "src/parallel/index_map.hpp"
 
 namespace peristat {
@@ -27,13 +28,10 @@ double micromodulus_of_states(const MaterialSpecification& material, const BondS
 
 namespace {
 
-/// Damage goes from bond to bond in one order, which ranks do not have.
-void refuse_damage_of_parts(const ModelSetting& setting) {
-  if (setting.index_map.is_whole()) return;
-  for (const auto& material : all_materials(setting.of, setting.materials)) {
-    require(material.of->damage.law == DamageLaw::none, material.key + ".damage.law", "",
-            "is for one rank with model \"state\"");
-  }
+/// Refuses images of parts of a body: a part lacks some twins of its bonds.
+void refuse_images_of_parts(const ModelSetting& setting) {
+  require(setting.index_map.is_whole() || setting.points.images.kinds.empty(), "material.model",
+          "state", "is for one rank with planes of symmetry and periods");
 }
 
 /// Weights with which bonds take kappa r^2 (q_i + q_j) times the work of their law, q = V d (d + 2)
@@ -57,7 +55,8 @@ MadeModel make_state_model(const ModelSetting& setting, Bonds bonds, StateRules 
   const BodySpecification& from = setting.of;
   const Points& points = setting.points;
   const bool is_by_release = rules.drive == DamageDrive::release;
-  if (is_by_release) refuse_damage_of_parts(setting);
+  refuse_images_of_parts(setting);
+  if (points.own() < points.count()) drop_weightless(bonds);
   const BondSetting of_states = state_setting(setting.bonds);
   std::vector<DirectedConstant> moduli;
   for (const auto& material : all_materials(from, setting.materials)) {
@@ -83,6 +82,7 @@ MadeModel make_state_model(const ModelSetting& setting, Bonds bonds, StateRules 
   }
   CutBonds cut = cut_bonds(bonds, points, from.cracks);
   if (from.is_uniform()) shares.kernel = kernel_of_weights(bonds);
+  shares.twins = twins_of(points, bonds);
   if (is_by_release) weigh_by_release(bonds, points, shares, mixed.modulus());
   auto [potential, never_fails] = mixed.potential(bonds);
   return {Model(std::make_shared<StateTerm>(std::make_shared<const Bonds>(std::move(bonds)),
