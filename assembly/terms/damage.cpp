@@ -2,18 +2,9 @@
 
 #include <algorithm>
 
+#include "src/geometry/gather_images.hpp"
+
 namespace peristat {
-namespace {
-
-/// Adds the sums of images to those of their sources, and copies the result back to the images.
-void gather_images(std::span<const Index> sources, std::vector<double>& sums) {
-  const std::size_t own = sums.size() - sources.size();
-  for (std::size_t k = 0; k < sources.size(); ++k) sums[std::size_t(sources[k])] += sums[own + k];
-  for (std::size_t k = 0; k < sources.size(); ++k) sums[own + k] = sums[std::size_t(sources[k])];
-}
-
-}  // namespace
-
 DamageState assess_damage(const Model& model, const History& history,
                           std::span<const double> cut_weight, std::span<double> damage,
                           const Points* points) {
@@ -24,7 +15,7 @@ DamageState assess_damage(const Model& model, const History& history,
   whole.resize(damage.size(), 0.0);
   const BondLosses lost = failure.weigh(model.failure_history(history), points, whole, left);
   if (points != nullptr) {
-    for (std::vector<double>* sums : {&whole, &left}) gather_images(points->images.source, *sums);
+    for (std::vector<double>* sums : {&whole, &left}) gather_images(*points, *sums);
   }
   // On a part of a body the damage of the points that its rank owns, the first ones, is told.
   const bool is_part = points != nullptr && points->owned;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -29,6 +30,7 @@
 #include "cases/runner/process/ranks_environment.hpp"
 #include "cases/runner/process/runtime_environment.hpp"
 #include "cases/runner/setup/part_body.hpp"
+#include "solvers/formulations/formulations.hpp"
 #include "solvers/ranks/ranks.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/machine_error.hpp"
@@ -48,9 +50,10 @@ struct CommandLine {
   bool no_plots = false;  // accepted here, used by the launcher, which draws
   CalibrationQuestion calibration;
   MaterialModel calibrated_model = MaterialModel::cpd;
+  std::optional<std::string> influence;  // default: the model's
   BondCalibrationQuestion bond_calibration;
   PointsQuestion points;
-  std::vector<const CLI::Option*> of_bonds;  // options of calibrate for bond-based models only
+  std::vector<const CLI::Option*> of_bonds;  // options of calibrate that cpd does not take
 };
 
 /// Splits each "key=value" of --set, and adds --output.
@@ -170,9 +173,10 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
   using Volume = VolumeCorrection;
   using Surface = SurfaceCorrection;
   using Law = DamageLaw;
-  add("--model", line.calibrated_model, "cpd (default) or bond")
-      ->transform(
-          names<MaterialModel>({{"cpd", MaterialModel::cpd}, {"bond", MaterialModel::bond}}));
+  add("--model", line.calibrated_model, "cpd (default), bond or state")
+      ->transform(names<MaterialModel>({{"cpd", MaterialModel::cpd},
+                                        {"bond", MaterialModel::bond},
+                                        {"state", MaterialModel::state}}));
   add_of_bonds("--area", asked.area, "bond: area in 1D [m2] (default: 1)");
   add_of_bonds("--angle", asked.angle, "bond: angle of the lattice [degrees]");
   add_of_bonds("--volume-correction", asked.volume_correction,
@@ -195,7 +199,7 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
   add_of_bonds("--calibration", material.calibration, "bond: continuum (default) or lattice")
       ->transform(names<Calibration>(
           {{"continuum", Calibration::continuum}, {"lattice", Calibration::lattice}}));
-  add("--influence", material.influence, "influence function, as in case files");
+  add("--influence", line.influence, "influence function, as in case files");
   add_of_bonds("--micromodulus", material.micromodulus, "bond: c [N/m6]");
   add("--drive", damage.drive, "cpd: release (default with --fracture-energy) or stretch")
       ->transform(names<DamageDrive>(
@@ -220,7 +224,7 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
 /// Refuses options that the constants of cpd do not depend on: they would seem to have been used.
 void refuse_options_of_bonds(const CommandLine& line) {
   for (const CLI::Option* option : line.of_bonds) {
-    if (option->count() > 0) throw InputError(option->get_name(), "", "is for --model bond");
+    if (option->count() > 0) throw InputError(option->get_name(), "", "is not for --model cpd");
   }
 }
 
@@ -233,13 +237,18 @@ void require_lattice(const CLI::App& command) {
 }
 
 Exit calibrate(const CommandLine& line) {
-  if (line.calibrated_model == MaterialModel::bond) {
-    return calibrate(line.calibration, line.bond_calibration);
+  BondCalibrationQuestion of_bonds = line.bond_calibration;
+  of_bonds.material.model = line.calibrated_model;
+  const std::string influence =
+      line.influence.value_or(formulation_of(of_bonds.material).default_influence);
+  if (line.calibrated_model != MaterialModel::cpd) {
+    of_bonds.material.influence = influence;
+    return calibrate(line.calibration, std::move(of_bonds));
   }
   refuse_options_of_bonds(line);
   CalibrationQuestion asked = line.calibration;
-  asked.influence = line.bond_calibration.material.influence;
-  return calibrate(asked, line.bond_calibration.material.damage);
+  asked.influence = influence;
+  return calibrate(asked, of_bonds.material.damage);
 }
 
 void add_points(CLI::App& command, CommandLine& line) {

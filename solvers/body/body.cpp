@@ -65,9 +65,7 @@ void note_materials(Body& body, const PointMaterials& materials, int threads) {
 /// Setting with which the bonds of a body are made.
 BondSetting setting_of_bonds(const Body& body) {
   const BodySpecification& of = body.specification;
-  const Formulation& formulation = formulation_of(of);
-  BondSetting setting =
-      formulation.setting_of_bonds ? formulation.setting_of_bonds(body.setting) : body.setting;
+  BondSetting setting = setting_of_bonds(formulation_of(of), body.setting);
   return of.is_convolved() ? setting_of_short_bonds(body.points, std::move(setting)) : setting;
 }
 

@@ -22,8 +22,8 @@
 namespace peristat {
 namespace {
 
-using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 7, 1>;
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 7, 7>;
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1>;
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8>;
 
 constexpr std::array<std::ptrdiff_t, 3> entries_of_tensor{1, 3, 6};
 
@@ -78,7 +78,8 @@ struct BulkPull::State {
   double along = 0.0;  // S : eps
   Vector strain{};
   double stress = 0.0;
-  std::vector<double> largest{};  // stretches of fibres so far
+  double theta = 0.0;             // of states
+  std::vector<double> largest{};  // (equivalent) stretches of fibres so far
 };
 
 /// The equilibria of one law under one form of stress.
@@ -89,7 +90,10 @@ class BulkPull::Equilibrium {
         law_(law),
         size_(entries_of_tensor[std::size_t(bulk.dimension_ - 1)]),
         form_(vector(form)),
-        fibres_(bulk.fibres_.size()) {}
+        drop_(law.onset() < law.critical() ? 0.0 : 1.0),
+        fibres_(bulk.fibres_.size()) {
+    for (const Fibre& fibre : bulk.fibres_) total_ += fibre.stiffness;
+  }
 
   /// State in which the first bond reaches its onset; without strain if the lattice has no
   /// stiffness.
@@ -102,12 +106,15 @@ class BulkPull::Equilibrium {
         symmetric_modes(entries_of(stiffness), int(size_)).values;
     if (!(eigenvalues.front() > 1e-12 * eigenvalues.back())) return state;
     const Vector of_unit = strain_of_form(stiffness);
+    const double theta = dilatation(of_unit);
     double longest = 0.0;
     for (const Fibre& fibre : bulk_.fibres_) {
-      longest = std::max(longest, vector(fibre.dyad).dot(of_unit));
+      longest = std::max(longest, driving(fibre, vector(fibre.dyad).dot(of_unit), theta).stretch);
     }
     state.stress = law_.onset() / longest;
+    if (!std::isfinite(state.stress)) return state;
     state.strain = state.stress * of_unit;
+    state.theta = state.stress * theta;
     state.along = form_.dot(state.strain);
     return state;
   }
@@ -116,6 +123,7 @@ class BulkPull::Equilibrium {
   [[nodiscard]] State at(double along, const State& since) {
     State state = since;
     state.strain *= along / since.along;
+    state.theta *= along / since.along;
     state.along = along;
     constexpr int most_iterations = 30;
     for (int k = 0; k < most_iterations; ++k) {
@@ -132,10 +140,40 @@ class BulkPull::Equilibrium {
  private:
   static constexpr double tolerance = 1e-12;
 
-  /// A fibre at a strain.
+  /// A fibre at a strain, with the slopes of its integrity by its stretch and by theta.
   struct Strained {
-    double stretch, integrity, slope;  // slope of the integrity
+    double stretch, integrity, slope, slope_by_theta;
   };
+
+  /// An equivalent stretch with its derivatives by stretch and theta.
+  struct Driving {
+    double stretch = 0.0, by_stretch = 0.0, by_theta = 0.0;
+  };
+
+  [[nodiscard]] Driving driving(const Fibre& fibre, double s, double theta) const {
+    if (bulk_.zeta_ == 0.0) return {s, 1.0, 0.0};
+    const double along = (1.0 - drop_ * fibre.drop) * s,
+                 squared = s * (along + bulk_.zeta_ * theta);
+    constexpr double round_off = 1e-12;
+    if (!(s > 0.0 && squared > round_off * s * s)) return {};
+    const double root = std::sqrt(squared);
+    return {root, (along + 0.5 * bulk_.zeta_ * theta) / root, 0.5 * bulk_.zeta_ * s / root};
+  }
+
+  /// d (sum a T s) / sum a, with the integrities of the fibres.
+  [[nodiscard]] double dilatation(const Vector& strain) const {
+    return bulk_.dimension_ / total_ * dilatational().dot(strain);
+  }
+
+  /// sum a T n n
+  [[nodiscard]] Vector dilatational() const {
+    Vector sum = Vector::Zero(size_);
+    for (std::size_t k = 0; k < fibres_.size(); ++k) {
+      const Fibre& fibre = bulk_.fibres_[k];
+      sum += fibre.stiffness * fibres_[k].integrity * vector(fibre.dyad);
+    }
+    return sum;
+  }
 
   /// True if stress over strain has grown. Integrities fall, and the ratio with them (where
   /// triangles of negative stiffness fail it could rise; no lattice is known where it does). A
@@ -157,14 +195,15 @@ class BulkPull::Equilibrium {
 
   void grow(State& state) const {
     for (std::size_t k = 0; k < fibres_.size(); ++k) {
-      const double stretch = vector(bulk_.fibres_[k].dyad).dot(state.strain);
-      state.largest[k] = std::max(state.largest[k], stretch);
+      const Fibre& fibre = bulk_.fibres_[k];
+      const double stretch = vector(fibre.dyad).dot(state.strain);
+      state.largest[k] = std::max(state.largest[k], driving(fibre, stretch, state.theta).stretch);
     }
   }
 
   void set_secants(const std::vector<double>& largest) {
     for (std::size_t k = 0; k < fibres_.size(); ++k) {
-      fibres_[k] = {0.0, law_.integrity(largest[k]), 0.0};
+      fibres_[k] = {0.0, law_.integrity(largest[k]), 0.0, 0.0};
     }
   }
 
@@ -186,34 +225,64 @@ class BulkPull::Equilibrium {
       for (const Simplex& simplex : all) sum += simplex.stiffness * integrity(simplex, sides);
       result += sum * measure * measure.transpose();
     }
+    if (bulk_.zeta_ != 0.0) {
+      const Vector sum = dilatational();
+      result += 0.5 * bulk_.zeta_ * bulk_.dimension_ / total_ * sum * sum.transpose();
+    }
     return result;
   }
 
-  /// One step of Newton's method for strain and stress. Returns the change of the strain.
+  /// One step of Newton's method for strain, stress and, of states, theta. Returns the change of
+  /// the strain.
   double improve(State& state, const std::vector<double>& largest) {
-    Matrix tangent = Matrix::Zero(size_ + 1, size_ + 1);
-    Vector residual = Vector::Zero(size_ + 1);
+    const std::ptrdiff_t unknowns = size_ + (bulk_.zeta_ == 0.0 ? 1 : 2);
+    Matrix tangent = Matrix::Zero(unknowns, unknowns);
+    Vector residual = Vector::Zero(unknowns);
     auto stiffness = tangent.topLeftCorner(size_, size_);
     auto stress = residual.head(size_);
     for (std::size_t k = 0; k < fibres_.size(); ++k) {
       const Vector n = vector(bulk_.fibres_[k].dyad);
       const double s = n.dot(state.strain), a = bulk_.fibres_[k].stiffness;
-      const bool grows = s > largest[k];
+      const Driving drive = driving(bulk_.fibres_[k], s, state.theta);
+      const bool grows = drive.stretch > largest[k];
+      const double slope = grows ? law_.slope(drive.stretch) : 0.0;
       Strained& fibre = fibres_[k];
-      fibre = {s, law_.integrity(grows ? s : largest[k]), grows ? law_.slope(s) : 0.0};
-      stress += a * fibre.integrity * s * n;
-      stiffness += a * (fibre.integrity + s * fibre.slope) * n * n.transpose();
+      fibre = {s, law_.integrity(grows ? drive.stretch : largest[k]), slope * drive.by_stretch,
+               slope * drive.by_theta};
+      const double force = s + 0.5 * bulk_.zeta_ * state.theta;
+      stress += a * fibre.integrity * force * n;
+      stiffness += a * (fibre.integrity + force * fibre.slope) * n * n.transpose();
     }
     add_simplices(state, stress, stiffness);
+    if (bulk_.zeta_ != 0.0) add_dilatation(state, residual, tangent);
     stress -= state.stress * form_;
     residual[size_] = form_.dot(state.strain) - state.along;
-    tangent.topRightCorner(size_, 1) = -form_;
-    tangent.bottomLeftCorner(1, size_) = form_.transpose();
+    tangent.block(0, size_, size_, 1) = -form_;
+    tangent.block(size_, 0, 1, size_) = form_.transpose();
     Vector change = residual;
     solve_square(entries_of(tangent), {change.data(), std::size_t(change.size())});
     state.strain -= change.head(size_);
     state.stress -= change[size_];
+    if (bulk_.zeta_ != 0.0) state.theta -= change[size_ + 1];
     return change.head(size_).norm();
+  }
+
+  /// The equation of theta, times sum a / d, and the derivatives by it.
+  void add_dilatation(const State& state, Vector& residual, Matrix& tangent) const {
+    const std::ptrdiff_t last = size_ + 1;
+    residual[last] = total_ / bulk_.dimension_ * state.theta;
+    tangent(last, last) = total_ / bulk_.dimension_;
+    for (std::size_t k = 0; k < fibres_.size(); ++k) {
+      const Vector n = vector(bulk_.fibres_[k].dyad);
+      const double a = bulk_.fibres_[k].stiffness;
+      const auto& [s, integrity, slope, slope_by_theta] = fibres_[k];
+      const double force = s + 0.5 * bulk_.zeta_ * state.theta;
+      residual[last] -= a * integrity * s;
+      tangent.block(0, last, size_, 1) +=
+          a * (0.5 * bulk_.zeta_ * integrity + force * slope_by_theta) * n;
+      tangent.block(last, 0, 1, size_) -= a * (integrity + s * slope) * n.transpose();
+      tangent(last, last) -= a * s * slope_by_theta;
+    }
   }
 
   void add_simplices(const State& state, auto& stress, auto& stiffness) {
@@ -256,6 +325,7 @@ class BulkPull::Equilibrium {
         return state;
       }
       state.strain = state.stress * of_unit;
+      state.theta = dilatation(state.strain);
       const std::vector<double> before = state.largest;
       grow(state);
       double growth = 0.0;
@@ -271,22 +341,29 @@ class BulkPull::Equilibrium {
   const AnyLaw& law_;
   std::ptrdiff_t size_;
   Vector form_;
+  double drop_;         // 1: bonds are brittle
+  double total_ = 0.0;  // sum a
   std::vector<Strained> fibres_;
   std::vector<double> slopes_;
 };
 
-BulkPull::BulkPull(const BondSetting& setting, double micromodulus)
-    : dimension_(setting.dimension) {
+BulkPull::BulkPull(const BondSetting& setting, double micromodulus, double lame_ratio)
+    : dimension_(setting.dimension), zeta_(2.0 * (lame_ratio - 1.0) / (setting.dimension + 2)) {
   if (!setting.lattice) {
     spread_evenly(micromodulus * setting.moment(1));
     return;
   }
   const BulkBonds bulk(setting);
   Numbers numbers;
+  const double per_moment = 0.5 * zeta_ * dimension_ / bulk.moment(1);
   for (const BulkBonds::Bond& bond : bulk.bonds()) {
-    const auto number = std::size_t(numbers.of(bond.direction));
-    if (number == fibres_.size()) fibres_.push_back({projector(bond.direction, dimension_), 0.0});
-    fibres_[number].stiffness += 0.5 * micromodulus * bond.weight * bond.length;
+    const double share = 0.5 * bond.weight * bond.length;  // of one of the two
+    const std::size_t number =
+        zeta_ == 0.0 ? std::size_t(numbers.of(bond.direction)) : fibres_.size();
+    if (number == fibres_.size()) {
+      fibres_.push_back({projector(bond.direction, dimension_), 0.0, per_moment * share});
+    }
+    fibres_[number].stiffness += micromodulus * share;
   }
   if (fibres_.size() > most_directions) {
     spread_evenly(micromodulus * bulk.moment(1));
@@ -411,9 +488,8 @@ std::vector<BulkPull::Form> BulkPull::forms(Loading loading) const {
   return result;
 }
 
-double BulkPull::onset(const Tensor& form, double stretch) const {
-  const AnyLaw brittle{CriticalStretch{stretch}};
-  return Equilibrium(*this, form, brittle).first().stress;
+double BulkPull::onset(const Tensor& form, const AnyLaw& law) const {
+  return Equilibrium(*this, form, law).first().stress;
 }
 
 /// Follows the strain in steps of 2 %, and around each peak in finer and finer ones, until the
@@ -441,7 +517,8 @@ double BulkPull::peak(const Tensor& form, const AnyLaw& law) const {
       here = std::move(there);
     }
   };
-  if (best > 0.0) march(march, first, coarsest, std::numeric_limits<double>::infinity());
+  if (best > 0.0 && std::isfinite(best))
+    march(march, first, coarsest, std::numeric_limits<double>::infinity());
   return best;
 }
 
@@ -450,7 +527,7 @@ DirectionalSpread BulkPull::over(Loading loading, const Quantity& of_form) const
   DirectionalSpread result{0.0, std::numeric_limits<double>::infinity(), 0.0};
   for (const auto& [form, weight] : forms(loading)) {
     const double value = of_form(form);
-    result.mean += weight * value;
+    if (weight > 0.0) result.mean += weight * value;
     result.least = std::min(result.least, value);
     result.most = std::max(result.most, value);
   }
@@ -468,8 +545,8 @@ bool BulkPull::is_quick() const {
   return count <= most_simplices;
 }
 
-DirectionalSpread BulkPull::onset(Loading loading, double stretch) const {
-  return over(loading, [&](const Tensor& form) { return onset(form, stretch); });
+DirectionalSpread BulkPull::onset(Loading loading, const AnyLaw& law) const {
+  return over(loading, [&](const Tensor& form) { return onset(form, law); });
 }
 
 }  // namespace peristat

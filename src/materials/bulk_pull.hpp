@@ -32,20 +32,30 @@ enum class Loading {
 /// M is the derivative of their relative area or volume, a_t = w |A| C_2 / V and w |V| C_3 / V.
 /// The strength is the largest lambda on the way. In plane strain it is the stress in the plane.
 ///
+/// Bonds of states (see StateTerm) that lose their integrity by what this releases have the stress
+/// sum a_b T_b (s_b + zeta theta / 2) n_b n_b with zeta = 2 (lambda - mu) / ((d + 2) mu) and theta
+/// = d (sum a_b T_b s_b) / sum a_b, and T_b depends on s_eq, s_eq^2 = s_b (s_b + zeta theta) where
+/// s_b > 0. Of brittle bonds the whole drop counts, so that zeta d kappa r^2 s_b^2 / (2 M) is
+/// subtracted. With zeta = 0, as of bonds, s_eq is s_b.
+///
 /// Directions n are those of sector_directions for square and cubic lattices, otherwise 24 (2D) or
-/// 60 (3D) that are spread evenly. Without a lattice, or with more than most_directions of bonds,
-/// the bonds' directions are spread evenly, too, with the stiffness of the continuum or the
-/// lattice.
+/// 60 (3D) that are spread evenly. Without a lattice, or with more than most_directions of bonds
+/// (of bonds of states: more bonds), the bonds' directions are spread evenly, too, with the
+/// stiffness of the continuum or the lattice.
 class BulkPull {
  public:
-  BulkPull(const BondSetting& setting, double micromodulus);
+  /// @param lame_ratio lambda/mu of states; 1: bonds
+  BulkPull(const BondSetting& setting, double micromodulus, double lame_ratio = 1.0);
   BulkPull(const Kernel& kernel, double spacing, const CpdConstants& constants);
 
-  /// Largest stress [Pa]; not for compression, under which bonds along it never fail.
+  /// Largest stress [Pa]; not for compression, under which bonds along it never fail. Infinite if
+  /// the stress drives no bond, as equal tension does with lambda = 0, or any with bonds of states
+  /// that are auxetic.
   [[nodiscard]] DirectionalSpread peak(Loading loading, const AnyLaw& law) const;
 
-  /// Stress at which the most stretched bond has this stretch and all are undamaged [Pa].
-  [[nodiscard]] DirectionalSpread onset(Loading loading, double stretch) const;
+  /// Stress at which the bond that is driven most reaches the onset of the law [Pa]; infinite
+  /// likewise.
+  [[nodiscard]] DirectionalSpread onset(Loading loading, const AnyLaw& law) const;
 
   static constexpr std::size_t most_directions = 400;
 
@@ -56,10 +66,11 @@ class BulkPull {
   /// Symmetric, in Kelvin's notation: off-diagonal entries times sqrt(2).
   using Tensor = std::array<double, 6>;
 
-  /// All bonds of a direction.
+  /// All bonds of a direction; of states two opposite ones.
   struct Fibre {
     Tensor dyad;
-    double stiffness;  // [Pa]
+    double stiffness;   // [Pa]
+    double drop = 0.0;  // zeta d kappa r^2 / (2 M)
   };
   /// All triangles or tetrahedra with the same sides.
   struct Simplex {
@@ -81,11 +92,12 @@ class BulkPull {
   void spread_evenly(double first_moment);
   [[nodiscard]] std::vector<Form> forms(Loading loading) const;
   [[nodiscard]] double peak(const Tensor& form, const AnyLaw& law) const;
-  [[nodiscard]] double onset(const Tensor& form, double stretch) const;
+  [[nodiscard]] double onset(const Tensor& form, const AnyLaw& law) const;
   template <class Quantity>
   [[nodiscard]] DirectionalSpread over(Loading loading, const Quantity& of_form) const;
 
   int dimension_;
+  double zeta_ = 0.0;
   std::vector<Fibre> fibres_;
   std::vector<Simplices> simplices_;  // grouped by measure
   std::vector<WeightedDirection> directions_;

@@ -10,6 +10,7 @@
 
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
+#include "src/geometry/gather_images.hpp"
 #include "src/geometry/point_sizes.hpp"
 #include "src/geometry/squared_distance.hpp"
 #include "src/neighbourhood/lattice_kernel.hpp"
@@ -179,18 +180,6 @@ void weigh_volumes(Bonds& bonds, const Points& points, const Kernel& kernel) {
   });
 }
 
-/// Completes sums over the bonds of every point: adds the sum of an image to that of its source,
-/// and copies the source's total back to the image.
-template <class Sum, class Add>
-void gather_images(const Points& points, std::vector<Sum>& sums, const Add& add) {
-  for (Index image = points.own(); image < points.count(); ++image) {
-    add(sums[std::size_t(points.source(image))], sums[std::size_t(image)]);
-  }
-  for (Index image = points.own(); image < points.count(); ++image) {
-    sums[std::size_t(image)] = sums[std::size_t(points.source(image))];
-  }
-}
-
 /// Takes half of a bond's weight away per end that is an image: across a plane it has a twin.
 void share_with_images(Bonds& bonds, const Points& points) {
   if (points.own() == points.count()) return;
@@ -207,7 +196,7 @@ void apply_volume_method(Bonds& bonds, const Points& points, const Kernel& kerne
     neighbourhood[i] += bonds.weight(bond) / points.volume[i];
     neighbourhood[j] += bonds.weight(bond) / points.volume[j];
   });
-  gather_images(points, neighbourhood, [](double& sum, double more) { sum += more; });
+  gather_images(points, neighbourhood);
   const std::vector<double> whole = whole_volumes(points, kernel);
   const double bulk = whole.empty() ? 1.0 : whole.front();
   for (std::size_t i = 0; i < whole.size(); ++i) neighbourhood[i] *= bulk / whole[i];
@@ -332,7 +321,7 @@ std::vector<double> seen_volumes(const Points& points, const Bonds& bonds, const
     seen[std::size_t(i)] += share * points.volume[std::size_t(j)];
     seen[std::size_t(j)] += share * points.volume[std::size_t(i)];
   });
-  gather_images(points, seen, [](double& sum, double more) { sum += more; });
+  gather_images(points, seen);
   return seen;
 }
 

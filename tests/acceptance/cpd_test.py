@@ -230,7 +230,7 @@ class Cpd(Folder):
                               "--calibration": "lattice", "--volume-correction": "linear",
                               "--surface-correction": "none"}.items():  # fmt: skip
             with self.subTest(option=option):
-                self.assert_refused(self.peristat("calibrate", *self.PLANE, *moduli, option, value), f"{option}: is for --model bond")
+                self.assert_refused(self.peristat("calibrate", *self.PLANE, *moduli, option, value), f"{option}: is not for --model cpd")
 
     def test_calibrate_refuses_what_makes_no_sense(self):
         moduli = ["--youngs-modulus", "1", "--poisson-ratio"]

@@ -15,6 +15,8 @@ struct DrivenBond {
   Index point = 0;  ///< its first
   Offset bond = 0;
   double stretch = 0.0;  ///< s
+  Offset twin = -1;      ///< another bond that is damaged with it
+  [[nodiscard]] int bonds() const { return twin < 0 ? 1 : 2; }
 };
 
 /// Relative growth of a history below which it counts as none: solving and damaging in turns would
@@ -31,8 +33,8 @@ void judge_driven(const OfBond& of_bond, DrivenBond bond, double driving, double
   const bool grows =
       of_bond.is_loading(driving, history) && driving > history * (1.0 + least_growth);
   if (!grows) return;
-  ++growth.degrading;
-  growth.breaking += of_bond.is_broken(driving);
+  growth.degrading += bond.bonds();
+  growth.breaking += of_bond.is_broken(driving) ? bond.bonds() : 0;
   visit(bond);
 }
 
@@ -49,26 +51,31 @@ template <class OfBond>
   return before - of_bond.integrity_after(history);
 }
 
+/// Driven bonds, the most utilised first, of equal ones the first.
+/// @param find(visit) calls visit(thread, bond) for each of them
+template <class Find>
+[[nodiscard]] std::vector<DrivenBond> driven_in_order(int threads, const Find& find) {
+  std::vector<std::vector<DrivenBond>> of_thread(static_cast<std::size_t>(threads));
+  find([&](int thread, const DrivenBond& bond) { of_thread[std::size_t(thread)].push_back(bond); });
+  std::vector<DrivenBond> driven;
+  for (const auto& some : of_thread) driven.insert(driven.end(), some.begin(), some.end());
+  std::ranges::sort(driven, [](const DrivenBond& a, const DrivenBond& b) {
+    return a.utilisation != b.utilisation ? a.utilisation > b.utilisation : a.bond < b.bond;
+  });
+  return driven;
+}
+
 /// Damages bonds by release until none is driven: one after another, the most utilised first, each
 /// as those before it have left the body. Bonds share what they would set free, and all at once
 /// would count it more than once.
-/// @param find(visit) calls visit(thread, bond) for each driven bond
+/// @param find see driven_in_order
 /// @param damage(bond, growth) damages it if it still is driven, and counts it
 template <class Find, class Damage>
 DamageGrowth damage_one_by_one(int threads, const Find& find, const Damage& damage) {
   DamageGrowth growth;
   for (;;) {
-    std::vector<std::vector<DrivenBond>> of_thread(static_cast<std::size_t>(threads));
-    find([&](int thread, const DrivenBond& bond) {
-      of_thread[std::size_t(thread)].push_back(bond);
-    });
-    std::vector<DrivenBond> driven;
-    for (const auto& some : of_thread) driven.insert(driven.end(), some.begin(), some.end());
-    std::ranges::sort(driven, [](const DrivenBond& a, const DrivenBond& b) {
-      return a.utilisation != b.utilisation ? a.utilisation > b.utilisation : a.bond < b.bond;
-    });
     const Index before = growth.degrading;
-    for (const DrivenBond& one : driven) damage(one, growth);
+    for (const DrivenBond& one : driven_in_order(threads, find)) damage(one, growth);
     if (growth.degrading == before) return growth;  // none, or round-off alone has driven them
   }
 }

@@ -18,6 +18,8 @@
 #include "assembly/terms/states/state_network.hpp"
 #include "src/core/aligned_vector.hpp"
 #include "src/core/threads.hpp"
+#include "src/geometry/counts_bond.hpp"
+#include "src/geometry/gather_images.hpp"
 #include "src/measures/linear_length.hpp"
 #include "src/measures/small_algebra.hpp"
 
@@ -35,19 +37,21 @@ class StateKernels {
   /// Shares outlive it.
   StateKernels(const Points& points, const Bonds& bonds, const StateShares& shares,
                Workspace& workspace)
-      : buffers_(points, bonds, workspace), whole_(shares.whole) {
+      : buffers_(points, bonds, workspace), whole_(shares.whole), twins_(shares.twins) {
     const auto count = points.volume.size();
     ends_.assign(2 * count, 0.0);
     for (std::vector<double>* per_point :
          {&dilatational_, &per_moment_, &stiffness_, &energy_, &rate_}) {
       per_point->assign(count, 0.0);
     }
+    const auto own = std::size_t(points.own());
     for (std::size_t i = 0; i < count; ++i) {
       const auto& [lambda, mu] = shares.constants[i];
       // A point without neighbours has no states.
       per_moment_[i] = shares.moment[i] > 0.0 ? D / shares.moment[i] : 0.0;
       dilatational_[i] = points.volume[i] * (lambda - mu);
       stiffness_[i] = dilatational_[i] * per_moment_[i] * per_moment_[i];
+      if (i >= own) dilatational_[i] = 0.0;  // an image's dilatation is its source's
       ends_[2 * i] = points.volume[i] * (D + 2) * mu * per_moment_[i];
     }
   }
@@ -88,10 +92,16 @@ class StateKernels {
     };
     buffers_.threads.template sum_rows<2>(body, [&](Index point, const double* total) {
       const auto i = std::size_t(point);
-      const double theta = per_moment_[i] * total[0];
-      ends_[2 * i + 1] = stiffness_[i] * total[0];
-      energy_[i] = 0.5 * (dilatational_[i] * theta * theta + ends_[2 * i] * total[1]);
+      rate_[i] = total[0];
+      energy_[i] = ends_[2 * i] * total[1];
     });
+    gather_images(buffers_.points, rate_);
+#pragma omp parallel for num_threads(threads())
+    for (std::size_t i = 0; i < energy_.size(); ++i) {
+      const double theta = per_moment_[i] * rate_[i];
+      ends_[2 * i + 1] = stiffness_[i] * rate_[i];
+      energy_[i] = 0.5 * (dilatational_[i] * theta * theta + energy_[i]);
+    }
     Evaluation found;
     for (const double energy : energy_) found.energy += energy;
     found.degenerate = !std::isfinite(found.energy);
@@ -131,10 +141,10 @@ class StateKernels {
         sums[i] += sum(own);
       }
     };
-    buffers_.threads.template sum_rows<1>(rates, [&](Index point, const double* total) {
-      const auto i = std::size_t(point);
-      rate_[i] = stiffness_[i] * *total;
-    });
+    buffers_.threads.template sum_rows<1>(
+        rates, [&](Index point, const double* total) { rate_[std::size_t(point)] = *total; });
+    gather_images(buffers_.points, rate_);
+    for (std::size_t i = 0; i < rate_.size(); ++i) rate_[i] *= stiffness_[i];
     sum_forces(
         product, how,
         [&](const Batch<D>& batch, const Lanes& share, Index i) __attribute__((always_inline)) {
@@ -243,8 +253,10 @@ class StateKernels {
     });
   }
 
-  /// Damage that committing the state would do by release, after find_states of it.
-  /// @param visit(thread, DrivenBond) called for each bond whose damage would grow
+  /// Damage that committing the state would do by release, after find_states of it, of the bonds
+  /// that are counted here: they have complete states.
+  /// @param visit(thread, DrivenBond) called for each bond whose damage would grow; a bond and its
+  ///        twin are one
   template <class P, class E, class Visit>
   DamageGrowth growth_by_release(Span u, const P& law, const E& eigenstretch, const double* history,
                                  const Visit& visit) {
@@ -260,8 +272,11 @@ class StateKernels {
           });
           const Lanes driving = equivalent_stretch(batch, i, s, drop);
           for (int l = 0; l < batch.count; ++l) {
-            const Offset bond = batch.first + l;
-            judge_driven(law.of_bond(bond), {0.0, i, bond, s[l]}, driving[l], history[bond], found,
+            const Offset bond = batch.first + l, twin = twin_of(bond).bond;
+            if (0 <= twin && twin < bond) continue;
+            if (!counts_bond(buffers_.points, i, batch.partner[l])) continue;
+            judge_driven(law.of_bond(bond), {0.0, i, bond, s[l], twin > bond ? twin : -1},
+                         driving[l], history[bond], found,
                          [&](const DrivenBond& one) { visit(thread, one); });
           }
         });
@@ -294,13 +309,16 @@ class StateKernels {
       const double stiffness = stiffness_[std::size_t(i)];
       pressure[std::size_t(i)] = {stiffness * total[0], stiffness * total[1]};
     });
+    gather_images(buffers_.points, pressure, [](std::array<double, 2>& sum, const auto& more) {
+      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += more[k];
+    });
 #pragma omp parallel for num_threads(threads())
     for (Index first = 0; first < bonds.points(); ++first) {
       const auto i = std::size_t(first);
       for (Offset bond = bonds.offset[first]; bond < bonds.offset[first + 1]; ++bond) {
         const auto j = std::size_t(bonds.partner[bond]);
         const double q = ends_[2 * i] + ends_[2 * j];
-        const double lost = law.of_bond(bond).drop_after(history[bond]) * whole_[bond].weight *
+        const double lost = law.of_bond(bond).drop_after(history[bond]) * whole_of(bond) *
                             bonds.length(bond) * (stiffness_[i] + stiffness_[j]) / q;
         auto& [s, speed, squared] = drives[std::size_t(bond)];
         const double factor = 2.0 * (pressure[i][0] + pressure[j][0]) / q - lost * s;
@@ -312,26 +330,38 @@ class StateKernels {
     }
   }
 
-  /// Damages a bond, if what the ones before it have left of the dilatations still drives it.
-  /// Returns true if it has. The states are those of the present displacements and histories.
+  /// What a bond and its twin lose, and what their points lose of sum g r s; nothing where driving
+  /// is 0.
+  struct Loss {
+    double driving = 0.0, of_ends = 0.0;
+  };
+
+  /// What a bond and its twin lose, if what the ones before have left of the dilatations still
+  /// drives them. The states are those of the present displacements and histories.
   template <class OfBond>
-  bool damage_by_release(const DrivenBond& driven, const OfBond& of_bond, double& history) {
-    const auto bond = std::size_t(driven.bond);
-    const auto i = std::size_t(driven.point), j = std::size_t(buffers_.bonds.partner[driven.bond]);
+  [[nodiscard]] Loss loss_by_release(const DrivenBond& driven, const OfBond& of_bond,
+                                     double history) const {
+    const auto i = std::size_t(driven.point);
+    const auto j = std::size_t(buffers_.points.source(buffers_.bonds.partner[driven.bond]));
     const double s = driven.stretch, r = buffers_.bonds.length(driven.bond);
     const double q = ends_[2 * i] + ends_[2 * j], p = ends_[2 * i + 1] + ends_[2 * j + 1];
     const double drop = of_bond.drop_after(history);
-    const double stiffness = stiffness_[i] + stiffness_[j];
-    const double whole = whole_[driven.bond].weight;
+    const double stiffness = stiffness_[i] + stiffness_[j], whole = whole_of(driven.bond);
     const double squared = s * (s + 2.0 * p / q - drop * whole * r * s * stiffness / q);
     const double driving = s > 0.0 && squared > 0.0 ? std::sqrt(squared) : 0.0;
     const std::optional<double> lost = damage_driven(of_bond, driving, history);
-    if (!lost) return false;
-    integrity_[bond] -= *lost;
-    for (const std::size_t end : {i, j}) {
-      ends_[2 * end + 1] -= stiffness_[end] * *lost * whole * r * s;
-    }
-    return true;
+    return lost ? Loss{history, *lost * whole * r * s} : Loss{};
+  }
+
+  /// Takes a bond's loss from its points; images are left behind.
+  void lose(const DrivenBond& driven, const Loss& loss) {
+    lose_at(driven.point, loss);
+    if (twin_of(driven.bond).bond == driven.bond) return;  // with a point's own mirror image
+    lose_at(buffers_.points.source(buffers_.bonds.partner[driven.bond]), loss);
+  }
+  void lose_at(Index point, const Loss& loss) {
+    const auto i = std::size_t(point);
+    ends_[2 * i + 1] -= stiffness_[i] * loss.of_ends;
   }
 
   /// State before bonds fail, which their losses depend on.
@@ -382,16 +412,30 @@ class StateKernels {
     const auto [q, p] = of_ends(i, batch);
     const double own = stiffness_[std::size_t(i)];
     const Lanes stiffness([&](int l) { return own + stiffness_[std::size_t(batch.partner[l])]; });
+    Lanes whole = batch.weight;
+    if (!twins_.empty()) {
+      whole = Lanes([&](int l) { return l < batch.count ? whole_of(batch.first + l) : 0.0; });
+    }
     const Lanes zero = 0.0;
     const Lanes squared =
-        s * (s + 2.0 * p / q - drop * batch.weight * s * stiffness / (q * batch.inverse_length));
+        s * (s + 2.0 * p / q - drop * whole * s * stiffness / (q * batch.inverse_length));
     return sqrt(max(chosen(s > zero, squared, zero), zero));
+  }
+
+  [[nodiscard]] BondTwin twin_of(Offset bond) const {
+    return twins_.empty() ? BondTwin() : twins_[std::size_t(bond)];
+  }
+
+  /// Share kappa r of a bond together with its twin.
+  [[nodiscard]] double whole_of(Offset bond) const {
+    return (twin_of(bond).bond < 0 ? 1.0 : 2.0) * whole_[bond].weight;
   }
 
   /// Whether the direction of a bond changes with displacements.
   static constexpr bool bends = std::is_same_v<Measure, Length>;
 
-  /// Of each bond from its first to its second point: g n, and minus the block of the bond alone.
+  /// Of each bond from its first to its second point: g n, with its twin's g, which has the same
+  /// part in the dilatation of the first; and minus the block of the bond alone.
   struct BondBlocks {
     std::vector<double> direction, block;
   };
@@ -540,9 +584,10 @@ class StateKernels {
           const Lanes share = share_of(batch);
           const auto measure = current(batch);
           for (int l = 0; l < batch.count; ++l) {
+            const double both = twin_of(batch.first + l).bond < 0 ? share[l] : 2.0 * share[l];
             for (int c = 0; c < D; ++c) {
               of_bonds.direction[std::size_t(batch.first + l) * D + std::size_t(c)] =
-                  share[l] * measure.gradient[0][c][l];
+                  both * measure.gradient[0][c][l];
             }
           }
           return block_of(batch, share, i, measure, eigenstretch, projection);
@@ -592,7 +637,8 @@ class StateKernels {
   }
 
   BondWorkspace buffers_;
-  const BondKinds& whole_;            // per bond kappa r
+  const BondKinds& whole_;  // per bond kappa r
+  const std::vector<BondTwin>& twins_;
   AlignedVector<double> integrity_;   // per bond T, padded by a batch; empty: none fails
   AlignedVector<double> ends_;        // per point q = V d (d + 2) mu / M and p, side by side
   std::vector<double> dilatational_;  // V (lambda - mu) [J]

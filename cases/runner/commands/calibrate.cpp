@@ -153,6 +153,7 @@ void require_representable(const CalibrationQuestion& question, const CpdStiffne
 }
 
 void check_place(const CalibrationQuestion& where, const BondCalibrationQuestion& question) {
+  const bool has_any_ratio = takes(question.material.model, Option::poisson_ratio);
   if (where.dimension < 1 || where.dimension > 3) {
     throw InputError("--dimension", std::to_string(where.dimension), "must be 1, 2 or 3");
   }
@@ -177,15 +178,21 @@ void check_place(const CalibrationQuestion& where, const BondCalibrationQuestion
     throw InputError("--horizon-shape", "",
                      "box and diamond are for --dimension 2 and 3 without a --volume-correction");
   }
+  if (question.horizon_shape != HorizonShape::ball &&
+      !takes(question.material.model, Option::horizon_shape)) {
+    throw InputError("--horizon-shape", "", "is for --model bond");
+  }
+  if (where.poisson_ratio && !has_any_ratio) {
+    refuse("poisson_ratio", *where.poisson_ratio, "is for --model cpd and state");
+  }
   for (const auto& [key, value] :
-       {std::pair("poisson_ratio", where.poisson_ratio), std::pair("lambda", where.lambda),
-        std::pair("mu", where.mu), std::pair("c1", where.c1), std::pair("c2", where.c2),
-        std::pair("c3", where.c3)}) {
+       {std::pair("lambda", where.lambda), std::pair("mu", where.mu), std::pair("c1", where.c1),
+        std::pair("c2", where.c2), std::pair("c3", where.c3)}) {
     if (value) refuse(key, *value, "is for --model cpd");
   }
 }
 
-/// Prints the calibration of the bonds of a case.
+/// Prints the calibration of the bonds or states of a case.
 Exit calibrate_bonds(const Case& from, bool with_strengths, std::FILE* out) {
   const auto body = make_body(from, 1);
   located_errors(from, [&] {
@@ -273,6 +280,7 @@ Exit calibrate(const CalibrationQuestion& where, BondCalibrationQuestion questio
   setting.influence = influence_named(question.material.influence);
   setting.lattice = {where.spacing, question.angle, question.surface_correction};
   question.material.youngs_modulus = where.youngs_modulus;
+  question.material.poisson_ratio = where.poisson_ratio;
   try {
     check_material(question.material, "material", where.dimension);
     fmt::print("{}", bond_calibration(question.material, "material", setting, where.spacing,
@@ -323,8 +331,9 @@ Exit calibrate(const CalibrationQuestion& question, const DamageSpecification& d
 Exit calibrate(const Case& from, bool with_strengths, std::FILE* out) {
   if (takes(from, Option::micromodulus)) return calibrate_bonds(from, with_strengths, out);
   if (!takes(from, Option::constants)) {
+    if (formulation_of(from).fracture_scale) return calibrate_bonds(from, with_strengths, out);
     throw InputError("material.model", name_of(from.material.model),
-                     "uses E and nu as they are given; calibrate " + is_for(Option::calibration));
+                     "uses E and nu as they are given; calibrate " + is_for(Option::strength));
   }
   const Points points = make_points_of(from);
   located_errors(from, [&] { require_whole_square_cells(points); });

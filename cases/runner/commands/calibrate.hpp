@@ -20,7 +20,7 @@ struct CalibrationQuestion {
   std::optional<double> youngs_modulus, poisson_ratio, lambda, mu, c1, c2, c3;
 };
 
-/// Further data for bond-based models: corrections, and a material with its law of damage.
+/// Further data for models "bond" and "state": corrections, and a material with its law of damage.
 struct BondCalibrationQuestion {
   double area = 1.0;   ///< 1D [m2]
   double angle = 0.0;  ///< of the lattice, on which a correction by energy depends [degrees]
@@ -36,8 +36,9 @@ struct BondCalibrationQuestion {
 [[nodiscard]] Exit calibrate(const CalibrationQuestion& question,
                              const DamageSpecification& damage);
 
-/// Prints constants of bonds, see bond_calibration, as JSON.
-/// @param where dimension, spacing, horizon ratio, thickness and Young's modulus
+/// Prints constants of bonds or states, see bond_calibration, as JSON.
+/// @param where dimension, spacing, horizon ratio, thickness, Young's modulus and, of states,
+///        Poisson's ratio
 /// @throws InputError with the command line's options as keys
 [[nodiscard]] Exit calibrate(const CalibrationQuestion& where, BondCalibrationQuestion question);
 

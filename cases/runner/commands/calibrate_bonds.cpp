@@ -9,6 +9,7 @@
 #include "solvers/formulations/formulations.hpp"
 #include "solvers/formulations/materials/bond_materials.hpp"
 #include "solvers/formulations/materials/bond_potential.hpp"
+#include "solvers/formulations/solid/solid_constants.hpp"
 #include "src/core/input_error.hpp"
 
 namespace peristat {
@@ -78,17 +79,19 @@ std::string fracture_energies(const CpdTear& tear, const AnyLaw& law, int dimens
                            [&](const Coordinates& n) { return tear.energy(law, n); });
 }
 
+/// Stresses; null where bonds never fail.
 std::string over_directions(const DirectionalSpread& of) {
-  return object(
-      {exact_pair("mean", of.mean), exact_pair("least", of.least), exact_pair("most", of.most)});
+  const auto pair = [](const char* key, double stress) {
+    return std::isinf(stress) ? fmt::format("\"{}\": null", key) : exact_pair(key, stress);
+  };
+  return object({pair("mean", of.mean), pair("least", of.least), pair("most", of.most)});
 }
 
 /// Stresses at which bonds begin to soften and at which a body fails, for several states of stress.
 std::string strengths(const DamageSpecification& damage, const BulkPull& pull, int dimension) {
   const AnyLaw law = law_of(damage);
   const auto of = [&](const char* name, Loading loading) {
-    std::vector<std::string> pairs{"\"onset\": " +
-                                   over_directions(pull.onset(loading, law.onset()))};
+    std::vector<std::string> pairs{"\"onset\": " + over_directions(pull.onset(loading, law))};
     if (loading != Loading::compression) {
       pairs.push_back("\"peak\": " + over_directions(pull.peak(loading, law)));
     }
@@ -120,27 +123,22 @@ std::string damage_section(const DamageSpecification& damage, const FractureScal
   if (!scale.pull) return object(pairs);
   const DirectionalSpread strength = scale.pull->peak(Loading::tension, law_of(damage));
   if (strength.mean == 0.0) return object(pairs);
-  pairs.push_back(exact_pair("strength", strength.mean));
+  if (std::isfinite(strength.mean)) pairs.push_back(exact_pair("strength", strength.mean));
   pairs.push_back("\"uniaxial_strength\": " + over_directions(strength));
   if (with_strengths) {
     pairs.push_back("\"strengths\": " + strengths(damage, *scale.pull, dimension));
   }
-  if (scale.crossing == 0.0 || scale.youngs_modulus == 0.0) return object(pairs);
+  if (scale.crossing == 0.0 || scale.youngs_modulus == 0.0 || std::isinf(strength.mean)) {
+    return object(pairs);
+  }
   pairs.push_back(exact_pair("characteristic_length",
                              scale.youngs_modulus * energy / (strength.mean * strength.mean)));
   pairs.push_back(exact_pair("largest_spacing", largest_spacing(energy, strength.mean, scale)));
   return object(pairs);
 }
 
-}  // namespace
-
-void require_law(const DamageSpecification& damage, bool with_strengths) {
-  if (!with_strengths || damage.breaks_bonds()) return;
-  throw InputError("--strengths", "", "needs a law of damage by stretches");
-}
-
-std::string bond_calibration(const MaterialSpecification& material, const std::string& key,
-                             const BondSetting& setting, double spacing, bool with_strengths) {
+std::vector<std::string> constants_of_bonds(const MaterialSpecification& material,
+                                            const std::string& key, const BondSetting& setting) {
   if (material.fibre) {
     throw InputError(key + ".fibre", "",
                      "calibrate is for materials without fibres; check prints their constants");
@@ -153,6 +151,29 @@ std::string bond_calibration(const MaterialSpecification& material, const std::s
     pairs.push_back("\"youngs_modulus\": " + youngs_moduli(BulkBonds(setting), modulus, setting));
   }
   pairs.push_back(exact_pair("poisson_ratio", poisson_ratio(setting)));
+  return pairs;
+}
+
+std::vector<std::string> constants_of_states(const MaterialSpecification& material,
+                                             const BondSetting& setting) {
+  const auto [lambda, mu] = lame_constants(material, setting.dimension);
+  return {exact_pair("youngs_modulus", *material.youngs_modulus),
+          exact_pair("poisson_ratio", *material.poisson_ratio), exact_pair("lambda", lambda),
+          exact_pair("mu", mu)};
+}
+
+}  // namespace
+
+void require_law(const DamageSpecification& damage, bool with_strengths) {
+  if (!with_strengths || damage.breaks_bonds()) return;
+  throw InputError("--strengths", "", "needs a law of damage by stretches");
+}
+
+std::string bond_calibration(const MaterialSpecification& material, const std::string& key,
+                             const BondSetting& setting, double spacing, bool with_strengths) {
+  std::vector<std::string> pairs = takes(material.model, Option::micromodulus)
+                                       ? constants_of_bonds(material, key, setting)
+                                       : constants_of_states(material, setting);
   require_law(material.damage, with_strengths);
   if (material.damage.law != DamageLaw::none) {
     pairs.push_back("\"damage\": " +
@@ -171,7 +192,9 @@ std::string damage_calibration(const MaterialSpecification& given, const std::st
   }
   const FractureScale scale = fracture_scale_of(material, key, setting, spacing);
   std::optional<BulkBonds> bonds;
-  if (setting.lattice && takes(material.model, Option::micromodulus)) bonds.emplace(setting);
+  if (setting.lattice && !takes(material.model, Option::constants)) {
+    bonds.emplace(setting_of_bonds(formulation_of(material), setting));
+  }
   return damage_section(with_stretches(material.damage, key, scale), scale, bonds,
                         setting.dimension, with_strengths);
 }

@@ -6,8 +6,8 @@
 
 namespace peristat {
 
-/// Constants of bonds, their moduli on the lattice, and fracture energies and strengths of a law of
-/// damage, as JSON.
+/// Constants of bonds and their moduli on the lattice, or the constants of states, and fracture
+/// energies and strengths of a law of damage, as JSON.
 /// @param setting with or without a lattice
 /// @param with_strengths adds strengths under other stresses than uniaxial tension
 /// @param key     of the material, for errors
@@ -16,7 +16,7 @@ namespace peristat {
                                            const std::string& key, const BondSetting& setting,
                                            double spacing, bool with_strengths);
 
-/// Fracture energies and strengths of a law of damage, of bonds or of cpd, as JSON.
+/// Fracture energies and strengths of a law of damage, as JSON.
 [[nodiscard]] std::string damage_calibration(const MaterialSpecification& material,
                                              const std::string& key, const BondSetting& setting,
                                              double spacing, bool with_strengths);

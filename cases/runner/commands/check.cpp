@@ -72,6 +72,7 @@ std::string heading(const std::string& what, const std::string& of) {
 }
 
 /// ": fracture energy 10 J/m2, …"; empty if computing it would take minutes.
+/// @param setting of the bonds
 std::string fracture_energy_text(const DamageSpecification& damage, const FractureScale& scale,
                                  const BondSetting& setting) {
   if (scale.crossing == 0.0) return "";
@@ -96,6 +97,7 @@ std::string strength_text(const DamageSpecification& damage, const FractureScale
   if (!scale.pull) return "";
   const DirectionalSpread of = scale.pull->peak(Loading::tension, law_of(damage));
   if (of.mean == 0.0) return "";
+  if (!std::isfinite(of.mean)) return ", no strength: a pull fails no bond";
   const std::string mean = fmt::format(", strength {:.6g} Pa", of.mean);
   return dimension == 1
              ? mean
@@ -108,14 +110,17 @@ void print_strengths(std::FILE* out, const DamageSpecification& damage, const st
                      const FractureScale& scale, int dimension) {
   if (!scale.pull || dimension == 1) return;
   const AnyLaw law = law_of(damage);
-  const auto onset = [&](Loading loading) { return scale.pull->onset(loading, law.onset()).mean; };
+  const auto text = [](double stress) {
+    return std::isfinite(stress) ? fmt::format("{:.4g} Pa", stress) : "no value";
+  };
+  const auto onset = [&](Loading loading) { return scale.pull->onset(loading, law).mean; };
   if (onset(Loading::tension) == 0.0) return;
-  fmt::print(
-      out,
-      "{} bonds begin to soften at {:.4g} Pa of tension, {:.4g} Pa of compression; equal biaxial "
-      "strength {:.4g} Pa, shear strength {:.4g} Pa\n",
-      heading("strengths", name), onset(Loading::tension), onset(Loading::compression),
-      scale.pull->peak(Loading::biaxial, law).mean, scale.pull->peak(Loading::shear, law).mean);
+  fmt::print(out,
+             "{} bonds begin to soften at {} of tension, {} of compression; equal biaxial strength "
+             "{}, shear strength {}\n",
+             heading("strengths", name), text(onset(Loading::tension)),
+             text(onset(Loading::compression)), text(scale.pull->peak(Loading::biaxial, law).mean),
+             text(scale.pull->peak(Loading::shear, law).mean));
 }
 
 /// Prints fracture energy and strength of a law of damage.
@@ -140,7 +145,8 @@ void print_fracture(std::FILE* out, const Formulation& formulation,
   const FractureScale scale = fracture_scale_of(*of.of, of.key, setting, spacing);
   const std::string begin = damage.softens() ? fmt::format("onset {:.6g}, ", damage.onset) : "";
   fmt::print(out, "{} {}critical stretch {:.6g}{}{}\n", heading("fracture", name), begin,
-             damage.critical, fracture_energy_text(damage, scale, setting),
+             damage.critical,
+             fracture_energy_text(damage, scale, setting_of_bonds(formulation, setting)),
              strength_text(damage, scale, setting.dimension));
   print_strengths(out, damage, name, scale, setting.dimension);
 }

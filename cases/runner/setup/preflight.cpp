@@ -252,8 +252,7 @@ std::string key_in_case(std::string key) {
   return key;
 }
 
-/// Adds the stiffnesses of all materials, and the fracture data of bonds that break by stretch
-/// alone; other laws have no strength of their own.
+/// Adds the stiffnesses of all materials, and their fracture data if these are quickly known.
 void add_materials(const Case& from, const Body& body, Preflight& to) {
   const BodySpecification& of = body.specification;  // its stretches are computed
   const PointMaterials materials(of, body.points), as_given(from, body.points);
@@ -275,7 +274,8 @@ void add_materials(const Case& from, const Body& body, Preflight& to) {
     const FractureScale scale =
         fracture_scale_of(material, found[k].key, body.setting, body.points.spacing);
     const double strength = scale.strength(damage);
-    if (strength == 0.0) continue;  // of a lattice without shear stiffness
+    // A lattice without shear stiffness has none; where a pull fails no bond it is infinite.
+    if (strength == 0.0 || !std::isfinite(strength)) continue;
     const DamageSpecification& asked = given[k].of->damage;
     to.fractures.push_back({of.regions.empty() ? "" : found[k].name, key, scale.youngs_modulus,
                             scale.energy(damage), strength, damage.critical,

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "assembly/stress.hpp"
@@ -86,7 +87,7 @@ struct Formulation {
   AcrossPlane across_plane = AcrossPlane::cauchy_stress;
   /// True if `check` reports the error of its quadrature of bonds.
   bool has_quadrature_of_bonds = false;
-  /// True if fracture energy and strength of a law are known without a search of minutes.
+  /// True if fracture energy and strength of every law are known without a search of minutes.
   bool has_quick_fracture_scale = false;
   /// True if it is measured when a crack of brittle bonds begins to run (see crack_trapping).
   bool has_measured_trapping = false;
@@ -127,5 +128,10 @@ struct Formulation {
   /// if there is none.
   OfMaterial<std::string> negative_constant = nullptr;
 };
+
+/// Setting with which the bonds of a body are made.
+[[nodiscard]] inline BondSetting setting_of_bonds(const Formulation& of, BondSetting setting) {
+  return of.setting_of_bonds ? of.setting_of_bonds(std::move(setting)) : setting;
+}
 
 }  // namespace peristat

@@ -134,11 +134,12 @@ class Search {
     if (result_.onset == 0.0) result_.onset = 0.5 * peak_;
     if (peak_ > 0.0) {
       if (!(peak_ >= result_.onset && result_.hardening > 0.0)) {
+        const AnyLaw begins{ForceEnvelope{result_.onset, 2.0 * result_.onset}};
         throw InputError(
             key_ + "strength", number_text(strength_),
             result_.hardening > 0.0
                 ? "must be above the stress at which bonds begin to soften with this onset, " +
-                      short_text(scale_.pull->onset(Loading::tension, result_.onset).mean) + " Pa"
+                      short_text(scale_.pull->onset(Loading::tension, begins).mean) + " Pa"
                 : "needs a hardening above 0: without hardening it follows from the onset; give "
                   "peak");
       }
@@ -293,6 +294,11 @@ class StrengthSearch {
       throw InputError(key_ + "strength", number_text(*damage_.strength),
                        "needs a lattice that resists shear: at this horizon ratio bonds join "
                        "neighbours along the axes only; take a ratio of at least 1.5");
+    }
+    if (!std::isfinite(of_unit)) {
+      throw InputError(key_ + "strength", number_text(*damage_.strength),
+                       "needs a larger poisson_ratio: with this one no bond fails under a pull, "
+                       "since the body would release no energy with it");
     }
     const double brittle = *damage_.strength / of_unit;
     if (!damage_.softens()) {

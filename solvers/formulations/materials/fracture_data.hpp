@@ -18,13 +18,13 @@ struct FractureScale {
   /// For cpd: by stretch with a horizon up to largest_ratio_of_tear; by release that of the bonds
   /// alone, which take it all. Null otherwise.
   std::shared_ptr<const CpdTear> tear{};
-  /// For bonds; for cpd by stretch if there is a `tear` and it is quickly computed.
+  /// For bonds and states; for cpd by stretch if there is a `tear` and it is quickly computed.
   std::shared_ptr<const BulkPull> pull{};
 
   /// Fracture energy G of a law, the mean over all directions of a tear [J/m2].
   [[nodiscard]] double energy(const DamageSpecification& damage) const;
   /// Strength f_t of a law, the mean over the directions of a pull [Pa]; 0 for a lattice without
-  /// shear stiffness.
+  /// shear stiffness, infinite if a pull fails no bond.
   [[nodiscard]] double strength(const DamageSpecification& damage) const;
 };
 

@@ -1,5 +1,6 @@
 #include "solvers/formulations/state/state.hpp"
 
+#include <memory>
 #include <utility>
 
 #include "solvers/formulations/solid/solid_constants.hpp"
@@ -31,12 +32,13 @@ const Formulation& state_formulation() {
       .label = "\"state\"",
       .takes = {Option::plane, Option::poisson_ratio, Option::thermal_expansion,
                 Option::volume_correction, Option::surface_correction, Option::eigenstrains,
-                Option::pressures, Option::softening, Option::critical_stretch, Option::drive,
-                Option::events},
+                Option::pressures, Option::images, Option::strength, Option::softening,
+                Option::critical_stretch, Option::drive, Option::events},
       .least_dimension = 2,
       .default_influence = InverseInfluence::name,
       .part_bonds = PartBonds::of_neighbours,
       .couples_second_neighbours = true,
+      .has_quick_fracture_scale = true,
       .check_material = check_material,
       .setting_of_bonds = state_setting,
       .make_model =

@@ -6,6 +6,8 @@
 #include "solvers/formulations/solid/solid_constants.hpp"
 #include "solvers/formulations/specification/require.hpp"
 #include "src/materials/bulk_bonds.hpp"
+#include "src/materials/bulk_pull.hpp"
+#include "src/materials/quadrature.hpp"
 #include "src/parallel/index_map.hpp"
 
 namespace peristat {
@@ -36,14 +38,10 @@ double lame_ratio(const MaterialSpecification& material, int dimension) {
   return constants.lambda / constants.mu;
 }
 
-/// Damage goes from bond to bond in one order, which ranks do not have.
-void refuse_release_of_parts(const ModelSetting& setting) {
-  if (setting.index_map.is_whole()) return;
-  for (const auto& material : all_materials(setting.of, setting.materials)) {
-    require(material.of->damage.law == DamageLaw::none, material.key + ".damage.law", "",
-            "is for one rank with drive \"release\" of model \"" +
-                std::string(material.of->model == MaterialModel::lps ? "lps" : "state") + "\"");
-  }
+/// Refuses images of parts of a body: a part lacks some twins of its bonds.
+void refuse_images_of_parts(const ModelSetting& setting) {
+  require(setting.index_map.is_whole() || setting.points.images.kinds.empty(), "material.model",
+          "state", "is for one rank with planes of symmetry and periods");
 }
 
 /// Weights with which bonds take kappa r^2 (q_i + q_j) times the work of their law, q = V d (d + 2)
@@ -82,11 +80,14 @@ std::string warning_of_late_cracks(const MaterialSpecification& material, const 
 
 FractureScale scale_of_states(const MaterialSpecification& material, const std::string&,
                               const BondSetting& setting, double spacing) {
+  const BondSetting of_states = state_setting(setting);
   FractureScale scale;
   scale.spacing = spacing;
   scale.micromodulus = micromodulus_of_states(material, setting);
-  scale.crossing = mean_crossing(state_setting(setting));
+  scale.crossing = mean_crossing(of_states);
   scale.youngs_modulus = *material.youngs_modulus;
+  scale.pull = std::make_shared<BulkPull>(of_states, scale.micromodulus,
+                                          lame_ratio(material, setting.dimension));
   return scale;
 }
 
@@ -94,7 +95,8 @@ MadeModel make_state_model(const ModelSetting& setting, Bonds bonds, StateRules 
   const BodySpecification& from = setting.of;
   const Points& points = setting.points;
   const bool is_by_release = rules.drive == DamageDrive::release;
-  if (is_by_release) refuse_release_of_parts(setting);
+  refuse_images_of_parts(setting);
+  if (points.own() < points.count()) drop_weightless(bonds);
   const BondSetting of_states = state_setting(setting.bonds);
   std::vector<DirectedConstant> moduli;
   for (const auto& material : all_materials(from, setting.materials)) {
@@ -120,6 +122,7 @@ MadeModel make_state_model(const ModelSetting& setting, Bonds bonds, StateRules 
   }
   CutBonds cut = cut_bonds(bonds, points, from.cracks);
   if (from.is_uniform()) shares.whole = bonds.kind;
+  shares.twins = twins_of(points, bonds);
   if (is_by_release) weigh_by_release(bonds, points, shares, mixed.modulus());
   auto [potential, never_fails] = mixed.potential(bonds);
   return {Model(std::make_shared<StateTerm>(std::make_shared<const Bonds>(std::move(bonds)),

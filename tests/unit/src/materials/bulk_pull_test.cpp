@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "src/materials/cpd_constants.hpp"
+#include "src/materials/lame_constants.hpp"
 
 namespace peristat {
 namespace {
@@ -21,13 +22,15 @@ BondSetting setting_of(int dimension, bool has_lattice, double angle = 0.0) {
 
 BulkPull pull_of(const BondSetting& setting) { return {setting, micromodulus(1.0, setting)}; }
 
+AnyLaw brittle(double stretch) { return {CriticalStretch{stretch}}; }
+
 AnyLaw linear(double critical) { return {ForceEnvelope{1.0, critical}}; }
 
 TEST(BulkPull, OfABarIsTheLargestForceOfItsBonds) {
   const BulkPull bar = pull_of(setting_of(1, false));
   const ForceEnvelope blended{1.0, 8.0, 0.0, 0.3, 0.5};
   EXPECT_NEAR(bar.peak(Loading::tension, {blended}).mean / blended.peak_force(), 1.0, 1e-9);
-  EXPECT_NEAR(bar.onset(Loading::tension, 2.0).mean, 2.0, 1e-14);
+  EXPECT_NEAR(bar.onset(Loading::tension, brittle(2.0)).mean, 2.0, 1e-14);
 }
 
 /// Figures of tests/reference/pull.py, which finds them by other means.
@@ -58,10 +61,10 @@ TEST(BulkPull, OfTheContinuumBeginsToSoftenAsElasticityHasIt) {
     const double nu = dimension == 2 ? 1.0 / 3.0 : 0.25;
     const BulkPull pull = pull_of(setting_of(dimension, false));
     const double fan = dimension == 2 ? 1e-3 : 3e-2;  // of bonds that are not quite along the pull
-    EXPECT_NEAR(pull.onset(Loading::tension, 1.0).mean, 1.0, fan);
-    EXPECT_NEAR(pull.onset(Loading::biaxial, 1.0).mean * (1.0 - nu), 1.0, fan);
-    EXPECT_NEAR(pull.onset(Loading::shear, 1.0).mean * (1.0 + nu), 1.0, fan);
-    EXPECT_NEAR(pull.onset(Loading::compression, 1.0).mean * nu, 1.0, 4.0 * fan);
+    EXPECT_NEAR(pull.onset(Loading::tension, brittle(1.0)).mean, 1.0, fan);
+    EXPECT_NEAR(pull.onset(Loading::biaxial, brittle(1.0)).mean * (1.0 - nu), 1.0, fan);
+    EXPECT_NEAR(pull.onset(Loading::shear, brittle(1.0)).mean * (1.0 + nu), 1.0, fan);
+    EXPECT_NEAR(pull.onset(Loading::compression, brittle(1.0)).mean * nu, 1.0, 4.0 * fan);
   }
 }
 
@@ -86,6 +89,90 @@ TEST(BulkPull, BearsMoreTheTougherItsBondsAreAndAlikeAtEveryAngle) {
   EXPECT_NEAR(at_angle(18.0) / at_angle(0.0), 1.0, 1e-8);
 }
 
+BondSetting states_in(int dimension, PlaneState plane, bool has_lattice) {
+  BondSetting setting{{dimension, ratio, 1.0}, plane};
+  setting.influence = [](double) { return 1.0; };
+  if (has_lattice) setting.lattice = {Spacing(1.0)};
+  return setting;
+}
+
+/// Of Young's modulus 1.
+BulkPull pull_of_states(int dimension, double nu, PlaneState plane, bool has_lattice = true) {
+  const BondSetting setting = states_in(dimension, plane, has_lattice);
+  const auto [lambda, mu] = lame_constants(1.0, nu, dimension, plane);
+  const double moment = has_lattice ? BulkBonds(setting).moment(1) : setting.moment(1);
+  return {setting, 2.0 * dimension * (dimension + 2) * mu / moment, lambda / mu};
+}
+
+TEST(BulkPullOfStates, IsThatOfTheReference) {
+  struct Known {
+    int dimension;
+    double nu;
+    PlaneState plane;
+    double brittle, soft;
+  };
+  // tests/reference/states_pull.py, StatePull.strength with step = 2e-3, of whose order the second
+  // is.
+  for (const auto& [dimension, nu, plane, brittle_strength, soft] :
+       std::vector<Known>{{2, 0.0, PlaneState::stress, 1.4123584, 1.5355732},
+                          {2, 0.2, PlaneState::stress, 1.1308808, 1.2265465},
+                          {2, 0.45, PlaneState::stress, 0.9431268, 1.0131124},
+                          {2, 0.3, PlaneState::strain, 1.0500415, 1.1291310},
+                          {3, 0.2, PlaneState::stress, 1.0695929, 1.3363885}}) {
+    const BulkPull pull = pull_of_states(dimension, nu, plane);
+    EXPECT_NEAR(pull.peak(Loading::tension, brittle(1.0)).mean / brittle_strength, 1.0, 1e-6)
+        << dimension << ' ' << nu;
+    EXPECT_NEAR(pull.peak(Loading::tension, linear(4.0)).mean / soft, 1.0, 3e-4)
+        << dimension << ' ' << nu;
+  }
+}
+
+/// f_t = E s_0 / sqrt(1 + zeta (1 - nu)), f_b = E s_0 / ((1 - nu) sqrt(1 + 2 zeta)) and f_s = E s_0
+/// / (1 + nu) in plane stress.
+TEST(BulkPullOfStates, BeginsToSoftenAsTheReleaseOfTheContinuumHasIt) {
+  for (const double nu : {-0.2, 0.0, 0.2, 0.45}) {
+    const BulkPull pull = pull_of_states(2, nu, PlaneState::stress, false);
+    const double zeta = 0.5 * (2.0 * nu / (1.0 - nu) - 1.0);
+    EXPECT_NEAR(
+        pull.onset(Loading::tension, brittle(1.0)).mean * std::sqrt(1.0 + zeta * (1.0 - nu)), 1.0,
+        1e-3);
+    EXPECT_NEAR(pull.onset(Loading::shear, brittle(1.0)).mean * (1.0 + nu), 1.0, 1e-3);
+    if (nu <= 0.0) continue;
+    EXPECT_NEAR(
+        pull.onset(Loading::biaxial, brittle(1.0)).mean * (1.0 - nu) * std::sqrt(1.0 + 2.0 * zeta),
+        1.0, 1e-3);
+  }
+}
+
+TEST(BulkPullOfStates, IsThatOfBondsWhereLambdaIsMu) {
+  for (const int dimension : {2, 3}) {
+    const double nu = dimension == 2 ? 1.0 / 3.0 : 0.25;
+    const BondSetting setting = states_in(dimension, PlaneState::stress, true);
+    const double c =
+        2.0 * dimension * (dimension + 2) / (2.0 * (1.0 + nu)) / BulkBonds(setting).moment(1);
+    const BulkPull bonds(setting, c), states = pull_of_states(dimension, nu, PlaneState::stress);
+    for (const Loading loading : {Loading::tension, Loading::biaxial, Loading::shear}) {
+      for (const AnyLaw& law : {AnyLaw{CriticalStretch{1.0}}, linear(4.0)}) {
+        EXPECT_NEAR(states.peak(loading, law).mean / bonds.peak(loading, law).mean, 1.0, 1e-9);
+      }
+      EXPECT_NEAR(
+          states.onset(loading, brittle(1.0)).mean / bonds.onset(loading, brittle(1.0)).mean, 1.0,
+          1e-13);
+    }
+  }
+}
+
+/// Equal tension in a plane of lambda = 0 releases nothing with one bond, and no stress does if
+/// lambda is far below 0.
+TEST(BulkPullOfStates, IsInfiniteWhereNoBondWouldReleaseEnergy) {
+  const BulkPull plane = pull_of_states(2, 0.0, PlaneState::stress);
+  EXPECT_TRUE(std::isinf(plane.peak(Loading::biaxial, linear(4.0)).mean));
+  EXPECT_TRUE(std::isfinite(plane.peak(Loading::tension, linear(4.0)).mean));
+  const BulkPull auxetic = pull_of_states(2, -0.5, PlaneState::stress);
+  EXPECT_TRUE(std::isinf(auxetic.onset(Loading::tension, brittle(1.0)).mean));
+  EXPECT_TRUE(std::isinf(auxetic.peak(Loading::tension, {CriticalStretch{1.0}}).mean));
+}
+
 /// Triangles and tetrahedra count: Young's modulus along an axis is the lattice's.
 TEST(BulkPull, OfCpdHasTheModuliOfItsLattice) {
   for (const int dimension : {2, 3}) {
@@ -96,12 +183,13 @@ TEST(BulkPull, OfCpdHasTheModuliOfItsLattice) {
     const double young =
         dimension == 2 ? c11 - c12 * c12 / c11 : c11 - 2.0 * c12 * c12 / (c11 + c12);
     const BulkPull pull(kernel, 1.0, constants);
-    const DirectionalSpread onset = pull.onset(Loading::tension, 1e-3);
+    const DirectionalSpread onset = pull.onset(Loading::tension, brittle(1e-3));
     EXPECT_LE(onset.least, young * 1e-3 * (1.0 + 1e-10)) << dimension;
     EXPECT_GE(onset.most, young * 1e-3 * (1.0 - 1e-10)) << dimension;
     // Under equal tension all bonds of a plane have the same stretch.
     if (dimension == 2) {
-      EXPECT_NEAR(pull.onset(Loading::biaxial, 1e-3).mean / ((c11 + c12) * 1e-3), 1.0, 1e-10);
+      EXPECT_NEAR(pull.onset(Loading::biaxial, brittle(1e-3)).mean / ((c11 + c12) * 1e-3), 1.0,
+                  1e-10);
     }
     EXPECT_GT(pull.peak(Loading::tension, {ForceEnvelope{1e-3, 4e-3}}).mean, onset.mean);
   }
