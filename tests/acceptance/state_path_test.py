@@ -29,7 +29,7 @@ def plate(law=BRITTLE, nu=0.2, more=""):
 
 
 class Paths(Folder):
-    def followed(self, text, law, *changes, teeth=10, name="out", settled=8):
+    def followed(self, text, law, *changes, teeth=10, name="out", settled=16):
         """The rows of a run whose events are those of the reference, which settles after one in `settled`."""
         folder = self.run_case(text, *changes, name=name)
         results, rows = Results(folder), columns(folder)
