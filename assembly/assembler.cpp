@@ -167,11 +167,12 @@ DamageGrowth Assembler::growth(const StateView& at) {
   return of_all(found.growth);
 }
 
-void Assembler::drive(const StateView& at, std::span<BondDrive> drives) {
+void Assembler::drive(const StateView& at, std::span<const double> rate,
+                      std::span<BondDrive> drives) {
   for (auto& [stretch, rate, squared] : drives) {
     squared = {stretch * stretch, 2.0 * stretch * rate, rate * rate};
   }
-  for_each_term([&](TermPasses& term, Write) { term.add_drive(at, drives); });
+  for_each_term([&](TermPasses& term, Write) { term.add_drive(at, rate, drives); });
 }
 
 DamageGrowth Assembler::of_all(const DamageGrowth& mine) const {

@@ -101,7 +101,7 @@ std::vector<BondDrive> drives(Assembler& body, const StateView& at, const Line& 
       }
     }
   });
-  body.drive(at, all);
+  body.drive(at, line.rate, all);
   return all;
 }
 

@@ -62,8 +62,10 @@ class TermPasses {
 
   /// Adds to the squared equivalent stretches of bonds that fail by release, which have those of
   /// their own stretches so far, what else drives them.
+  /// @param rate of the displacement along the line; empty: there is no line
   /// @param drives of all bonds
-  virtual void add_drive(const StateView&, std::span<BondDrive> /*drives*/) {}
+  virtual void add_drive(const StateView&, std::span<const double> /*rate*/,
+                         std::span<BondDrive> /*drives*/) {}
 
   /// Its tangent, in the form of Term::tangent_kind; rows also as products. Blocks that can be
   /// visited can also be stored.

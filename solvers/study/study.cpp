@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "assembly/terms/simplices/simplex_term.hpp"
 #include "solvers/body/require_memory_for.hpp"
 #include "solvers/body/unheld_body.hpp"
 #include "solvers/body/without_equation.hpp"
@@ -53,11 +52,6 @@ void refuse_modes_without_potential(const Body& body, const StudyOptions& option
 void refuse_events_of_states(const Body& body, const StudyOptions& options) {
   if (options.loading.mode != Mode::path) return;
   const OptionSet can = options_of(body.specification);
-  if (body.model.find<SimplexTerm>() && body.model.fails_in_avalanches()) {
-    throw InputError("loading.mode", std::string(options.loading.mode.name),
-                     "is for damage by stretch with this model; give drive = \"stretch\" in the "
-                     "table of its damage, or another mode");
-  }
   const bool loses_more = can.has(Option::critical_stretch) && !can.has(Option::events);
   if (!loses_more) return;
   throw InputError(

@@ -1,7 +1,9 @@
 #include "assembly/terms/simplices/simplex_term.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <type_traits>
@@ -12,6 +14,7 @@
 #include "assembly/terms/model.hpp"
 #include "assembly/terms/simplices/bond_simplices.hpp"
 #include "assembly/terms/simplices/simplex_kernels.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {
@@ -91,6 +94,36 @@ class SimplexPasses : public TermPasses, BlockTangent {
     return growth;
   }
 
+  /// Slope and curvature along the line by central differences: they only predict where a bond
+  /// reaches what it bears.
+  void add_drive(const StateView& at, std::span<const double> rate,
+                 std::span<BondDrive> drives) override {
+    const Influences influences = influences_at(at);
+    Kernels::releases(workspace_, at.displacement, influences, releases_);
+    std::vector<double> ahead = releases_, behind = releases_;
+    const double fastest = std::transform_reduce(
+        rate.begin(), rate.end(), 0.0, [](double a, double b) { return std::max(a, b); },
+        [](double component) { return std::abs(component); });
+    const double step = fastest > 0.0 ? difference_step * double(setting_.points.spacing) / fastest : 1.0;
+    if (fastest > 0.0) {
+      Kernels::releases(workspace_, moved(at.displacement, step, rate), influences, ahead);
+      Kernels::releases(workspace_, moved(at.displacement, -step, rate), influences, behind);
+    }
+    const Bonds& bonds = term_.bonds();
+    failure_.with_damage_law([&](const auto& law) {
+      for (Offset bond = 0; bond < bonds.count(); ++bond) {
+        const auto b = std::size_t(bond);
+        if (bonds.weight(bond) == 0.0) continue;
+        const double per_energy = 2.0 / stiffness_of(law.of_bond(bond), bond);
+        std::array<double, 3>& squared = drives[b].squared;
+        squared[0] += per_energy * releases_[b];
+        squared[1] += per_energy * (ahead[b] - behind[b]) / (2.0 * step);
+        squared[2] +=
+            per_energy * (ahead[b] - 2.0 * releases_[b] + behind[b]) / (2.0 * step * step);
+      }
+    });
+  }
+
   [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
 
   void tangent(const StateView& at, Tangent& tangent, double projection, Write how) override {
@@ -121,6 +154,10 @@ class SimplexPasses : public TermPasses, BlockTangent {
 
  private:
   using Kernels = SimplexKernels<D>;
+
+  /// Largest displacement of a difference along a line, over the spacing: its square is far above
+  /// round-off and far below 1.
+  static constexpr double difference_step = 1e-4;
 
   [[nodiscard]] Influences influences_at(const StateView& at) const {
     return influences_of(at.history.of(slot_), at);
@@ -154,11 +191,23 @@ class SimplexPasses : public TermPasses, BlockTangent {
   template <class OfBond>
   [[nodiscard]] double equivalent_stretch(const OfBond& of_bond, Offset bond, double stretch,
                                           double release) const {
-    static_assert(std::is_same_v<decltype(OfBond::shape), Harmonic>);
-    const Bonds& bonds = term_.bonds();
     if (!(stretch > 0.0)) return 0.0;
-    const double stiffness = bonds.weight(bond) * bonds.length(bond) * of_bond.modulus;
-    return std::sqrt(std::max(stretch * stretch + 2.0 * release / stiffness, 0.0));
+    const double per_energy = 2.0 / stiffness_of(of_bond, bond);
+    return std::sqrt(std::max(stretch * stretch + per_energy * release, 0.0));
+  }
+
+  /// w L C1 of a bond.
+  template <class OfBond>
+  [[nodiscard]] double stiffness_of(const OfBond& of_bond, Offset bond) const {
+    static_assert(std::is_same_v<decltype(OfBond::shape), Harmonic>);
+    return term_.bonds().weight(bond) * term_.bonds().length(bond) * of_bond.modulus;
+  }
+
+  [[nodiscard]] static std::vector<double> moved(std::span<const double> displacement, double step,
+                                                 std::span<const double> rate) {
+    std::vector<double> there(displacement.begin(), displacement.end());
+    add_scaled(there, step, rate);
+    return there;
   }
 
   /// Damage that committing the state would do by release.

@@ -97,7 +97,8 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
     }
   }
 
-  void add_drive(const StateView& at, std::span<BondDrive> drives) override {
+  void add_drive(const StateView& at, std::span<const double> /*rate*/,
+                 std::span<BondDrive> drives) override {
     take_integrities(at);
     found_ = {};  // whose integrities the kernels had
     failure_.with_damage_law(

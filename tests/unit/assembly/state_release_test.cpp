@@ -284,7 +284,7 @@ TEST_P(ReleaseOfPoisson, DrivesAlongALine) {
       all[b].stretch = s[b] + step * rate[b];
       all[b].rate = moves ? rate[b] : 0.0;
     }
-    of.assembler.drive(of.at(), all);
+    of.assembler.drive(of.at(), {}, all);
     return all;
   };
   const std::vector<BondDrive> line = drives(state, 0.0, true),
