@@ -1,8 +1,11 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <vector>
 
 #include "assembly/terms/model.hpp"
+#include "assembly/terms/states/state_term.hpp"
 #include "src/geometry/lattice.hpp"
 #include "src/materials/quadrature.hpp"
 
@@ -32,6 +35,20 @@ inline constexpr double horizon = 3.015;
   const BondSetting bond = setting(points.dimension, reach);
   return Model(make_bonds(points, SurfaceCorrection::none, bond, 1),
                Harmonic{micromodulus(1.0, bond)});
+}
+
+/// The state-based solid at finite strain on the same bonds, lambda = 1.5 mu.
+[[nodiscard]] inline Model state_model(const Points& points, int threads, double reach = horizon) {
+  BondSetting bond = setting(points.dimension, reach);
+  bond.influence = [](double x) { return x; };
+  Bonds bonds = make_bonds(points, SurfaceCorrection::none, bond, 1);
+  StateShares shares;
+  shares.kernel = kernel_of_weights(bonds);
+  shares.moment = moments_of(points, bonds, shares.kernel);
+  shares.constants.assign(std::size_t(points.count()), LamePair{0.6, 0.4});
+  return Model(std::make_shared<StateTerm>(
+      std::make_shared<const Bonds>(std::move(bonds)), Harmonic{1.0}, std::vector<char>(),
+      std::move(shares), StateRules{Extension::finite, DamageDrive::release}, threads));
 }
 
 }  // namespace peristat::benchmark_bodies

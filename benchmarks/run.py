@@ -23,6 +23,8 @@ ROWS = {
     "gradient": ("bond", 1e6, "M bonds/s", None),
     "tangent": ("bond", 1e6, "M bonds/s", 80e6),
     "matrix_free_product": ("bond", 1e6, "M bonds/s", 300e6),
+    "state_gradient": ("bond", 1e6, "M bonds/s", None),
+    "state_product": ("bond", 1e6, "M bonds/s", None),
     "stored_product": ("bond", 1e6, "M bonds/s", None),
     "tetrahedra_tangent": ("interaction", 1e6, "M tetrahedra/s", 30e6),
     "tetrahedra_gradient": ("interaction", 1e6, "M tetrahedra/s", None),
@@ -35,6 +37,7 @@ ROWS = {
 FACTORISATION_SHARE = {"100": 0.45, "300": 0.65}
 WEIGHTS_TARGET = {"2": 1 / 15e-6, "3": 1 / 300e-6}  # points/s
 PRODUCTS_PER_ITERATION = 1.7  # of relaxation
+MOST_OF_STATES = 2.2  # times a bond's
 LAWS = ["elastic", "tanh", "tanh with 2 % of the bonds broken"]
 
 
@@ -65,6 +68,14 @@ def print_relaxation(name, one, many):
     print(f"| relaxation iteration, {dimension}D, {LAWS[int(law)]}{breaking} | products "
           f"| {one[product] / one[name]:.2f} | {many[product] / many[name]:.2f} "
           f"| {many[name] / one[name]:.2f} | at most {PRODUCTS_PER_ITERATION} |")
+
+
+def print_states(name, bonds, one, many):
+    """A table row of a pass over states, counted in passes over the same bonds of the bond model."""
+    kind, _, dimension = name.partition("/")
+    ratio = [rates[f"{bonds}/{dimension}"] / rates[name] for rates in (one, many)]
+    print(f"| {kind.replace('_', ' ')}, {dimension}D | {bonds.replace('_', ' ')} of bonds | {ratio[0]:.2f} | {ratio[1]:.2f} "
+          f"| {many[name] / one[name]:.2f} | at most {MOST_OF_STATES} |")
 
 
 def print_table(threads, one, many):
@@ -100,6 +111,8 @@ def print_table(threads, one, many):
         print(f"| {kind.replace('_', ' ')}, {told} | {rate / unit:.1f} | {many[name] / unit:.1f} "
               f"| {many[name] / rate:.2f} | {goal} |")
     for name in sorted(one):
+        if name.startswith(("state_gradient/", "state_product/")):
+            print_states(name, "gradient" if "gradient" in name else "matrix_free_product", one, many)
         if name.startswith("relaxation/"):
             print_relaxation(name, one, many)
 

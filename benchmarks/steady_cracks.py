@@ -1,0 +1,203 @@
+"""G at which a crack of model `state` runs steadily through a clamped strip, over the fracture energy of its data sheet:
+
+    PERISTAT_PROGRAM=build/release/peristat /usr/bin/python3 benchmarks/steady_cracks.py [--steps N] [--work DIR] [NAME...]
+
+A strip whose long edges are clamped, with a crack along half its middle. The mean opening of the crack's line is
+controlled, and the load is found: far from both ends of the strip G is the energy per length of the strip that is not
+cracked yet, which goes with the square of the load, whatever the horizon, the height and the clamps are. That energy
+is the difference of two elastic strips of different lengths. G is the mean over the growth by six spacings, once the
+process zone has developed. A straight tear of the same strip, whose halves move apart as rigid bodies, takes
+`tear`, which differs from the fracture energy by the direction of the lattice and, in 3D, by the free faces.
+Names: stress_NU, strain_NU, space_NU, bond (plane stress). Finished runs in DIR are not repeated.
+"""
+
+import argparse
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PROGRAM = os.environ.get("PERISTAT_PROGRAM", str(ROOT / "build/release/peristat"))
+MODULUS, FRACTURE_ENERGY, SPACING, THICKNESS = 70e9, 10.0, 1e-3, 1e-3  # Pa, J/m2, m, m
+NAMES = ("stress_0", "stress_0.22", "stress_0.3333", "stress_0.45", "strain_0.25", "strain_0.35", "strain_0.4", "bond")
+ELASTIC_PART = 0.27  # mean opening, over that of a severed strip, up to which few steps do
+GROWN = (4, 10)  # growth over which G is averaged [spacings]
+
+
+@dataclass(frozen=True)
+class Strip:
+    name: str
+    steps: int  # of the control while the crack grows
+    length: int = 40  # spacings
+    crack: int = 10
+    height: int = 16
+    width: int = 4  # in 3D
+
+    @property
+    def kind(self) -> str:
+        return self.name.partition("_")[0]
+
+    @property
+    def poisson_ratio(self) -> float:
+        return 1 / 3 if self.kind == "bond" else float(self.name.partition("_")[2])
+
+    @property
+    def dimension(self) -> int:
+        return 3 if self.kind == "space" else 2
+
+    @property
+    def depth(self) -> float:
+        return self.width * SPACING if self.dimension == 3 else THICKNESS
+
+    @property
+    def displacement(self) -> float:
+        """Of the clamps at load 1, at which G of a strip in the continuum is about the fracture energy [m]."""
+        nu = self.poisson_ratio
+        clamped = MODULUS / (1 - nu**2) if self.kind in ("stress", "bond") else MODULUS * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+        return math.sqrt(FRACTURE_ENERGY * self.height * SPACING / clamped / 2)
+
+    def material(self) -> str:
+        model = "bond" if self.kind == "bond" else "state"
+        plane = f'plane = "{self.kind}"\n' if self.kind in ("stress", "strain") else ""
+        ratio = f"poisson_ratio = {self.poisson_ratio}\n" if model == "state" else ""
+        return f'[material]\nmodel = "{model}"\n{plane}youngs_modulus = {MODULUS}\n{ratio}'
+
+    def body(self, length: int) -> str:
+        half, far = self.height * SPACING / 2, length * SPACING
+        low, high = ([0, -half, 0], [far, half, self.depth])
+        space = self.dimension == 3
+        return f"""\
+dimension = {self.dimension}
+[lattice]
+spacing = {SPACING}
+horizon_ratio = {2.015 if space else 3.015}
+{"" if space else f"thickness = {THICKNESS}"}
+shape = [{{ add = "box", min = {low[: self.dimension]}, max = {high[: self.dimension]} }}]
+[quadrature]
+volume_correction = "linear"
+[[lattice.layer]]
+name = "low"
+side = "y-"
+thickness = 3
+[[lattice.layer]]
+name = "high"
+side = "y+"
+thickness = 3
+"""
+
+    def clamps(self) -> str:
+        also = ", 0" if self.dimension == 3 else ""
+        return "".join(
+            f'[[support]]\nset = "{name}"\ndisplacement = [0, "{sign}{self.displacement}*load"{also}]\n'
+            for name, sign in (("low", "-"), ("high", ""))
+        )
+
+    def elastic(self, length: int) -> str:
+        return self.body(length) + self.material() + self.clamps()
+
+    def damage(self) -> str:
+        return f'[material.damage]\nlaw = "linear"\nfracture_energy = {FRACTURE_ENERGY}\nno_fail = ["low", "high"]\n'
+
+    def torn(self, length: int) -> str:
+        """Halves that move apart until no bond joins them; nothing is searched for."""
+        also = ", 0" if self.dimension == 3 else ""
+        sets = "".join(
+            f'[[set]]\nname = "{name}"\nwhere = "y {sign} 0"\n[[support]]\nset = "{name}"\ndisplacement = [0, {value}{also}]\n'
+            for name, sign, value in (("below", "<", "0"), ("above", ">", f'"{20 * SPACING}*load"'))
+        )
+        return self.body(length) + self.material() + self.damage().split("no_fail")[0] + sets + '[solver]\nmode = "relaxation"\n[relaxation]\nsteps = 1\n'
+
+    def text(self) -> str:
+        end, h = self.crack * SPACING, SPACING
+        crack = f"from = [{-h}, 0]\nto = [{end}, 0]"
+        if self.dimension == 3:
+            corners = [[-h, 0, -h], [end, 0, -h], [end, 0, self.depth + h], [-h, 0, self.depth + h]]
+            crack = f"vertices = {corners}"
+        opened = 2 * self.displacement
+        table = [0, 0.15, 0.2, 0.24] + [ELASTIC_PART + 0.33 * k / self.steps for k in range(self.steps + 1)]
+        weights = lambda sign: [0, sign, 0][: self.dimension]
+        along = f"x < {(self.length - 6) * h}"
+        return (
+            self.body(self.length)
+            + self.material()
+            + self.damage()
+            + self.clamps()
+            + f"""\
+[[crack]]
+{crack}
+[[set]]
+name = "above"
+where = "y > 0 && y < {h} && {along}"
+[[set]]
+name = "below"
+where = "y < 0 && y > {-h} && {along}"
+[[control]]
+set = "above"
+weights = {weights(1)}
+[[control]]
+set = "below"
+weights = {weights(-1)}
+[loading]
+table = {[round(share * opened, 12) for share in table]}
+adaptive = false
+[output]
+every = 100000
+"""
+        )
+
+
+def run(text: str, folder: Path) -> Path:
+    """The results folder of a case; a finished run of the same text is not repeated."""
+    case, out = folder / "case.toml", folder / "out"
+    if not ((out / "summary.json").exists() and case.exists() and case.read_text() == text):
+        folder.mkdir(parents=True, exist_ok=True)
+        case.write_text(text)
+        subprocess.run([PROGRAM, "run", case, "--output", out, "--overwrite", "--quiet", "--no-plots", "--threads", "1"], check=True)
+    return out
+
+
+def energy(out: Path, name: str) -> float:
+    return json.loads((out / "summary.json").read_text())["energy"][name]
+
+
+def per_area(strip: Strip, text, name: str, folder: Path) -> float:
+    """Difference of an energy between two lengths, over the area of the crack that fits in between [J/m2]."""
+    lengths = (strip.length, strip.length + 10)
+    short, long = (energy(run(text(length), folder / f"{text.__name__}_{length}"), name) for length in lengths)
+    return (long - short) / ((lengths[1] - lengths[0]) * SPACING * strip.depth)
+
+
+def measured(strip: Strip, folder: Path) -> str:
+    ahead = per_area(strip, strip.elastic, "stored", folder / strip.name) / FRACTURE_ENERGY  # at load 1
+    tear = per_area(strip, strip.torn, "dissipated", folder / strip.name) / FRACTURE_ENERGY
+    with open(run(strip.text(), folder / f"{strip.name}/steps_{strip.steps}") / "history.csv", newline="") as table:
+        rows = [{key: float(row[key]) for key in ("load_factor", "dissipated_energy", "drained_energy")} for row in csv.DictReader(table)]
+    area = SPACING * strip.depth * FRACTURE_ENERGY
+    grown = [k for k in range(1, len(rows)) if GROWN[0] * area < rows[k]["dissipated_energy"] < GROWN[1] * area]
+    taken = [rows[k]["dissipated_energy"] - rows[k - 1]["dissipated_energy"] for k in grown]
+    drained = sum(rows[k]["drained_energy"] - rows[k - 1]["drained_energy"] for k in grown)
+    g = sum(rows[k]["load_factor"] ** 2 * ahead * part for k, part in zip(grown, taken)) / sum(taken)
+    return f"| {strip.name.replace('_', ', ')} | {strip.steps} | {tear:.3f} | {g:.3f} | {g / tear:.3f} | {drained / sum(taken):.3f} |"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", metavar="NAME", nargs="*", default=NAMES)
+    parser.add_argument("--steps", type=int, default=60, help="while the crack grows by ten spacings (default: 60)")
+    parser.add_argument("--work", type=Path, help="folder of the runs, which are kept")
+    asked = parser.parse_args()
+    print("| strip, Poisson's ratio | steps | tear / G_c | G / G_c | G / tear | drained / dissipated |\n|---|---|---|---|---|---|", flush=True)
+    with tempfile.TemporaryDirectory() as name:
+        for strip in asked.names:
+            size = {"length": 24, "crack": 7, "height": 10} if strip.startswith("space") else {}
+            print(measured(Strip(strip, asked.steps, **size), asked.work or Path(name)), flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
