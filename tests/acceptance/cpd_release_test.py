@@ -172,6 +172,45 @@ class CpdRelease(Folder):
         by_stretch = self.assert_completed(self.peristat(*words, "--poisson-ratio", "0.45", "--drive", "stretch")).json()
         self.assertLess(by_stretch["damage"]["critical"], 0.99 * told[0.45]["damage"]["critical"])
 
+    # ---- from event to event ----------------------------------------------------------------------
+
+    def test_a_path_goes_from_drop_to_drop(self):
+        """Every row is an equilibrium in which no bond is driven beyond what it bears; the peak is that of fine steps."""
+        for nu in (0.2, 0.45):
+            with self.subTest(nu):
+                tables = self.body(nu, BRITTLE)
+                rows = self.judge(tables | {"solver": {"mode": "path"}})
+                self.judge_ledger(rows, work=1e-11)
+                self.assertGreater(rows[-1]["broken_bonds"], 20)
+                work = max(row["external_work"] for row in rows)
+                self.assertLess(max(abs(row["numerical_work"]) for row in rows), 2e-3 * work)
+                steps = columns(self.run_case(tables | {"loading": {"steps": 60}}, name="steps"))
+                peak = max(row["reaction_y:high"] for row in rows)
+                self.assertAlmostEqual(peak / steps["reaction_y:high"].max(), 1, delta=0.02)
+                taken = rows[-1]["dissipated_energy"]
+                self.assertGreater(steps["dissipated_energy"][-1] / taken, 0.98)
+                self.assertLess(steps["dissipated_energy"][-1] / taken, 1.25)
+
+    def test_a_path_takes_laws_that_soften_and_blocks(self):
+        block = BLOCK | {"material": {"model": "cpd"} | self.constants(0.05, 3) | {"damage": BRITTLE}}
+        for tables in (self.body(0.2, SOFT), block):
+            rows = columns(self.run_case(tables, "solver.mode=path", "loading.teeth=2"))
+            self.assertGreater(rows["dissipated_energy"][-1], 0)
+            work = rows["external_work"].max()
+            for name in ("dissipated_energy", "drained_energy"):
+                self.assertGreaterEqual(numpy.diff(rows[name]).min(), -1e-12 * work)
+            self.assertLess(abs(rows["balance_error"]).max(), 1e-11 * work)
+            self.assertLess(abs(rows["numerical_work"]).max(), 5e-3 * work)
+
+    def test_an_interrupted_path_goes_on_to_the_same_bits(self):
+        tables = self.body(0.2, BRITTLE) | {"solver": {"mode": "path"}}
+        whole = columns(self.run_case(tables, name="whole"))
+        self.run_case(tables, name="split", words=("--stop-after", 7), code=130)
+        self.resume("split")
+        split = columns(self.folder / "split")
+        for name in (name for name in whole if name != "seconds"):
+            numpy.testing.assert_array_equal(whole[name], split[name], name)
+
     # ---- going on, and refusals -------------------------------------------------------------------
 
     def test_an_interrupted_tear_goes_on_to_the_same_bits(self):
@@ -192,7 +231,6 @@ class CpdRelease(Folder):
     def test_what_it_does_not_do_is_refused(self):
         tables = self.body(0.2, BRITTLE)
         for change, words in (
-            ('solver.mode="path"', ("solver.mode", 'drive = "stretch"')),
             ('symmetry=[{axis="x", at=0}]', ("material.damage.drive", "planes of symmetry", 'drive = "stretch"')),
             ('material.damage={law="linear", critical=0.01, strength=10.0, drive="release"}', ("material.damage.strength", "onset")),
             ('material.damage={law="critical_stretch", critical=0.01}', ("material.damage.law", "damage by stretch", 'drive = "release"')),
