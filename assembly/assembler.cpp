@@ -169,8 +169,8 @@ DamageGrowth Assembler::growth(const StateView& at) {
 
 void Assembler::drive(const StateView& at, std::span<const double> rate,
                       std::span<BondDrive> drives) {
-  for (auto& [stretch, rate, squared] : drives) {
-    squared = {stretch * stretch, 2.0 * stretch * rate, rate * rate};
+  for (auto& [stretch, speed, squared] : drives) {
+    squared = {stretch * stretch, 2.0 * stretch * speed, speed * speed};
   }
   for_each_term([&](TermPasses& term, Write) { term.add_drive(at, rate, drives); });
 }

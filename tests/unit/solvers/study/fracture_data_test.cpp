@@ -252,6 +252,7 @@ MaterialSpecification cpd(DamageLaw of) {
   material.youngs_modulus = 70e9;
   material.poisson_ratio = 0.4;
   material.damage = law(of);
+  material.damage.drive = DamageDrive::stretch;
   return material;
 }
 
