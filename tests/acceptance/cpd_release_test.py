@@ -3,6 +3,7 @@ alone; with bonds; and what it refuses."""
 
 import json
 
+import h5py
 import numpy
 
 from tests.acceptance.folder import Folder
@@ -19,7 +20,7 @@ PLATE = {
                 "shape": [{"add": "box", "min": [0, 0], "max": [1.6, 1.2]}],
                 "layer": [{"name": name, "side": side, "thickness": 2} for name, side in (("low", "y-"), ("high", "y+"))]},
     "support": [{"set": "low", "displacement": [0, 0]}, {"set": "high", "displacement": ["free", "0.012*load"]}],
-    "loading": {"steps": 6}, "solver": {"mode": "adaptive"},
+    "loading": {"steps": 6}, "solver": {"mode": "newton"},
 }  # fmt: skip
 BLOCK = {
     "dimension": 3,
@@ -27,7 +28,7 @@ BLOCK = {
                 "shape": [{"add": "box", "min": [0, 0, 0], "max": [0.5, 0.3, 0.8]}],
                 "layer": [{"name": name, "side": side, "thickness": 2} for name, side in (("low", "z-"), ("high", "z+"))]},
     "support": [{"set": "low", "displacement": [0, 0, 0]}, {"set": "high", "displacement": ["free", "free", "0.012*load"]}],
-    "loading": {"steps": 6}, "solver": {"mode": "adaptive"},
+    "loading": {"steps": 6}, "solver": {"mode": "newton"},
 }  # fmt: skip
 CRACK = [{"from": [0, 0.6], "to": [0.4, 0.6]}]
 NO_FAIL = {"no_fail": ["low", "high"], "drive": "release"}
@@ -59,7 +60,7 @@ class CpdRelease(Folder):
         mechanics = Mechanics(Body(Case(tables), results.reference, results.volume, sets=results.sets))
         mechanics.spare(results.sets)
         body, history = mechanics.body, mechanics.no_history()
-        free = ~(results.sets["low"] | results.sets["high"])
+        free, scale = ~(results.sets["low"] | results.sets["high"]), 0.0
         for step in results.steps:
             if step.history is not None:
                 names = ("first_point", "second_point", "largest_stretch")
@@ -68,7 +69,8 @@ class CpdRelease(Folder):
                     history[body.bond_number[i * len(body.volume) + j]] = max(s, 0)
             row, u = rows[step.number], step.displacement
             force = mechanics.gradient(u, history, held=True)
-            self.assertLess(numpy.linalg.norm(force[free]), 1e-8 * max(numpy.linalg.norm(force), 1e-3))
+            scale = max(scale, numpy.linalg.norm(force))  # torn bodies have little force left
+            self.assertLess(numpy.linalg.norm(force[free]), 1e-9 * scale)
             self.assertAlmostEqual(row["stored_energy"], mechanics.energy(u, history, held=True), delta=1e-10 * (row["stored_energy"] + 1e-9))
             driving = mechanics.equivalent_stretches(u, history)[mechanics.fails]
             borne = numpy.maximum(history, mechanics.law.onset)[mechanics.fails]
@@ -90,7 +92,8 @@ class CpdRelease(Folder):
         for nu in (0.0, 0.2, 0.45):
             for damage in (BRITTLE, SOFT):
                 with self.subTest(nu=nu, law=damage["law"]):
-                    rows = self.judge(self.body(nu, damage))
+                    mode = "adaptive" if nu == 0.2 and damage is BRITTLE else "newton"
+                    rows = self.judge(self.body(nu, damage, solver={"mode": mode}))
                     self.assertGreater(rows[-1]["broken_bonds"], 20)
                     self.judge_ledger(rows)
 
@@ -118,7 +121,7 @@ class CpdRelease(Folder):
         """A free expansion far beyond the onset damages nothing."""
         tables = self.body(0.2, BRITTLE, crack=False) | {"temperature": {"change": "100*load"}, "loading": {"steps": 1}}
         tables["material"]["thermal_expansion"] = 1e-3
-        tables["set"] = [{"name": "corner", "where": "x < 0.1 && y < 0.1"}, {"name": "other", "where": "x > 1.5 && y < 0.1"}]
+        tables["set"] = [{"name": "corner", "where": "x < 0.1 && y < -0.1"}, {"name": "other", "where": "x > 1.5 && y < -0.1"}]
         tables["support"] = [{"set": "corner", "displacement": [0, 0]}, {"set": "other", "displacement": ["free", 0]}]
         results = self.results(tables)
         corner = results.reference[results.sets["corner"]][0]
@@ -128,37 +131,46 @@ class CpdRelease(Folder):
     # ---- energy of a crack ------------------------------------------------------------------------
 
     def data_sheet(self, nu, **more):
-        material = {"model": "cpd", "youngs_modulus": 3e3, "poisson_ratio": nu,
-                    "damage": {"law": "linear", "fracture_energy": 0.02, "no_fail": ["low", "high"]} | more}  # fmt: skip
+        damage = {"law": "critical_stretch", "fracture_energy": 0.02, "no_fail": ["low", "high"]} | more
+        material = {"model": "cpd", "youngs_modulus": 3e3, "poisson_ratio": nu, "damage": damage}
         return PLATE | {"material": material, "crack": CRACK}
 
     def test_fracture_energy_is_what_a_torn_plate_takes(self):
         for nu in (0.0, 0.2, 0.45):
-            rows = columns(self.run_case(self.data_sheet(nu), "loading.steps=15", name="torn"))
+            rows = columns(self.run_case(self.data_sheet(nu), name="torn"))
             self.assertLess(abs(rows["reaction_y:high"][-1]), 0.1 * abs(rows["reaction_y:high"]).max())
             taken = rows["dissipated_energy"][-1] / (0.02 * 1.2 * THICKNESS)
             self.assertGreater(taken, 0.85, nu)
             self.assertLess(taken, 1.35, nu)
 
+    def begun(self, tables, name):
+        """History and resolved case of the first steps of a run."""
+        folder = self.run_case(tables, "solver.mode=adaptive", name=name, words=("--stop-after", 5), code=(0, 130))
+        with h5py.File(folder / "results.h5") as file:
+            resolved = file["case/as_resolved"].asstr()[()]
+        rows = columns(folder)
+        return [(name, rows[name].tolist()) for name in rows if name != "seconds"], resolved
+
     def test_release_is_the_default_with_a_fracture_energy(self):
-        given = self.run_case(self.data_sheet(0.4, drive="release"), name="given")
-        default = self.run_case(self.data_sheet(0.4), name="default")
-        stretch = self.run_case(self.data_sheet(0.4, drive="stretch"), name="stretch")
-        self.assertEqual((given / "history.csv").read_text(), (default / "history.csv").read_text())
-        self.assertNotEqual((given / "history.csv").read_text(), (stretch / "history.csv").read_text())
-        self.assertIn('drive = "release"', (default / "case.resolved.toml").read_text())
+        given, default = (self.begun(self.data_sheet(0.4, **more), name) for name, more in (("given", {"drive": "release"}), ("default", {})))
+        stretch = self.begun(self.data_sheet(0.4, drive="stretch"), "stretch")
+        self.assertEqual(given[0], default[0])
+        self.assertNotEqual(given[0], stretch[0])
+        self.assertIn('drive = "release"', default[1])
 
     def test_stretch_is_the_default_with_stretches(self):
         damage = {key: value for key, value in BRITTLE.items() if key != "drive"}
-        given = self.run_case(self.body(0.4, damage | {"drive": "stretch"}), name="given")
-        default = self.run_case(self.body(0.4, damage), name="default")
-        self.assertEqual((given / "history.csv").read_text(), (default / "history.csv").read_text())
+        given, default = (self.begun(self.body(0.4, damage | more), name) for name, more in (("given", {"drive": "stretch"}), ("default", {})))
+        self.assertEqual(given[0], default[0])
+        self.assertIn('drive = "stretch"', default[1])
 
-    def test_check_tells_the_fracture_energy_of_any_horizon(self):
-        tables = self.data_sheet(0.0)
-        tables["lattice"] = tables["lattice"] | {"horizon_ratio": 13.0, "spacing": 0.02, "layer": [layer | {"thickness": 10} for layer in tables["lattice"]["layer"]]}
-        ended = self.assert_completed(self.command("check", tables))
-        self.assertIn("fracture energy 0.02 J/m2 in the mean over the directions of a crack (", ended.output)
+    def test_a_fracture_energy_may_have_any_horizon(self):
+        for dimension, ratio in ((2, "13"), (3, "4")):
+            ended = self.peristat("calibrate", "--dimension", dimension, "--spacing", "0.02", "--horizon-ratio", ratio, "--youngs-modulus", "3e3",
+                                  "--poisson-ratio", "0.1", "--law", "tanh", "--rate", "40", "--fracture-energy", "0.02")  # fmt: skip
+            told = self.assert_completed(ended).json()["damage"]["fracture_energy"]
+            self.assertAlmostEqual(told["mean"] / 0.02, 1, delta=1e-12)
+            self.assertGreater(told["most"], told["least"])
 
     def test_calibrated_stretches_take_the_bonds_share_alone(self):
         words = ["calibrate", "--dimension", "2", "--spacing", SPACING, "--horizon-ratio", "3.015", "--thickness", THICKNESS,
