@@ -41,6 +41,7 @@ GROUPS = {
     "bond_models": "Bonds in motion",
     "lps": "The linear solid",
     "fcbm": "Convolutions",
+    "state": "The state-based solid",
     "cpd": "Large extensions by CPD",
     "regions": "Several materials",
     "periodic": "Periodic cells",
@@ -85,6 +86,11 @@ SHOWS = {
     "fcbm/static_damage": "A notched strip under slow loading: equilibrium and failure alternate until no more points fail.",
     "fcbm/static_hole": "A plate with a hole in equilibrium, by convolutions and the preconditioner of sines.",
     "fcbm/waves": "A pulse that runs through a plate.",
+    "state/glass_beam": "A notched beam of glass with its own Poisson's ratio, compared with ASTM E399.",
+    "state/notched_bar": "A notched bar of steel that tears, in 3D at a ratio that bonds cannot have.",
+    "state/plate_with_hole": "A steel plate with a hole, elastic; the same plate by `cpd` with one key changed.",
+    "state/rubber": "A sheet with a hole, pulled to one and a half times its length: quadratic convergence in every increment.",
+    "state/stretched_bar": "A bar pulled to one and a half times its length: the uniaxial law of the solid.",
     "cpd/cube": "A cube pulled to twice its length by Newton's method.",
     "cpd/cube_hole": "The same cube with a cubic hole.",
     "cpd/poisson_2d": "Poisson's ratio over the ratio of the constants, in 2D.",
@@ -110,7 +116,7 @@ WITHOUT = {"fcbm/glass_plate": "the case twice as coarse shows the same in less 
 # The first of these that a run draws is its picture, unless CHOSEN has another one.
 PREFERRED = "sequence", "damage", "crack_surface", "fields", "deformed", "path", "column"
 CHOSEN = dict.fromkeys(("buckling/arch", "buckling/column", "cantilever/plate", "cantilever/vibration", "cpd/poisson_2d", "cpd/square",
-                        "cpd/square_hole", "thermal/bimetal"), "deformed")  # fmt: skip
+                        "cpd/square_hole", "state/rubber", "thermal/bimetal"), "deformed")  # fmt: skip
 
 
 def names():

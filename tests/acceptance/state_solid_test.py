@@ -1,6 +1,7 @@
 """Model state, the state-based solid at finite strain, from the command line: compared with the reference of
 tests/reference/states.py, elastic and through fracture, and with the bond model where both are the same."""
 
+import csv
 import json
 
 import numpy
@@ -10,6 +11,7 @@ from tests.acceptance.motions import columns
 from tests.acceptance.states_test import CRACK, PLATE, PULL, REGION, cut, solid
 from tests.reference.case import evaluate
 from tests.reference.results import Results
+from tests.reference.stretched_bar import nominal_stress
 
 SOLID = PLATE.replace('[quadrature]\nform = "energy"\n', "").replace('"lps"', '"state"')
 DAMAGE = '[material.damage]\nlaw = "critical_stretch"\ncritical = 0.01\nno_fail = ["low", "high"]\n'
@@ -130,6 +132,39 @@ class StateSolid(Folder):
         for nu, ratio in taken.items():  # damage beside the crack adds to it; few points across
             self.assertGreater(ratio, 0.85, nu)
             self.assertLess(ratio, 1.35, nu)
+
+    def test_a_bar_has_the_uniaxial_law_of_the_solid_at_large_stretches(self):
+        """Its force over that of the tangent at rest, against the law of the bulk; faces have a small share in both."""
+        bar = cut(SOLID, max="[3.2, 2.0]").replace("y-", "x-").replace("y+", "x+")
+        drawn = "".join(f'[[support]]\nset = "{name}"\ndisplacement = ["0.5*load*x", "free"]\n' for name in ("low", "high"))
+        drawn += '[[roller]]\nname = "middle"\nat = [0.0, 1.0]\nnormal = [0, 1]\n[loading]\ntable = [0, 2e-6, 0.2, 1]\n'
+        for nu in (0.0, 0.22, 0.45):
+            rows = columns(self.run_case(cut(bar, poisson_ratio=nu) + drawn, name="bar"))
+            force = rows["reaction_x:high"][-3:]
+            for stretch, pull in zip((1.1, 1.5), force[1:]):
+                ratio = pull / (stretch - 1) / (force[0] / 1e-6)
+                expected = nominal_stress(stretch, nu) / (stretch - 1)
+                self.assertAlmostEqual(ratio, expected, delta=0.01, msg=f"{nu} {stretch}")
+            self.assertGreater(ratio, 1.05)  # neither linear nor softening
+
+    def test_newton_converges_quadratically_in_every_increment(self):
+        """A sheet with a hole, drawn to one and a half times its height: |r+| < 10 |r|^2 until round-off."""
+        hole = '[[lattice.shape]]\nsubtract = "disk"\ncentre = [0.8, 0.6]\nradius = 0.3\n[[lattice.layer]]\nname = "low"'
+        sheet = cut(SOLID, poisson_ratio=0.45).replace('[[lattice.layer]]\nname = "low"', hole)
+        sheet += PULL.replace("0.012*load", "0.6*load")
+        folder = self.run_case(sheet, "solver.linear=cholesky", "solver.relative_tolerance=1e-12", "loading.steps=5")
+        with open(folder / "convergence.csv", newline="") as file:
+            table = list(csv.DictReader(file))
+        steps = [name for name in table[0] if name.startswith("step_")]
+        self.assertEqual(len(steps), 5)
+        for step in steps:
+            residuals = [float(row[step]) for row in table[:-1] if row[step]]
+            self.assertLess(residuals[-1], 1e-12)
+            self.assertLess(len(residuals), 8)
+            pairs = [(r, after) for r, after in zip(residuals, residuals[1:]) if r < 0.01]
+            self.assertGreaterEqual(len(pairs), 2, step)
+            for r, after in pairs:
+                self.assertLess(after, 10 * r**2 + 1e-14, step)
 
     def test_bodies_expand_freely(self):
         text = SOLID + 'thermal_expansion = 1e-3\n[temperature]\nchange = "100*load"\n[loading]\nsteps = 1\n'

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from given import in_case
 from jobs import FolderLock, Jobs, estimated_memory
 from own_files import CASE, remove_own, write_own
 from program import Ending, Program
@@ -44,8 +45,11 @@ class Ran:
 
 
 class Runs:
-    def __init__(self, program: Program, directory: Path, jobs: int, threads: int, tell: Callable[[str], None]):
+    def __init__(self, program: Program, directory: Path, jobs: int, threads: int, tell: Callable[[str], None],
+                 given: dict[str, str] | None = None):  # fmt: skip
+        """@param given values of keys in the place of the setting's"""
         self._program, self._directory, self._jobs, self._tell = program, directory, jobs, tell
+        self._given = given or {}
         self._words = ["--threads", str(threads)]
 
     @property
@@ -69,29 +73,31 @@ class Runs:
 
     def _memory(self, name: str, text: str) -> tuple[float, float] | None:
         folder = self._folder(name)
-        if is_done(folder / "out", text.encode(), []):
+        settings = in_case(self._given, text)
+        if is_done(folder / "out", text.encode(), settings):
             return 0.0, 1.0
         case = folder / "asked.toml"
         write_own(case, text.encode(), CASE)
-        told = self._program.run(["check", str(case)], told=True).output
+        told = self._program.run(["check", str(case), *_set(settings)], told=True).output
         remove_own(case, CASE)
         return estimated_memory(told)
 
     def _run(self, name: str, text: str) -> Ran:
         case, out = self._folder(name) / "case.toml", self._folder(name) / "out"
-        if is_done(out, text.encode(), []):
+        settings = in_case(self._given, text)
+        if is_done(out, text.encode(), settings):
             return Ran(name, out)
         is_known = case.is_file()
-        goes_on = is_known and case.read_text() == text and can_go_on(out, text.encode(), [])
+        goes_on = is_known and case.read_text() == text and can_go_on(out, text.encode(), settings)
         write_own(case, text.encode(), CASE)
         # The suite may have been moved; then its results name the case's earlier path.
         moved = ["--overwrite"] if is_known else []
-        words = ["resume", str(out)] if goes_on else ["run", str(case), "--output", str(out), *moved]
+        words = ["resume", str(out)] if goes_on else ["run", str(case), *_set(settings), "--output", str(out), *moved]
         began = time.monotonic()
         ending = self._program.run([*words, "--quiet", "--no-plots", *self._words], limit=LIMIT)
         if ending.code != 0:
             return Ran(name, out, self._failure(ending, case, time.monotonic() - began))
-        record_done(out, [])
+        record_done(out, settings)
         self._tell(f"{name}: {time.monotonic() - began:.0f} s")
         return Ran(name, out)
 
@@ -101,3 +107,7 @@ class Runs:
             return f"no end within {LIMIT:.0f} s"
         first = ending.message.splitlines()[0] if ending.message else f"exit code {ending.code}"
         return first.removeprefix("peristat: ").removeprefix(f"{case}:")
+
+
+def _set(settings: list[str]) -> list[str]:
+    return [word for setting in settings for word in ("--set", setting)]

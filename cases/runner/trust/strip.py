@@ -22,11 +22,14 @@ class Strip:
     inner: float = 6.5  # radii of the ring of J around the middle
     outer: float = 8.5
     dimension: int = 2
+    given_ratio: float | None = None  # Poisson's ratio of models that take any
     turn: float = 0.0  # angle by which the field turns on its way [rad]; the crack's path is then an arc
 
     @property
     def poisson_ratio(self) -> float:
-        """Poisson's ratio of bond-based models, in plane stress and in 3D."""
+        """Poisson's ratio: unless one is given, that of bond-based models in plane stress and in 3D."""
+        if self.given_ratio is not None:
+            return self.given_ratio
         return 1 / 3 if self.dimension == 2 else 1 / 4
 
     @property

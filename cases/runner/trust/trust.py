@@ -25,11 +25,13 @@ import strength
 import surfing
 import trapping
 from entries_picture import draw
+from given import GLASS, WrongSetting, poisson_ratio, read_settings
 from jobs import bounded
 from own_files import PICTURE, ForeignFile, require_own, write_own
 from program import Program
 from run_all import Failed, Ran, Runs
 from specimen import Lattice, Specimen
+from strip import Strip
 from verdict import CALIBRATION, HEADING, Verdict, extension_of, row
 
 MODULES = (surfing, notched_beam, compact_tension, centre_crack, double_cantilever, brazilian_disk, size_effect, l_panel,
@@ -79,12 +81,13 @@ def extend_cracks(found: list[Verdict]) -> None:
         verdict.extension = kappa
 
 
-def table(found: list[Verdict]) -> str:
+def table(found: list[Verdict], given: dict[str, str]) -> str:
     seconds: dict[str, float] = {}
     for verdict in found:  # some quantities do not use all runs
         seconds[verdict.specimen.name] = max(verdict.seconds, seconds.get(verdict.specimen.name, 0.0))
     cost = ", ".join(f"{name} {second:.0f} s" for name, second in seconds.items())
-    return "\n".join([*HEADING, *map(row, found)]) + f"\n\nSeconds of the runs: {cost}.\n"
+    other = "".join(f"\n\nWith {key} = {value}." for key, value in given.items())
+    return "\n".join([*HEADING, *map(row, found)]) + f"{other}\n\nSeconds of the runs: {cost}.\n"
 
 
 def _positive(text: str) -> int:
@@ -103,6 +106,10 @@ def _parser() -> argparse.ArgumentParser:
     )  # fmt: skip
     parser.add_argument("names", metavar="NAME", nargs="*", help="entries (default: all); trapping: how strongly "
                         "lattices trap cracks, by law, horizon ratio and angle")  # fmt: skip
+    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], dest="given",
+                        help="another value of a key of the setting, in every run; models with a free Poisson's ratio have "
+                        f"that of glass, {GLASS}, unless material.poisson_ratio is set. Entries whose keys the model does not "
+                        "take are red, with the program's message")  # fmt: skip
     parser.add_argument("--quick", action="store_true", help="run only the coarsest lattice of each entry")
     parser.add_argument("--output", metavar="DIR", type=Path, default=Path("results/trust"), help="default: results/trust")
     parser.add_argument("--jobs", metavar="N", type=_positive, help="number of parallel runs (default: one per processor)")
@@ -114,7 +121,7 @@ def main(words: list[str]) -> int:
     asked = _parser().parse_args(words)
     try:
         return run(asked)
-    except ForeignFile as error:
+    except (ForeignFile, WrongSetting) as error:
         print(f"peristat trust: {error}", file=sys.stderr)
         return WRONG_INPUT
     except OSError as error:
@@ -127,6 +134,10 @@ def run(asked: argparse.Namespace) -> int:
     if unknown:
         print(f"peristat trust: no entry {unknown[0]}; there are {', '.join(ENTRIES)} and trapping", file=sys.stderr)
         return WRONG_INPUT
+    given = read_settings(asked.given)
+    if given and "trapping" in asked.names:
+        raise WrongSetting("trapping takes no --set: its settings are what it varies")
+    entries = ENTRIES | {STEADY: surfing.specimen(Strip(given_ratio=poisson_ratio(given)))}
     program = os.environ.get("PERISTAT_PROGRAM")
     if not program:
         print("peristat trust: PERISTAT_PROGRAM must name the program; use ./peristat trust", file=sys.stderr)
@@ -137,17 +148,17 @@ def run(asked: argparse.Namespace) -> int:
     for name, sign in {"table.md": TABLE, "entries.svg": PICTURE, "trapping.csv": trapping.SIGN, "trapping.svg": PICTURE}.items():
         require_own(asked.output / name, sign)
     asked.output.mkdir(parents=True, exist_ok=True)
-    runs = Runs(Program(program), asked.output, jobs, threads, tell)
+    runs = Runs(Program(program), asked.output, jobs, threads, tell, given)
     if "trapping" in asked.names:
         trapping.measure(runs, asked.output, asked.quick, tell)
     names = [name for name in asked.names if name != "trapping"] or ([] if asked.names else list(ENTRIES))
-    found = verdicts([ENTRIES[name] for name in names], runs, asked.quick, tell)
+    found = verdicts([entries[name] for name in names], runs, asked.quick, tell)
     if runs.interrupted:
         return INTERRUPTED
     if not found:
         return PASSED
     extend_cracks(found)
-    text = table(found)
+    text = table(found, given)
     write_own(asked.output / "table.md", text.encode(), TABLE)
     if not asked.quick:
         draw(found, asked.output / "entries.svg")

@@ -13,6 +13,8 @@ sys.path[:0] = [str(RUNNER / "trust"), str(RUNNER / "sweep")]
 import lefm  # noqa: E402
 import surfing  # noqa: E402
 import trapping  # noqa: E402
+import double_cantilever  # noqa: E402
+from given import GLASS, RATIO, WrongSetting, in_case, poisson_ratio, read_settings  # noqa: E402
 from compliance import elastic_factor, toughness  # noqa: E402
 from specimen import Lattice, Measure, Specimen, peak  # noqa: E402
 from strip import Strip  # noqa: E402
@@ -115,6 +117,40 @@ class Verdicts(unittest.TestCase):
         self.assertAlmostEqual(limit, 1, delta=1e-9)
         self.assertAlmostEqual(uncertainty, 0.5 * 1.25 * 0.25 / 1.25 * 1.25**-0.5, delta=1e-9)
         self.assertEqual(verdict({Lattice(): 1.0}).extrapolated, (None, None))
+
+
+class Settings(unittest.TestCase):
+    """`--set KEY=VALUE` of the suite."""
+
+    def test_models_with_a_free_ratio_have_that_of_glass(self):
+        self.assertEqual(read_settings(["material.model=state"])[RATIO], str(GLASS))
+        self.assertEqual(read_settings(["material.model = 'state'", f"{RATIO}=0.3"])[RATIO], "0.3")
+        for of_bonds in (["material.model=bond"], ["material.damage.law=exponential"], []):
+            self.assertNotIn(RATIO, read_settings(of_bonds))
+        self.assertEqual(poisson_ratio(read_settings(["material.model=state"])), GLASS)
+        self.assertIsNone(poisson_ratio({}))
+
+    def test_pairs_without_key_or_value_are_refused(self):
+        for pairs in (["material.model"], ["=state"], ["material.model="], ["a=1", "a=2"]):
+            with self.assertRaises(WrongSetting):
+                read_settings(pairs)
+        with self.assertRaises(WrongSetting):
+            poisson_ratio({RATIO: "glass"})
+
+    def test_materials_of_regions_have_the_keys_too(self):
+        given = {"material.model": "state", "material.damage.law": "linear", "loading.steps": "9"}
+        specimen = double_cantilever.SPECIMENS[0]
+        self.assertEqual(in_case(given, specimen.text(Lattice())),
+                         ["region[0].material.model=state", "region[1].material.model=state", "interface[0].material.model=state",
+                          "interface[0].material.damage.law=linear", "loading.steps=9"])  # fmt: skip
+        plain = surfing.SPECIMENS[0]
+        self.assertEqual(in_case(given, plain.text(Lattice())), [f"{key}={value}" for key, value in given.items()])
+
+    def test_the_field_of_the_strip_is_that_of_the_ratio(self):
+        of = lambda ratio: surfing.specimen(Strip(given_ratio=ratio)).text(Lattice())
+        self.assertEqual(of(None), surfing.SPECIMENS[0].text(Lattice()))
+        self.assertEqual(of(1 / 3), of(None))
+        self.assertNotEqual(of(0.22), of(None))
 
 
 class Strips(unittest.TestCase):
