@@ -272,7 +272,7 @@ TEST(StateRelease, TeethTakeWhatTheirLawTakes) {
 }
 
 /// Along a line of stretches the square of the drive is the polynomial that it says, it is that of
-/// the growth of damage, and does not depend on threads.
+/// the growth of damage, and hardly depends on threads.
 TEST_P(ReleaseOfPoisson, DrivesAlongALine) {
   const auto [d, nu] = GetParam();
   OnTeeth state(d, nu), on_threads(d, nu, 3);
@@ -295,7 +295,8 @@ TEST_P(ReleaseOfPoisson, DrivesAlongALine) {
       const auto& c = line[b].squared;
       const double expected = c[0] + step * (c[1] + step * c[2]);
       EXPECT_NEAR(there[b].squared[0], expected, 1e-13);
-      EXPECT_EQ(line[b].squared, same[b].squared);
+      // Threads add up the dilatations in another order.
+      for (std::size_t k = 0; k < c.size(); ++k) EXPECT_NEAR(c[k], same[b].squared[k], 1e-15);
     }
   }
   EXPECT_NEAR(largest_utilisation(state.assembler, state.at(), state.borne),

@@ -306,6 +306,7 @@ TEST(FractureData, OfCpdAreRefusedWhereTheyWouldTakeMinutes) {
   material.damage.fracture_energy = energy;
   EXPECT_THROW(static_cast<void>(fracture_scale_of(material, "m", setting, 1e-3)), InputError);
   material.damage = law(DamageLaw::tanh);
+  material.damage.drive = DamageDrive::stretch;
   material.damage.fracture_energy = energy;
   material.damage.rate = 50.0;
   const BondSetting shorter{{3, 3.015e-3, 1.0}};
