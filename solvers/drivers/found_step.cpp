@@ -12,9 +12,10 @@
 namespace peristat {
 namespace {
 
-/// Largest number of commits of one step of a body with triangles or tetrahedra, each of which may
-/// damage more bonds.
-constexpr int most_commits = 1000;
+/// Largest number of commits of one step of a body whose equilibrium moves with them, each of which
+/// may damage more bonds. By release they lower the sum of stored and dissipated energy, so that
+/// they come to an end: a crack that runs through a body at one load takes many.
+constexpr int most_commits = 1000, most_commits_by_release = 100'000;
 
 /// Largest fraction of the loads that may act on pinned pieces that an avalanche has torn off:
 /// beyond it the body no longer carries its loads.
@@ -99,7 +100,10 @@ std::map<std::string, Coordinates> reactions(const Path& path, const Trial& stat
 void commit(Path& path, Attempt& attempt, FoundStep& found,
             const std::function<Outcome()>& equilibrate) {
   Assembler& assembler = path.body().assembler;
-  for (int pass = 0; pass < most_commits; ++pass) {
+  const Model& model = assembler.model();
+  const bool is_by_release = model.failing_bonds() && model.fails_in_avalanches();
+  const int most = is_by_release ? most_commits_by_release : most_commits;
+  for (int pass = 0; pass < most; ++pass) {
     const Evaluation committed = assembler.commit(attempt.state.displacement, attempt.state.history,
                                                   {}, attempt.state.environment);
     found.growth.degrading += committed.growth.degrading;
@@ -109,8 +113,7 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
     attempt.state.energy_round_off = committed.round_off;
     if (!committed.moves_equilibrium) return;
     // Damaging by release and solving in turns sets energy free that no bond takes.
-    const Model& model = assembler.model();
-    if (model.failing_bonds() && model.fails_in_avalanches()) found.energies.is_avalanche = true;
+    if (is_by_release) found.energies.is_avalanche = true;
     if (equilibrate() != Outcome::converged) return;
   }
   attempt.outcome = Outcome::iteration_limit;

@@ -1,7 +1,9 @@
 #include "solvers/drivers/implicit_stepping.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "assembly/borne_stretches.hpp"
 #include "src/core/number_text.hpp"
 
 namespace peristat {
@@ -20,6 +22,11 @@ constexpr int most_failures = 4, passes_between_tries = 8;
 
 /// Fraction by which a step may exceed the load at which the first point fails.
 constexpr double most_overload = 0.02;
+
+bool fails_by_release(const Path& path) {
+  const BondFailure* const bonds = path.damaged().model().failing_bonds();
+  return bonds && bonds->drive() == DamageDrive::release;
+}
 
 }  // namespace
 
@@ -72,6 +79,7 @@ ImplicitStep ImplicitStepping::search(Damage damage) {
   options.damage = damage;
   step.attempt = path_.search(from, target, options);
   if (step.attempt.outcome == Outcome::undefined_condition) step.fault = step.attempt.note;
+  step.hardest = step.attempt.iterations;
   if (step.attempt.has_converged()) step.growth = path_.damaged().growth(step.attempt.state.at());
   return step;
 }
@@ -100,9 +108,12 @@ void ImplicitStepping::establish(ImplicitStep& step) {
       step.found.energies.is_avalanche = fails_in_avalanches;
       NewtonOptions again = path_.setting().newton_options;
       again.scale = attempt.scale;
+      // A few bonds have lost stiffness: the factor before that still serves iterations.
+      again.factorizes_first = !fails_by_release(path_);
       const int before = attempt.iterations;
       const bool unstable_start = attempt.unstable_start;  // of the step, which decides about cuts
       attempt = path_.search(from, load_point(from), again);
+      step.hardest = std::max(step.hardest, attempt.iterations);
       attempt.iterations += before;
       attempt.unstable_start = unstable_start;
       return attempt.outcome;
@@ -125,7 +136,10 @@ bool ImplicitStepping::refines_preload(const ImplicitStep& step) {
 }
 
 bool ImplicitStepping::approach_failure(const ImplicitStep& step) {
-  if (!path_.damaged().model().fails_in_avalanches()) return false;
+  const Model& model = path_.damaged().model();
+  if (!model.fails_in_avalanches() || (model.failing_bonds() && !fails_by_steps(model))) {
+    return false;
+  }
   const double after = step.growth.utilisation;
   if (after <= 1.0 + most_overload) return false;
   const double before = path_.damaged().growth(path_.state().accepted).utilisation;
@@ -136,7 +150,7 @@ bool ImplicitStepping::approach_failure(const ImplicitStep& step) {
                                .outcome = name(Outcome::converged),
                                .action = Decision::cut,
                                .next_increment = rest,
-                               .reason = "points would fail at " + number_text(after) +
+                               .reason = "points or bonds would fail at " + number_text(after) +
                                          " of the load that they can bear"});
   return true;
 }
@@ -231,7 +245,9 @@ void ImplicitStepping::name_snap_back(ImplicitStep& step) {
 
 Advance ImplicitStepping::accept(ImplicitStep step) {
   const Attempt& attempt = step.attempt;
-  const bool grows = attempt.iterations <= path_.options().easy_iterations && increment_.grow();
+  // By release a step is as hard as its searches, however many damage and equilibrium take.
+  const int effort = fails_by_release(path_) ? step.hardest : attempt.iterations;
+  const bool grows = effort <= path_.options().easy_iterations && increment_.grow();
   const bool is_exact = attempt.note.empty();
   const std::string how =
       step.avalanche.empty() ? std::to_string(attempt.iterations) + " iterations" : step.avalanche;

@@ -18,6 +18,7 @@ struct ImplicitStep {
   std::string fault;        ///< details of a failure beside its outcome
   std::string avalanche;    ///< description of one; empty if there was none
   bool has_pinned = false;  ///< further degrees of freedom than before
+  int hardest = 0;          ///< most iterations of one of its searches
 };
 
 /// Implicit steps. A step that fails is cut and tried again; after an easy one the next may grow.
@@ -47,7 +48,8 @@ class ImplicitStepping : public Driver {
   /// Cuts a step of the preload that damages the body, so that its work is summed in steps.
   [[nodiscard]] bool refines_preload(const ImplicitStep& step);
   /// Cuts a step beyond the load that points bear: all overloaded points fail together, so that a
-  /// coarse step would break points that fine ones never overload.
+  /// coarse step would break points that fine ones never overload. Likewise for bonds that break at
+  /// once by release. Bonds that soften are at what they bear in every step.
   [[nodiscard]] bool approach_failure(const ImplicitStep& step);
   [[nodiscard]] bool is_limit_point(const Attempt& attempt) const;
   /// Pins what failing points leave loose, before the equilibrium is searched again.

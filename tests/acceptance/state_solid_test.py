@@ -196,6 +196,22 @@ class StateSolid(Folder):
             warnings = json.loads((folder / "summary.json").read_text())["warnings"]
             self.assertEqual(any("is not a peak of the body" in one for one in warnings), warns, warnings)
 
+    def test_softening_takes_the_steps_that_are_asked_for(self):
+        """In mode newton: a body whose bonds soften early took 496 steps in the place of ten."""
+        law = SOFT.replace("0.01\n", "0.03\n").replace("0.005", "0.003")
+        text = cut(SOLID, poisson_ratio=0.45, max="[1.0, 1.2]") + law + CRACK + PULL
+        few = columns(self.run_case(text, 'solver.mode="newton"', "loading.steps=10", name="few"))
+        more = columns(self.run_case(text, 'solver.mode="newton"', "loading.steps=40", name="more"))
+        self.assertLess(len(few["step"]), 14)
+        self.assertGreater(few["dissipated_energy"][-1], 0.01)
+        for rows in (few, more):
+            self.assertGreaterEqual(numpy.diff(rows["drained_energy"]).min(), 0)
+            self.assertLess(abs(rows["balance_error"]).max(), 1e-4 * rows["external_work"].max())
+        drained = [rows["drained_energy"][-1] / rows["external_work"][-1] for rows in (few, more)]
+        self.assertLess(drained[1], 0.5 * drained[0])
+        peaks = [abs(rows["reaction_y:high"]).max() for rows in (few, more)]
+        self.assertAlmostEqual(peaks[0] / peaks[1], 1, delta=0.03)
+
     def test_an_interrupted_tear_goes_on_to_the_same_bits(self):
         text = SOLID + DAMAGE + CRACK + PULL
         whole = self.run_case(text, "solver.mode=adaptive", name="whole")
