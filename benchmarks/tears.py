@@ -58,7 +58,7 @@ def bonds(dimension, ratio, folder):
 def cpd(ratio, law, steps, folder):
     """A row: a damage law of cpd, torn in small steps."""
     constants = {"c1": 5e19, "c2": 3e27 * (2.015 / ratio) ** 4}
-    material = {"model": "cpd", **constants, "damage": LAWS[law] | {"fracture_energy": G}}
+    material = {"model": "cpd", **constants, "damage": LAWS[law] | {"fracture_energy": G, "drive": "stretch"}}
     tear = Tear(2, ratio, SPACING, THICKNESS, {1: constants["c1"], 2: constants["c2"]})
     took, errors = {}, []
     for angle, period in ANGLES:

@@ -251,11 +251,11 @@ class MaterialDamage(Table):
     law: Literal["none", "critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended", "table", "energy_density"]
     """`'none'`: no damage, and the other keys of the table have no effect; `'critical_stretch'`: a bond is undamaged up to `critical` and then broken; `'tanh'`: softening from `onset` to `critical` as published in [ADAPT], with jumps of (1 − tanh `rate`)/2 at both ends; `'tanh_continuous'`: the same law, rescaled to have no jumps; `'linear'`: the force falls linearly from `onset` to zero at `critical`; `'exponential'`: it falls exponentially, without a jump at `critical`; `'blended'`: it rises on a lower slope from `onset` to `peak`, and then falls linearly; `'table'`: the force is the curve of `stretches` and `forces`; `'energy_density'`: a point fails at once and irreversibly where its energy density exceeds `fracture_energy` / (2 δ); this law is for `kinematics = 'linear'`, and with `solver.operator = 'fft'` for all models. Default: `'none'`. Allowed: `'none'`, `'critical_stretch'`, `'tanh'`, `'tanh_continuous'`, `'linear'`, `'exponential'`, `'blended'`, `'table'`, `'energy_density'`"""
     fracture_energy: Quantity
-    """$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` follows from it. `cpd` accepts it at horizon ratios up to 12 in 2D, 3.2 in 3D [J/m2]. Default: none. Allowed: positive"""
+    """$G_c$ of a plane crack, the mean over its directions on this lattice; `critical` follows from it. `cpd` with `drive = 'stretch'` accepts it at horizon ratios up to 12 in 2D, 3.2 in 3D [J/m2]. Default: none. Allowed: positive"""
     fracture_toughness: Quantity
     """$K_{Ic}$, can be given instead of `fracture_energy`: $G_c = K_{Ic}^2/E'$, with $E' = E$ in plane stress (and with `cpd` in 2D) and $E/(1 - \\nu^2)$ in plane strain and 3D, with the moduli of the model [Pa*sqrt(m)]. Default: none. Allowed: positive"""
     strength: Quantity
-    """$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the mean over directions (theory); `onset` follows from it, for `blended` the `peak`, for `critical_stretch` the value of `critical`. `cpd` accepts it at the horizon ratios of `fracture_energy`, in 3D only at smaller ones, where the computation takes less than minutes [Pa]. Default: none. Allowed: positive"""
+    """$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the mean over directions (theory); `onset` follows from it, for `blended` the `peak`, for `critical_stretch` the value of `critical`. `cpd` accepts it with `drive = 'stretch'`, at the horizon ratios of `fracture_energy`, in 3D only at smaller ones, where the computation takes less than minutes [Pa]. Default: none. Allowed: positive"""
     critical: Expression
     """stretch $s_c$ at which a bond breaks [1]. this, `fracture_energy` or `fracture_toughness` is required with a law. Allowed: 1e-9 to 1000, or an expression of `horizon` and `spacing`"""
     onset: Expression
@@ -270,6 +270,8 @@ class MaterialDamage(Table):
     """`table`: stretches, ascending. The first one ends the elastic part. At the last one the bond breaks [1]. required with law `table`. Allowed: list of numbers; 1e-9 to 1000"""
     forces: List
     """`table`: force of a bond at each of the `stretches`, divided by its constant $c$, and linear in between. So the first force equals the first stretch. Force over stretch must not grow. The last force may be 0 [1]. required with law `table`. Allowed: list of numbers"""
+    drive: Literal["stretch", "release"]
+    """`cpd`, `state`, and `lps` as an energy: what drives the damage of a bond. `'stretch'`: its stretch; `'release'`: what its loss would set free with all that depends on it, as an equivalent stretch that the law takes. `state` has `'release'` alone. Default: `'release'` with `state`, and with `fracture_energy` or `fracture_toughness`; otherwise `'stretch'`. Allowed: `'stretch'`, `'release'`; the same for all materials of a body"""
     no_fail: List
     """sets of points whose bonds stay elastic at any stretch, including bonds to points outside the sets. Default: none. Allowed: list of names of sets and layers"""
 
@@ -315,13 +317,13 @@ class Material(Table):
     micromodulus: Quantity
     """`bond`: bond constant c of the pairwise force c·stretch [N/m6]. exactly one of `youngs_modulus`, `micromodulus`, `c1`. Allowed: positive"""
     poisson_ratio: float
-    """Poisson's ratio, for `cpd`, `lps` and `correspondence` with `youngs_modulus`. required with `youngs_modulus`. Allowed: -1 to 1; `lps`, `correspondence`: to 0.5; `cpd`: in 3D to 0.5; these limits are excluded; `cpd` with damage: at least 1/3 (2D) or 1/4 (3D)"""
+    """Poisson's ratio, for `cpd`, `lps` and `correspondence` with `youngs_modulus`. required with `youngs_modulus`. Allowed: -1 to 1; `lps`, `correspondence`: to 0.5; `cpd`: in 3D to 0.5; these limits are excluded; `cpd` with damage: at least 0, by `drive = 'stretch'` at least 1/3 (2D) or 1/4 (3D)"""
     stabilisation: float
     """`correspondence`: stiffness of the springs against zero-energy modes, which do not change the deformation gradients; relative to bonds of the same bulk modulus. Default: 0.5. Allowed: positive"""
     c1: Quantity
     """`cpd`: one-neighbour constant [N/m6]. exactly one of `youngs_modulus`, `micromodulus`, `c1`. Allowed: positive"""
     c2: Quantity
-    """`cpd`: two-neighbour constant; in 3D it may also be given with `youngs_modulus`, in 2D it follows from it [N/m10]. Default: 0. Allowed: any number; a negative one is refused with damage, and where it makes the body unstable at rest"""
+    """`cpd`: two-neighbour constant; in 3D it may also be given with `youngs_modulus`, in 2D it follows from it [N/m10]. Default: 0. Allowed: any number; a negative one is refused with damage by `stretch`, and where it makes the body unstable at rest"""
     c3: Quantity
     """`cpd`: three-neighbour constant, 3D; it follows from `youngs_modulus` if that is given [N/m14]. Default: 0. Allowed: any number; for a negative one see `c2`"""
     calibration: Literal["lattice", "continuum"]

@@ -120,6 +120,27 @@ class StateSolid(Folder):
                 numpy.testing.assert_array_equal(rows["broken_bonds"], found[0][0]["broken_bonds"])
                 numpy.testing.assert_allclose(displacement, found[0][1], rtol=0, atol=1e-9 * abs(displacement).max())
 
+    def test_every_state_of_the_linear_solid_is_one_by_release(self):
+        """Model lps as an energy: the same rules with linear stretches, also for laws that soften."""
+        softening = {"onset": 0.005, "critical": 0.01, "drop": 0.0, "work": self.softened,
+                     "integrity": lambda k: numpy.where(k > 0.005, self.force(k) / numpy.maximum(k, 1e-9), 1.0)}  # fmt: skip
+        for nu, damage, law in ((0.05, DAMAGE, self.BRITTLE), (0.45, DAMAGE, self.BRITTLE), (0.2, SOFT, softening)):
+            with self.subTest(nu=nu, law=damage.split('"')[1]):
+                text = cut(PLATE, poisson_ratio=nu) + damage + 'drive = "release"\n' + CRACK
+                folder = self.run_case(text + PULL, 'solver.mode="newton"', name="torn")
+                last = self.judge(folder, text, law)
+                self.assertGreater(last["broken_bonds"], 20)
+                rows = columns(folder)
+                self.assertGreaterEqual(numpy.diff(rows["drained_energy"]).min(), -1e-12)
+                self.assertLess(abs(rows["balance_error"]).max(), 0.02 * rows["external_work"].max())
+
+    def test_the_linear_solid_refuses_what_release_alone_has(self):
+        soft = PLATE + SOFT + PULL
+        self.assertIn("material.damage.law", self.refusal(soft))
+        strain = cut(PLATE, poisson_ratio=0.41) + 'plane = "strain"\n' + DAMAGE
+        self.assertIn("poisson_ratio = 0.41", self.refusal(strain + 'drive = "release"\n' + PULL))
+        self.assert_completed(self.command("check", strain + PULL))
+
     def test_fracture_energy_is_what_a_torn_plate_takes(self):
         """The same fracture energy at any Poisson's ratio: a crack through the plate takes it along its ligament."""
         damage = '[material.damage]\nlaw = "linear"\nfracture_energy = 0.02\nno_fail = ["low", "high"]\n'

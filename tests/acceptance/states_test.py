@@ -82,7 +82,7 @@ def cut(text, **changes):
 def solid(results, text, **more):
     whole, text = text, text.replace(REGION, "")
     material = {key: float(value) for key, value in re.findall(r"(?m)^(youngs_modulus|poisson_ratio) = (.*)$", text)}
-    material |= dict(re.findall(r'(?m)^(model|plane|influence) = "(.*)"$', text))
+    material |= dict(re.findall(r'(?m)^(model|plane|influence|drive) = "(.*)"$', text))
     spacing = float(re.search(r"(?m)^spacing = (.*)$", text)[1])
     ratio = float(re.search(r"(?m)^horizon_ratio = (.*)$", text)[1])
     size = spacing if 'volume_correction = "linear"' in text else None
@@ -279,8 +279,9 @@ class States(Folder):
         """With any kernel: its critical stretch is that of this energy."""
         for kernel in ("inverse", "constant"):
             text = PLATE + f'influence = "{kernel}"\n' + DAMAGE.replace("critical = 0.01", "fracture_energy = 0.3") + PULL
-            said = self.assert_completed(self.command("check", text)).said
-            self.assertIn("fracture energy 0.3 J/m2 under a uniform dilation", said)
+            for drive, words in (("stretch", "under a uniform dilation"), ("release", "in the mean over the directions of a crack")):
+                said = self.assert_completed(self.command("check", text, f'material.damage.drive="{drive}"')).said
+                self.assertIn("fracture energy 0.3 J/m2 " + words, said)
 
     def test_its_constants_need_no_calibration(self):
         self.assert_refused(self.command("calibrate", PLATE + PULL), "material.model = lps", "as they are given")

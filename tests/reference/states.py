@@ -163,9 +163,19 @@ class FiniteSolid(StateSolid):
         return self.share * self.length**2 * (q[self.first] + q[self.second]) * work_of_law
 
 
+class LinearRelease(FiniteSolid):
+    """The linear solid with damage by release: xi.eta / r^2 in the place of e / r, forces along bonds at rest."""
+
+    def strained(self, displacement):
+        reference = self.places[self.second] - self.places[self.first]
+        stretch = ((displacement[self.second] - displacement[self.first]) * reference).sum(axis=1) / self.length**2
+        return reference / self.length[:, None], stretch, self.share * self.integrity * self.left * self.length
+
+
 def solid_of(material, places, volume, horizon, **more):
     """lambda and mu from the table of a material."""
     is_stress = places.shape[1] == 2 and material.get("plane", "stress") == "stress"
     constants = lame(material["youngs_modulus"], material["poisson_ratio"], "stress" if is_stress else "strain")
-    kind = FiniteSolid if material.get("model") == "state" else StateSolid
+    releases = material.get("drive") == "release"
+    kind = FiniteSolid if material.get("model") == "state" else LinearRelease if releases else StateSolid
     return kind(places, volume, horizon, *constants, kernel=material.get("influence", "inverse"), **more)

@@ -46,7 +46,7 @@ class CpdFractureEnergy(Folder):
 
     def test_a_torn_strip_takes_what_was_told(self):
         for law, angles in (("critical_stretch", ANGLES), ("linear", ANGLES[:1])):
-            damage = {"law": law, "fracture_energy": G}
+            damage = {"law": law, "fracture_energy": G, "drive": "stretch"}
             told = self.told(self.strip(0.03, 0.0, damage))
             self.assertAlmostEqual(told["fracture_energy"]["mean"] / G, 1.0, delta=1e-9)
             found = {"law": law} | {key: told[key] for key in ("onset", "critical") if key in told}
@@ -72,7 +72,7 @@ class CpdFractureEnergy(Folder):
     def test_stretches_are_those_of_the_reference(self):
         for damage in ({"law": "critical_stretch"}, {"law": "tanh"}, {"law": "linear", "onset": 2e-3}, {"law": "exponential"}):
             with self.subTest(law=damage["law"]):
-                damage = damage | {"fracture_energy": G}
+                damage = damage | {"fracture_energy": G, "drive": "stretch"}
                 told = self.told(self.strip(0.03, 0.0, damage))
                 case = Case(self.strip(0.03, 0.0, damage))
                 resolve(case)
@@ -84,7 +84,7 @@ class CpdFractureEnergy(Folder):
         constants = {"c1": 4e20, "c2": 1e28, "c3": 7e37}
         options = [word for key, value in constants.items() for word in (f"--{key}", repr(value))]
         ended = self.peristat("calibrate", "--dimension", "3", "--spacing", "1e-3", "--horizon-ratio", "2", *options,
-                              "--law", "critical_stretch", "--fracture-energy", "500")  # fmt: skip
+                              "--law", "critical_stretch", "--fracture-energy", "500", "--drive", "stretch")  # fmt: skip
         told = self.assert_completed(ended).json()["damage"]
         tear = Tear(3, 2.0, 1e-3, 1.0, dict(zip((1, 2, 3), constants.values(), strict=True)))
         damage = {"law": "critical_stretch", "critical": told["critical"]}
@@ -98,7 +98,7 @@ class CpdFractureEnergy(Folder):
                 options = [word for key, value in of.items() for word in (f"--{key}", repr(value))]
                 ended = self.peristat("calibrate", "--dimension", dimension, "--spacing", "1e-3", "--horizon-ratio", "2",
                                       *options, "--law", "linear", "--fracture-energy", "500",
-                                      "--influence", influence)  # fmt: skip
+                                      "--influence", influence, "--drive", "stretch")  # fmt: skip
                 told = self.assert_completed(ended).json()
                 tear = Tear(dimension, 2.0, 1e-3, 1.0, dict(zip((1, 2, 3), of.values())), influence)
                 damage = {"law": "linear"} | {key: told["damage"][key] for key in ("onset", "critical")}
@@ -106,7 +106,7 @@ class CpdFractureEnergy(Folder):
                 self.assertIsNone(told["continuum"])
 
     def test_a_strength_comes_back_and_check_tells_both(self):
-        tables = self.strip(0.03, 0.0, {"law": "linear", "fracture_energy": G, "strength": 2e8})
+        tables = self.strip(0.03, 0.0, {"law": "linear", "fracture_energy": G, "strength": 2e8, "drive": "stretch"})
         material = tables["material"]
         del material["c1"], material["c2"]
         material |= {"youngs_modulus": 70e9, "poisson_ratio": 0.4}
@@ -164,13 +164,13 @@ class CpdFractureEnergy(Folder):
         for law, strength, words in (("critical_stretch", 2e8, "one stretch for both"),
                                      ("linear", 2e9, "a spacing below")):  # fmt: skip
             with self.subTest(words=words):
-                tables = self.of_moduli({"law": law, "fracture_energy": G, "strength": strength})
+                tables = self.of_moduli({"law": law, "fracture_energy": G, "strength": strength, "drive": "stretch"})
                 self.assert_refused(self.command("check", tables), "material.damage.strength", words)
 
     def test_too_long_a_horizon_is_refused(self):
         ended = self.peristat("calibrate", "--dimension", "3", "--spacing", "1e-3", "--horizon-ratio", "4",
                               "--youngs-modulus", "70e9", "--poisson-ratio", "0.4", "--law", "critical_stretch",
-                              "--fracture-energy", "10")  # fmt: skip
+                              "--fracture-energy", "10", "--drive", "stretch")  # fmt: skip
         self.assert_refused(ended, "is for horizon ratios up to 3.2 with cpd in 3D")
 
 

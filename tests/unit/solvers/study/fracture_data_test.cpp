@@ -305,9 +305,7 @@ TEST(FractureData, OfCpdAreRefusedWhereTheyWouldTakeMinutes) {
   material.damage.critical = 0.0;
   material.damage.fracture_energy = energy;
   EXPECT_THROW(static_cast<void>(fracture_scale_of(material, "m", setting, 1e-3)), InputError);
-  material.damage = law(DamageLaw::tanh);
-  material.damage.drive = DamageDrive::stretch;
-  material.damage.fracture_energy = energy;
+  material.damage.law = DamageLaw::tanh;
   material.damage.rate = 50.0;
   const BondSetting shorter{{3, 3.015e-3, 1.0}};
   const FractureScale of = fracture_scale_of(material, "m", shorter, 1e-3);
@@ -320,6 +318,31 @@ TEST(FractureData, OfCpdAreRefusedForNegativeConstants) {
   material.poisson_ratio = 0.1;
   material.damage.fracture_energy = energy;
   EXPECT_THROW(static_cast<void>(fracture_scale_of(material, "m", setting, 1e-3)), InputError);
+}
+
+/// By release G = C1 A M at any horizon and Poisson's ratio from 0 on: only bonds take energy.
+TEST(FractureData, OfCpdByReleaseAreThoseOfItsBonds) {
+  for (const int dimension : {2, 3}) {
+    const double ratio = dimension == 2 ? 13.0 : 4.0;
+    const BondSetting setting{{dimension, ratio * 1e-3, dimension == 2 ? 2e-3 : 1.0}};
+    for (const double nu : {0.0, 0.1, 0.4}) {
+      MaterialSpecification material = cpd(DamageLaw::exponential);
+      material.poisson_ratio = nu;
+      material.damage.drive.reset();  // follows from the fracture energy
+      material.damage.fracture_energy = energy;
+      const FractureScale of = fracture_scale_of(material, "m", setting, 1e-3);
+      const DamageSpecification found = with_stretches(material.damage, "m", of);
+      EXPECT_NEAR(of.micromodulus * of.crossing * total_work(found) / energy, 1.0, 1e-12);
+      EXPECT_NEAR(of.energy(found) / energy, 1.0, 1e-12);
+      EXPECT_FALSE(of.pull);
+      material.damage.strength = 1e6;
+      EXPECT_THROW(static_cast<void>(fracture_scale_of(material, "m", setting, 1e-3)), InputError);
+    }
+    MaterialSpecification auxetic = cpd(DamageLaw::linear);
+    auxetic.poisson_ratio = -1e-3;
+    auxetic.damage.drive = DamageDrive::release;
+    EXPECT_THROW(static_cast<void>(fracture_scale_of(auxetic, "m", setting, 1e-3)), InputError);
+  }
 }
 
 }  // namespace
