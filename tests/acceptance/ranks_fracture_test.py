@@ -209,6 +209,9 @@ class Fracture(Comparison):
                 self.assertGreater(file["history/dissipated_energy"][-1], 0.0)
             self.assertGreaterEqual(len(self.broken(one)), broken)
 
+    def test_states_beside_planes_are_refused(self):
+        self.assertIn("is for one rank with planes", self.refusal(self.STATES, self.HALF))
+
     def test_torn_states_go_on_with_another_number_of_ranks(self):
         options = (*self.of_states(*self.TORN_STATES[2][:-1]), "loading.steps=8", "loading.adaptive=false")
         whole = self.run_on(1, self.STATES, *options).rename(self.folder / "whole")
