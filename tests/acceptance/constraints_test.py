@@ -156,10 +156,10 @@ class Symmetry(Constrained):
 
     def test_a_crack_of_states_runs_as_in_the_whole_plate(self):
         damage = '[material.damage]\nlaw = "{}"\ncritical = 0.01\nno_fail = ["top"]\n'
-        for ratio in (0.1, 0.45):
+        # At larger pulls a crack of bonds that soften runs through, where round-off breaks the whole plate's symmetries.
+        for ratio, pull in ((0.1, "3.9e-5"), (0.45, "3.3e-5")):
             self.compare_cracks(STATE.format(ratio) + damage.format("critical_stretch"), "2e-4", 50)
-            # Beyond this load the whole plate loses its own symmetries: bonds that soften are tied to round-off.
-            self.compare_cracks(STATE.format(ratio) + damage.format("linear") + "onset = 0.005\n", "5e-5", 8)
+            self.compare_cracks(STATE.format(ratio) + damage.format("linear") + "onset = 0.005\n", pull, 8)
 
     def compare_cracks(self, material, pull, least):
         crack = "[[crack]]\nfrom = [{}, 0.0]\nto = [{}, 0.0]\n"
@@ -264,11 +264,10 @@ def lattice_stress(gradient, youngs_modulus=200e9, spacing=1e-3, ratio=3.015):
 
 
 class Periodic(Constrained):
-    def torn(self, crack, material):
+    def torn(self, crack, material, strain):
         """A cell of 24 x 12 points, longer than 20, in which a crack begins to run."""
         softening = 'law = "tanh_continuous"\nonset = 0.003\ncritical = 0.008\n'
-        strain = "3e-3*load" if material == BONDS else "5e-3*load"
-        text = CELL.format(material=material + "[material.damage]\n" + softening, x=[0, 0], y=[0, strain])
+        text = CELL.format(material=material + "[material.damage]\n" + softening, x=[0, 0], y=[0, f"{strain}*load"])
         text = text.replace("0.008, 0.006]", "0.024, 0.012]").replace("to = 0.008", "to = 0.024").replace("to = 0.006", "to = 0.012")
         text += f"[[crack]]\nfrom = [-0.004, {crack}]\nto = [0.004, {crack}]\n"
         text += '[[set]]\nname = "all"\nwhere = "1"\n[[probe]]\nname = "crack"\nset = "all"\nfield = "crack_length"\n'
@@ -276,12 +275,12 @@ class Periodic(Constrained):
 
     def test_a_crack_on_the_side_of_a_cell_is_that_within_it(self):
         """The choice of the cell within the same lattice changes nothing, to the round-off of softening bonds."""
-        for material in (BONDS, STATE.format(0.1), STATE.format(0.45)):
+        for material, strain in ((BONDS, 3e-3), (STATE.format(0.1), 3.4e-3), (STATE.format(0.45), 2.7e-3)):
             with self.subTest(material):
-                self.compare_cells(material)
+                self.compare_cells(material, strain)
 
-    def compare_cells(self, material):
-        within, on_side = self.torn(0.003, material), self.torn(0.0, material)
+    def compare_cells(self, material, strain):
+        within, on_side = self.torn(0.003, material, strain), self.torn(0.0, material, strain)
         self.assertGreater(within[-1]["broken_bonds"], 5)
         for column in ("stored_energy", "dissipated_energy", "reaction_y:period_y", "max_damage"):
             self.assertAlmostEqual(within[-1][column] / on_side[-1][column], 1, delta=1e-8)

@@ -192,6 +192,36 @@ class Fracture(Comparison):
             self.assertEqual(self.broken(whole), self.broken(output))
             self.expect_same(whole, output)
 
+    STATES = TORN.replace('model = "bond"\n', 'model = "state"\npoisson_ratio = 0.45\n') + STORED
+    TORN_STATES = (  # law, mode, Poisson's ratio, last load, least number of broken bonds
+        ('{law="critical_stretch", critical=0.03, no_fail=["bottom", "top"]}', "adaptive", 0.45, 0.35, 50),
+        ('{law="linear", onset=0.02, critical=0.05, no_fail=["bottom", "top"]}', "adaptive", 0.1, 0.4, 50),
+        ('{law="linear", onset=0.03, critical=0.6}', "newton", 0.45, 0.36, 0),
+    )
+
+    def of_states(self, law, mode, ratio, last):
+        return f"material.damage={law}", f'solver.mode="{mode}"', f"material.poisson_ratio={ratio}", f"loading.table=[0, {last}]"
+
+    def test_states_that_are_torn_by_what_their_bonds_release(self):
+        for *case, broken in self.TORN_STATES:
+            one = self.compare_torn((2, 3), *self.of_states(*case), "loading.steps=2", text=self.STATES)
+            with h5py.File(one / "results.h5") as file:
+                self.assertGreater(file["history/dissipated_energy"][-1], 0.0)
+            self.assertGreaterEqual(len(self.broken(one)), broken)
+
+    def test_states_beside_planes_are_refused(self):
+        self.assertIn("is for one rank with planes", self.refusal(self.STATES, self.HALF))
+
+    def test_torn_states_go_on_with_another_number_of_ranks(self):
+        options = (*self.of_states(*self.TORN_STATES[2][:-1]), "loading.steps=8", "loading.adaptive=false")
+        whole = self.run_on(1, self.STATES, *options).rename(self.folder / "whole")
+        for first, then in ((2, 3), (3, 1), (1, 2)):
+            output = self.run_on(first, self.STATES, *options, words=("--stop-after", 7), code=130)
+            self.assertGreater(float(rows(output, "history.csv")[-1]["dissipated_energy"]), 0.0)
+            self.resume_on(then, output)
+            self.assertEqual(self.broken(whole), self.broken(output))
+            self.expect_same(whole, output)
+
 
 # The ring around a tip extends over several parts; the load is of mixed mode.
 TIP = """
