@@ -18,6 +18,7 @@ from tests.printed.runs import calibrate, check, run
 from tests.reference import elliptical_hole, ring
 from tests.reference.program import ROOT
 from tests.reference.results import table
+from tests.reference.stretched_bar import nominal_stress
 
 ENERGY = "quadrature.surface_correction=energy"
 
@@ -261,6 +262,50 @@ class Cpd(PrintedTest):
             self.assertTrue(all(abs(row["newton_iterations"] - 4) <= 1 for row in steps), case)
             self.assertIn("takes four iterations in a step", " ".join((ROOT / f"cases/{case}.toml").read_text()
                                                                .replace("\n#", "").split()))  # fmt: skip
+
+
+class StateSolid(PrintedTest):
+    def test_stretched_bar(self):
+        self.page = "cases/state/stretched_bar.toml"
+        rest, *pulled = run("state/stretched_bar").history
+        stiffness = rest["reaction_x:pulled"] / (0.5 * rest["load_factor"])
+        ratios = [row["reaction_x:pulled"] / (stiffness * 0.5 * row["load_factor"]) for row in pulled]
+        self.assertEqual([round(1 + 0.5 * row["load_factor"], 12) for row in pulled], [1.1, 1.5])
+        self.prints("of the tangent at rest is {} at the stretch 1.1 and {} at 1.5", *ratios)
+        law = lambda nu, dimension: [nominal_stress(a, nu, dimension) / (a - 1) for a in (1.1, 1.5)]
+        self.prints("in the bulk it is {} and {} (tests", *law(0.45, 2))
+        self.prints("In 3D it is larger: {} and {} at", *law(0.22, 3))
+
+    def test_rubber(self):
+        self.page = "cases/state/rubber.toml"
+        sheet = run("state/rubber")
+        self.prints('a force of {} N on "pulled"', sheet.reaction("pulled"))
+        self.assertEqual(len(sheet.history), 10)
+        self.assertLessEqual(max(row["newton_iterations"] for row in sheet.history), 4)
+
+    def test_plate_with_hole(self):
+        self.page = "cases/state/plate_with_hole.toml"
+        case = "state/plate_with_hole"
+        plates = [run(case, *words) for words in ((), ("material.model=cpd",))]
+        fine = [run(case, "lattice.spacing=2.5e-4", *words) for words in ((), ("material.model=cpd",))]
+        self.prints("a force of {} N on the top, {} N by cpd; at half the spacing {} N and {} N",
+                    *(plate.reaction("top", "y") for plate in plates + fine))  # fmt: skip
+        own, other = (plate.field("displacement") for plate in plates)
+        self.prints("by at most {} % of the largest", 100 * abs(own - other).max() / abs(own).max())
+        self.prints("it is {}, by cpd {}; at half the spacing {} and {}",
+                    *(self.at_rim(plate, h) for plate, h in zip(plates + fine, (5e-4, 5e-4, 2.5e-4, 2.5e-4))))  # fmt: skip
+
+    @staticmethod
+    def at_rim(plate, spacing):
+        """Stress along the load at the rim over the gross stress, by the terms 1, (R/r)^2, (R/r)^4 from a horizon to three
+        quarters of the radius R off the rim."""
+        radius = 8e-3
+        rows = table(plate.folder / "line_ligament.csv")
+        nearest = min(row["y"] for row in rows)
+        row = [(math.hypot(row["x"], row["y"]), row["stress_yy"]) for row in rows if abs(row["y"] - nearest) < 1e-6]
+        r, stress = numpy.array([one for one in row if radius + 3.015 * spacing < one[0] < 1.75 * radius]).T
+        terms = numpy.stack([(radius / r) ** n for n in (0, 2, 4)], axis=1)
+        return numpy.linalg.lstsq(terms, stress, rcond=None)[0].sum() / (plate.reaction("top", "y") / (0.04 * 1e-3))
 
 
 class Calibrated(PrintedTest):
