@@ -114,7 +114,7 @@ class Judged(Paths):
         """A path that would go back behind an entry of the table."""
         first = columns(self.run_case(plate(nu=0.45)))
         load = first["load_factor"][first["broken_bonds"] > 0][0]
-        self.followed(plate(nu=0.45, more=f"table = [0, {load - 1e-3}, 1]\n"), BRITTLE, name="held")
+        self.followed(plate(nu=0.45, more=f"table = [0, {load - 1e-3}, 1]\n"), BRITTLE, name="held", settled=8)
         self.assertGreater(self.held, 0)
 
 
