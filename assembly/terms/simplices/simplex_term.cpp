@@ -26,7 +26,7 @@ class SimplexPasses : public TermPasses, BlockTangent {
         failure_(term.bond_failure()),
         setting_(setting),
         slot_(setting.model.slot_of(term)),
-        slot_of_bonds_(setting.model.slot_of(term.bond_failure())),
+        slot_of_bonds_(is_by_release() ? setting.model.slot_of(term.bond_failure()) : 0),
         workspace_(term, setting) {}
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
