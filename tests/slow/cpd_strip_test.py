@@ -21,15 +21,17 @@ class CpdStrip(Folder):
             "loading": {"steps": steps}, "solver": {"mode": "newton"},
         }  # fmt: skip
 
+    def critical_opening(self, nu):
+        """Opening at which an elastic strip has G, by its energy at two lengths of the crack."""
+        small = 1e-5
+        short, long = (columns(self.run_case(self.strip(nu, tip, small)))["stored_energy"][-1] for tip in (TIP, TIP + 8))
+        return small * math.sqrt(G / ((short - long) / (8e-3 * 1e-3)))
+
     def test_a_crack_runs_at_its_fracture_energy_and_takes_it(self):
         damage = {"law": "linear", "fracture_energy": G, "drive": "release", "no_fail": ["low", "high"]}
         for nu in (0.0, 0.2, 0.45):
             with self.subTest(nu=nu):
-                # G of an elastic strip by its energy at two lengths of the crack.
-                small = 1e-5
-                short, long = (columns(self.run_case(self.strip(nu, tip, small)))["stored_energy"][-1] for tip in (TIP, TIP + 8))
-                critical = small * math.sqrt(G / ((short - long) / (8e-3 * 1e-3)))
-                rows = columns(self.run_case(self.strip(nu, TIP, 1.2 * critical, damage, 30)))
+                rows = columns(self.run_case(self.strip(nu, TIP, 1.2 * self.critical_opening(nu), damage, 30)))
                 broken = rows["broken_bonds"]
                 runs = int((broken > 500).argmax())  # through the strip
                 self.assertGreater(broken[runs], 500)
@@ -41,3 +43,12 @@ class CpdStrip(Folder):
                 # Process zones at the tip and at the end of the strip take a little beside the crack.
                 taken = rows["dissipated_energy"][runs] / (G * (LENGTH - TIP) * 1e-6)
                 self.assertAlmostEqual(taken, 1.0, delta=0.04)
+
+    def test_brittle_bonds_trap_a_crack_more_below_a_third(self):
+        """Triangles of negative energy hold brittle bonds back: at 1.69 G_c a crack has run above, and not yet below."""
+        damage = {"law": "critical_stretch", "fracture_energy": G, "drive": "release", "no_fail": ["low", "high"]}
+        for nu, runs in ((0.45, True), (0.334, True), (0.2, False)):
+            with self.subTest(nu=nu):
+                rows = columns(self.run_case(self.strip(nu, TIP, 1.3 * self.critical_opening(nu), damage, 65)))
+                self.assertEqual(rows["broken_bonds"][-1] > 500, runs)
+                self.assertLess(rows["broken_bonds"][-1], 800 if runs else 100)
