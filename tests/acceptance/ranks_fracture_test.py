@@ -170,12 +170,17 @@ class Fracture(Comparison):
     """ + STORED
 
     def test_triangles_that_are_lost_with_their_bonds(self):
-        one = self.compare_torn((2,), 'solver.mode="adaptive"', text=self.SHEET_UNDER_LOAD)
+        one = self.compare_torn((2,), 'solver.mode="adaptive"', 'material.damage.drive="stretch"', text=self.SHEET_UNDER_LOAD)
         self.assertIn("hand over to relaxation", [row["action"] for row in rows(one, "decisions.csv")])
         self.assertGreater(len(rows(one, "broken_bonds.csv")), 50)
         softening = 'material.damage={law="tanh", onset=0.03, critical=0.6, rate=3}'
         self.compare_torn((2,), 'solver.mode="newton"', softening, "loading.table=[0, 0.8]", "solver.relative_tolerance=1e-12",
                           text=self.SHEET_UNDER_LOAD)  # fmt: skip
+
+    def test_damage_by_release_is_for_one_rank(self):
+        for setting in ('material.damage.drive="release"', 'material.damage={law="critical_stretch", fracture_energy=1e-3}'):
+            said = self.refusal(self.SHEET_UNDER_LOAD, setting)
+            self.assertIn('material.damage.drive = release: is for one rank with model "cpd"; give drive = "stretch"', said)
 
     def test_tetrahedra_that_are_lost_with_their_bonds(self):
         one = self.compare_torn((2,), 'solver.mode="relaxation"', 'material.damage={law="critical_stretch", critical=0.07}',

@@ -25,7 +25,7 @@ STRUCTURES = ["[]", "{}", "[[]]", "[1, 2]", "[1, 2, 3, 4]", "[1, \"a\"]", "[" * 
 WORDS = """dimension title lattice points ratio spacing horizon_ratio thickness area origin perturbation cell_perturbation lloyd_steps seed shape layer add subtract min max
     centre radius radii grey scale translate axis length vertices name side where file horizon set crack from to outline quadrature form volume_correction horizon_shape normals weights
     surface_correction material model plane influence youngs_modulus micromodulus poisson_ratio calibration c1 c2 c3 density damage law onset
-    critical rate peak hardening fracture_energy fracture_toughness strength no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step
+    critical rate peak hardening fracture_energy fracture_toughness strength drive no_fail support displacement load body_force total_force loading steps adaptive smallest_step largest_step
     max_broken_bonds stop_below solver mode linear preconditioner tangent predictor projection relative_tolerance max_iterations fragments
     elastic_horizon_ratio relaxation iterations ramp breaking damping mass_factor quiet_iterations displacement_tolerance method flow_tolerance peak_tolerance output
     directory every count_cracks probe field other threshold control weights table table2 arc_length bifurcation region interface between
@@ -39,7 +39,7 @@ CHOICES = """rms_error max_error divergence blue_noise none linear exact exact_c
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk ellipse image stl polygon
     cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length crack_angle
     arc_length dynamics verlet newmark branch straight cells fractional harmonic arithmetic weaker stiffness strength weibull row horizon x y z
-    fft bonds finite green_bond correspondence printed sines""".split()
+    fft bonds finite release green_bond correspondence printed sines""".split()
 KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness lattice.area lattice.origin lattice.points lattice.lloyd_steps lattice.perturbation lattice.cell_perturbation lattice.seed
     lattice.shape[0].min lattice.shape[0].max lattice.shape[0].add lattice.shape[1].radius lattice.shape[9].add lattice.layer[0].thickness
     lattice.layer[0].where points.horizon points.horizon.ratio points.file set[0].where crack[0].from crack[0].to crack[0].outline quadrature.volume_correction
@@ -61,7 +61,7 @@ KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness latt
     load[0].pressure load[1].pressure load[1].total_force eigenstrain[0].strain eigenstrain[0].set temperature.change
     dynamics.end_time dynamics.time_step dynamics.step_share dynamics.history_every initial[0].set initial[0].displacement initial[0].velocity
     dynamics.scheme dynamics.spectral_radius absorbing[0].rate absorbing[0].set material.kinematics solver.operator material.stabilisation
-    material.damage.fracture_energy
+    material.damage.fracture_energy material.damage.drive
     relaxation.quiet_iterations relaxation.displacement_tolerance relaxation.method relaxation.flow_tolerance relaxation.peak_tolerance output.every output.count_cracks probe[0].field probe[0].set probe[0]
     [[ ]. .. a.b.c lattice lattice. .lattice support[-1].set support[99999999999].set support[0]""".split()
 

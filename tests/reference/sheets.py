@@ -152,7 +152,7 @@ def of_bonds(damage, work, peak):
 
 
 def resolve_cpd(case, tables, spacing):
-    """Stretches of bonds that take G/W each, and the G/W of the resulting law."""
+    """Stretches of bonds that take G/W each, and the G/W of the resulting law. By release bonds take all of G."""
     for table in tables:
         if "fracture_energy" not in table.get("damage", {}):
             continue
@@ -164,6 +164,9 @@ def resolve_cpd(case, tables, spacing):
         bonds = Tear(case.dimension, case.horizon() / spacing, spacing, case.cross_section, {1: constants[1]}, case["material"]["influence"])
         least = math.log(bonds.mean(brittle) / total_work(brittle))
         law = lambda ratio: with_stretches(table["damage"], math.exp(ratio))
+        if table["damage"].get("drive", "release") == "release":
+            table["damage"] = law(least)
+            continue
         excess = lambda ratio: math.log(tear.mean(law(ratio)) / wanted)
         before, ratio = least, least + excess(least)
         of_before = ratio - least

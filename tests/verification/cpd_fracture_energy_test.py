@@ -1,5 +1,6 @@
 """Fracture energy of cpd: the energy of tears through the command line, compared with the requested one."""
 
+import itertools
 import math
 import unittest
 
@@ -70,9 +71,10 @@ class CpdFractureEnergy(Folder):
         return (long - short) / (2 * period * SPACING * 0.5)
 
     def test_stretches_are_those_of_the_reference(self):
-        for damage in ({"law": "critical_stretch"}, {"law": "tanh"}, {"law": "linear", "onset": 2e-3}, {"law": "exponential"}):
-            with self.subTest(law=damage["law"]):
-                damage = damage | {"fracture_energy": G, "drive": "stretch"}
+        laws = ({"law": "critical_stretch"}, {"law": "tanh"}, {"law": "linear", "onset": 2e-3}, {"law": "exponential"})
+        for law, drive in itertools.product(laws, ("stretch", "release")):
+            with self.subTest(law=law["law"], drive=drive):
+                damage = law | {"fracture_energy": G, "drive": drive}
                 told = self.told(self.strip(0.03, 0.0, damage))
                 case = Case(self.strip(0.03, 0.0, damage))
                 resolve(case)
