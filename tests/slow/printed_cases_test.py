@@ -66,7 +66,7 @@ class Fracture(PrintedTest, Folder):
         peak = bar.step_of_peak("right", "x")
         self.prints("a peak of {} N at load factor {}", peak["reaction_x:right"], peak["load_factor"], within=PEAK)
         torn = next(row for row in bar.history if row["reaction_x:right"] < 0.1 * peak["reaction_x:right"] and row["step"] > 5)
-        self.prints("and at {} it has", torn["load_factor"])
+        self.prints("and at {} it has all but", torn["load_factor"])
         last = bar.history[-1]
         self.prints("drops to {} % of the peak", 100 * last["reaction_x:right"] / peak["reaction_x:right"], within=COUNTS)
         self.prints("Bonds have taken {} J, {} of", last["dissipated_energy"], last["dissipated_energy"] / (5e3 * 16e-6), within=COUNTS)
