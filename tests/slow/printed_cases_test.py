@@ -60,6 +60,27 @@ class Fracture(PrintedTest, Folder):
         self.prints("{} % less, as 40", 100 * (1 - peak / known), within=0.05)
         self.assertLess(beam.history[-1]["reaction_y:load"] / -peak, 0.5)
 
+    def test_notched_bar_of_states(self):
+        self.page = "cases/state/notched_bar.toml"
+        bar = run("state/notched_bar")
+        peak = bar.step_of_peak("right", "x")
+        self.prints("a peak of {} N at load factor {}", peak["reaction_x:right"], peak["load_factor"], within=PEAK)
+        torn = next(row for row in bar.history if row["reaction_x:right"] < 0.1 * peak["reaction_x:right"] and row["step"] > 5)
+        self.prints("and at {} it has all but", torn["load_factor"])
+        last = bar.history[-1]
+        self.prints("drops to {} % of the peak", 100 * last["reaction_x:right"] / peak["reaction_x:right"], within=COUNTS)
+        self.prints("Bonds have taken {} J, {} of", last["dissipated_energy"], last["dissipated_energy"] / (5e3 * 16e-6), within=COUNTS)
+        self.assertLess(last["drained_energy"], 0.25 * last["dissipated_energy"])
+
+    def test_glass_beam_of_states(self):
+        self.page = "cases/state/glass_beam.toml"
+        beam = run("state/glass_beam")
+        known = math.sqrt(70e9 * 10.0) * 1e-3 * math.sqrt(0.02) / (4 * 2.66)  # ASTM E399 has f(0.5) = 2.66
+        peak = beam.step_of_peak("load", "y")
+        self.prints("a peak of {} N where fracture mechanics has {} N", abs(peak["reaction_y:load"]), known, within=2e-3)
+        self.prints("at an opening of {} um", 1e6 * peak["control"])
+        self.assertLess(beam.history[-1]["reaction_y:load"] / peak["reaction_y:load"], 0.8)
+
     def test_mouth_opening(self):
         self.page = "cases/three_point_bending/mouth_opening.toml"
         plate = run("three_point_bending/mouth_opening")
