@@ -104,7 +104,8 @@ class SimplexPasses : public TermPasses, BlockTangent {
     const double fastest = std::transform_reduce(
         rate.begin(), rate.end(), 0.0, [](double a, double b) { return std::max(a, b); },
         [](double component) { return std::abs(component); });
-    const double step = fastest > 0.0 ? difference_step * double(setting_.points.spacing) / fastest : 1.0;
+    const double step =
+        fastest > 0.0 ? difference_step * double(setting_.points.spacing) / fastest : 1.0;
     if (fastest > 0.0) {
       Kernels::releases(workspace_, moved(at.displacement, step, rate), influences, ahead);
       Kernels::releases(workspace_, moved(at.displacement, -step, rate), influences, behind);
