@@ -118,7 +118,7 @@ Evaluation Assembler::of_all(const Evaluation& mine, std::span<double> gradient)
 Evaluation Assembler::release(std::span<const double> displacement, History& history,
                               const SharedEnvironment& environment) {
   Evaluation found;
-  if (!model_.failing_bonds() || !model_.fails_in_avalanches()) return found;
+  if (!model_.fails_by_release()) return found;
   bool is_known = false;
   for_each_term([&](TermPasses& term, Write) {
     const auto growth = term.release({displacement, history, Damage::grows, environment}, history);

@@ -84,11 +84,6 @@ void look_at_bonds(const Assembler& body, const StateView& at, const Visit& visi
   }
 }
 
-bool fails_by_release(const Model& model) {
-  const BondFailure* const bonds = model.failing_bonds();
-  return bonds && bonds->drive() == DamageDrive::release;
-}
-
 std::vector<BondDrive> drives(Assembler& body, const StateView& at, const Line& line) {
   const Bonds& bonds = body.model().bonds();
   std::vector<BondDrive> all(std::size_t(bonds.count()));
@@ -110,7 +105,7 @@ std::vector<BondDrive> drives(Assembler& body, const StateView& at, const Line& 
 template <class Visit>
 void for_each_driven(Assembler& body, const StateView& at, std::span<const double> borne,
                      const Line& line, const Visit& visit) {
-  if (fails_by_release(body.model())) {
+  if (body.model().fails_by_release()) {
     const std::vector<BondDrive> all = drives(body, at, line);
     for_each_bearing(body, borne, [&](int thread, Index i, Offset bond) {
       visit(thread, i, bond, all[std::size_t(bond)]);
@@ -190,7 +185,7 @@ BondDrops drop(Assembler& body, const StateView& at, std::span<const double> bor
   const std::span<const double> before = bond_stretches(model, at.history);
   BondDrops result{{before.begin(), before.end()}, {borne.begin(), borne.end()}};
   const Bonds& network = model.bonds();
-  const bool is_by_release = fails_by_release(model);
+  const bool is_by_release = model.fails_by_release();
   with_law(model, [&](const auto& laws) {
     for (const UtilisedBond& one : bonds) {
       const Offset bond = one.bond;

@@ -173,10 +173,6 @@ bool EventStepping::pin(Settled& settled) {
   return false;
 }
 
-bool EventStepping::fails_by_release() const {
-  return path_.damaged().model().failing_bonds()->drive() == DamageDrive::release;
-}
-
 bool EventStepping::asks_for_interrupt() const {
   const auto& interrupted = path_.setting().observer.interrupted;
   return interrupted && interrupted();
@@ -225,10 +221,11 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
     return body.energy(StateView(of, Damage::held)).energy;
   };
   // By release bonds lose all that hangs on them.
-  const bool bonds_alone = fails_by_release() || body.model().terms().size() == 1;
+  const bool is_by_release = body.model().fails_by_release();
+  const bool bonds_alone = is_by_release || body.model().terms().size() == 1;
   const double lost = bonds_alone ? dropped.energy_lost : energy(at) - energy(settled.state);
   const bool was_bifurcated = tangent().has_negative_pivots();
-  fails_by_release() ? tangent().forget() : tangent().lose(dropped.stiffness);
+  is_by_release ? tangent().forget() : tangent().lose(dropped.stiffness);
 
   const FragmentPins pins_before = path_.state().pins;
   const bool may_go_on = dropped.breaking == 0 || pin(settled);
@@ -282,7 +279,8 @@ bool EventStepping::book_event(const State& at, const PathLedger& ledger, const 
                                   working, dissipated, energies);
   settled.batch_work = dropped.dissipated - dropped.energy_lost;
   // What loss sets free beyond what it takes is drained, as in other modes.
-  if (fails_by_release()) settled.batch_work = std::max(settled.batch_work, 0.0);
+  if (path_.damaged().model().fails_by_release())
+    settled.batch_work = std::max(settled.batch_work, 0.0);
   after.numerical_work += settled.batch_work;
   const double drained = after.balance_error() - ledger.entries.balance_error();
   const double turned_over = std::abs(lost) + std::abs(after.stored) + std::abs(drained);

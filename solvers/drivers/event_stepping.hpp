@@ -90,7 +90,6 @@ class EventStepping : public Driver {
   /// @return false if it would come to rest with more energy than it had
   [[nodiscard]] bool book_event(const State& at, const PathLedger& ledger, const BondDrops& dropped,
                                 double lost, Settled& settled) const;
-  [[nodiscard]] bool fails_by_release() const;
   [[nodiscard]] bool asks_for_interrupt() const;
   /// Bonds that drop together in the next event.
   [[nodiscard]] std::vector<UtilisedBond> batch_of(const State& at) const;

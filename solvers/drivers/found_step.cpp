@@ -101,7 +101,7 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
             const std::function<Outcome()>& equilibrate) {
   Assembler& assembler = path.body().assembler;
   const Model& model = assembler.model();
-  const bool is_by_release = model.failing_bonds() && model.fails_in_avalanches();
+  const bool is_by_release = model.fails_by_release();
   const int most = is_by_release ? most_commits_by_release : most_commits;
   for (int pass = 0; pass < most; ++pass) {
     const Evaluation committed = assembler.commit(attempt.state.displacement, attempt.state.history,

@@ -23,11 +23,6 @@ constexpr int most_failures = 4, passes_between_tries = 8;
 /// Fraction by which a step may exceed the load at which the first point fails.
 constexpr double most_overload = 0.02;
 
-bool fails_by_release(const Path& path) {
-  const BondFailure* const bonds = path.damaged().model().failing_bonds();
-  return bonds && bonds->drive() == DamageDrive::release;
-}
-
 }  // namespace
 
 std::string bonds_text(Index count) {
@@ -109,7 +104,7 @@ void ImplicitStepping::establish(ImplicitStep& step) {
       NewtonOptions again = path_.setting().newton_options;
       again.scale = attempt.scale;
       // A few bonds have lost stiffness: the factor before that still serves iterations.
-      again.factorizes_first = !fails_by_release(path_);
+      again.factorizes_first = !path_.damaged().model().fails_by_release();
       const int before = attempt.iterations;
       const bool unstable_start = attempt.unstable_start;  // of the step, which decides about cuts
       attempt = path_.search(from, load_point(from), again);
@@ -246,7 +241,7 @@ void ImplicitStepping::name_snap_back(ImplicitStep& step) {
 Advance ImplicitStepping::accept(ImplicitStep step) {
   const Attempt& attempt = step.attempt;
   // By release a step is as hard as its searches, however many damage and equilibrium take.
-  const int effort = fails_by_release(path_) ? step.hardest : attempt.iterations;
+  const int effort = path_.damaged().model().fails_by_release() ? step.hardest : attempt.iterations;
   const bool grows = effort <= path_.options().easy_iterations && increment_.grow();
   const bool is_exact = attempt.note.empty();
   const std::string how =
