@@ -52,8 +52,11 @@ void assembly(benchmark::State& state) {
   const Model model = solid == Solid::bonds
                           ? benchmark_bodies::model(points)
                           : benchmark_bodies::state_model(points, omp_get_max_threads());
-  Assembler assembler(points, model, omp_get_max_threads());
-  // Only where it is used: states couple second neighbours.
+  // Products of states need no blocks between second neighbours.
+  const auto pattern =
+      solid == Solid::bonds ? Assembler::PatternOf::blocks : Assembler::PatternOf::visited_rows;
+  Assembler assembler(points, model, omp_get_max_threads(), whole_body(), pattern);
+  // Only where it is used.
   std::optional<Tangent> tangent;
   if (pass == Pass::tangent || pass == Pass::stored_product) tangent.emplace(assembler);
   const std::vector<double> displacement = wave(points, 1e-2, 7.0), v = wave(points, 1.0, 3.0);

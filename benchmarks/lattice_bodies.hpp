@@ -43,8 +43,8 @@ inline constexpr double horizon = 3.015;
   bond.influence = [](double x) { return x; };
   Bonds bonds = make_bonds(points, SurfaceCorrection::none, bond, 1);
   StateShares shares;
-  shares.kernel = kernel_of_weights(bonds);
-  shares.moment = moments_of(points, bonds, shares.kernel);
+  shares.whole = bonds.kind;
+  shares.moment = moments_of(points, bonds);
   shares.constants.assign(std::size_t(points.count()), LamePair{0.6, 0.4});
   return Model(std::make_shared<StateTerm>(
       std::make_shared<const Bonds>(std::move(bonds)), Harmonic{1.0}, std::vector<char>(),
