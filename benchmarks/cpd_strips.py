@@ -1,4 +1,7 @@
-"""A crack of cpd that runs through a clamped strip by release takes the fracture energy, at any Poisson's ratio."""
+"""A crack of cpd that runs through a clamped strip by release takes the fracture energy, at any Poisson's ratio:
+
+    PERISTAT_PROGRAM=build/release/peristat /usr/bin/python3 -m unittest benchmarks/cpd_strips.py
+"""
 
 import math
 
