@@ -196,6 +196,8 @@ class CpdRelease(Folder):
                 self.assertGreater(rows[-1]["broken_bonds"], 20)
                 work = max(row["external_work"] for row in rows)
                 self.assertLess(max(abs(row["numerical_work"]) for row in rows), 2e-3 * work)
+                if nu < 0.45:
+                    continue  # the steps take a minute
                 steps = columns(self.run_case(tables | {"loading": {"steps": 60}}, name="steps"))
                 peak = max(row["reaction_y:high"] for row in rows)
                 self.assertAlmostEqual(peak / steps["reaction_y:high"].max(), 1, delta=0.02)
