@@ -331,7 +331,7 @@ Exit calibrate(const CalibrationQuestion& question, const DamageSpecification& d
 Exit calibrate(const Case& from, bool with_strengths, std::FILE* out) {
   if (takes(from, Option::micromodulus)) return calibrate_bonds(from, with_strengths, out);
   if (!takes(from, Option::constants)) {
-    if (formulation_of(from).fracture_scale) return calibrate_bonds(from, with_strengths, out);
+    if (takes(from, Option::strength)) return calibrate_bonds(from, with_strengths, out);
     throw InputError("material.model", name_of(from.material.model),
                      "uses E and nu as they are given; calibrate " + is_for(Option::strength));
   }
