@@ -64,8 +64,8 @@ class Model {
   [[nodiscard]] bool has_history() const { return failure_->can_fail(); }
   /// True if bonds fail by what their loss sets free.
   [[nodiscard]] bool fails_by_release() const {
-    const BondFailure* const bonds = failing_bonds();
-    return bonds != nullptr && bonds->drive() == DamageDrive::release;
+    const BondFailure* const bonds = failure_->as_bond_failure();
+    return bonds != nullptr && bonds->fails_by_release();
   }
   [[nodiscard]] bool fails_in_avalanches() const {
     return has_history() && failure_->fails_in_avalanches();

@@ -88,6 +88,9 @@ void ImplicitStepping::establish(ImplicitStep& step) {
     return;
   }
   step.found.record.mode = Mode::newton.name;
+  if (path_.damaged().model().fails_by_release()) {
+    step.found.record.overload = step.growth.utilisation;
+  }
   if (step.growth.degrading > 0) {
     const bool fails_in_avalanches = path_.damaged().model().fails_in_avalanches();
     if (fails_in_avalanches) {

@@ -68,6 +68,9 @@ struct StepRecord {
   Index broken_bonds = 0;
   double max_damage = 0.0;
   double max_stretch = 0.0;
+  /// Implicit steps of bonds that fail by release: the largest utilisation of any before the step
+  /// damaged them.
+  double overload = 0.0;
   double pin_force = 0.0;  ///< on pinned fragments: 2-norm, 0 if nothing pulls [N]
   /// Norm of the sum of all internal forces [N]; 0 where these have a potential, and in motions.
   double unbalanced_force = 0.0;

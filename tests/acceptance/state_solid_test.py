@@ -210,6 +210,15 @@ class StateSolid(Folder):
             self.assertEqual("to run where lambda/mu" in ended.output + ended.errors, warns, nu)
         self.assert_completed(self.command("check", cut(SOLID + PULL, poisson_ratio=0.49) + ""))
 
+    def test_steps_that_pass_over_the_softening_are_warned_of(self):
+        """In one step bonds are driven far beyond their law, and most of what they set free is drained."""
+        whole = cut(SOLID, poisson_ratio=0.45)
+        for damage, steps, warns in ((SOFT, 1, True), (SOFT, 60, False), (DAMAGE, 1, True)):
+            text = whole + damage + CRACK + PULL
+            folder = self.run_case(text, "solver.mode=newton", "loading.adaptive=false", f"loading.steps={steps}", name="over")
+            warnings = json.loads((folder / "summary.json").read_text())["warnings"]
+            self.assertEqual([warning for warning in warnings if "times what they bear" in warning] != [], warns, warnings)
+
     def test_a_load_far_beyond_the_onset_is_warned_of(self):
         text = SOLID + DAMAGE + CRACK + PULL
         for factor, warns in (("0.012*load", False), ("1.2*load", True)):

@@ -63,6 +63,10 @@ class BondFailure final : public FailureModel {
   [[nodiscard]] bool can_fail() const override {
     return std::visit([]<class P>(const P&) { return PotentialWithHistory<P>; }, potential_);
   }
+  /// True if they can fail, by what their loss sets free.
+  [[nodiscard]] bool fails_by_release() const {
+    return can_fail() && drive_ == DamageDrive::release;
+  }
   [[nodiscard]] FailingParts parts() const override { return FailingParts::bonds; }
   [[nodiscard]] bool fails_in_avalanches() const override { return drive_ == DamageDrive::release; }
   [[nodiscard]] std::vector<double> initial_history() const override;

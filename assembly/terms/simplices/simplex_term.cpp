@@ -29,7 +29,7 @@ class SimplexPasses : public TermPasses, BlockTangent {
         failure_(term.bond_failure()),
         setting_(setting),
         slot_(setting.model.slot_of(term)),
-        slot_of_bonds_(is_by_release() ? setting.model.slot_of(failure_) : 0),
+        slot_of_bonds_(failure_.fails_by_release() ? setting.model.slot_of(failure_) : 0),
         workspace_(term, setting) {}
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
@@ -60,12 +60,12 @@ class SimplexPasses : public TermPasses, BlockTangent {
   }
 
   DamageGrowth growth(const StateView& at) override {
-    if (!is_by_release()) return {};
+    if (!failure_.fails_by_release()) return {};
     return visit_driven(at, influences_at(at), [](int, const DrivenBond&) {});
   }
 
   std::optional<DamageGrowth> release(const StateView& at, History& history) override {
-    if (!is_by_release()) return std::nullopt;
+    if (!failure_.fails_by_release()) return std::nullopt;
     std::vector<double> left;  // integrities of bonds and points
     const auto influences = [&] { return influences_of(left, at); };
     const auto find = [&](const auto& visit) { visit_driven(at, influences(), visit); };
@@ -170,10 +170,6 @@ class SimplexPasses : public TermPasses, BlockTangent {
     if (integrity.empty()) return {{}, {}, at.eigenstretch()};
     const auto bonds = std::size_t(term_.bonds().count());
     return {integrity.first(bonds), integrity.subspan(bonds), at.eigenstretch()};
-  }
-
-  [[nodiscard]] bool is_by_release() const {
-    return failure_.can_fail() && failure_.fails_in_avalanches();
   }
 
   [[nodiscard]] std::vector<double> integrities(const History& history) const {
@@ -312,9 +308,8 @@ SimplexTerm::SimplexTerm(std::shared_ptr<const BondFailure> bonds,
 Balances SimplexTerm::balances() const {
   Balances balances;
   // No loss by release creates energy, so that it stays positive where it is at rest.
-  const bool is_by_release = bonds_->can_fail() && bonds_->fails_in_avalanches();
   balances.positive_energy =
-      is_by_release || (!is_negative(triangles_) && !is_negative(tetrahedra_));
+      bonds_->fails_by_release() || (!is_negative(triangles_) && !is_negative(tetrahedra_));
   return balances;
 }
 
@@ -358,7 +353,7 @@ double SimplexTerm::stored_bytes() const {
   for_each_kind([&](const auto& kind) {
     if (kind.interactions.is_stored()) bytes += kind.interactions.stored_bytes();
   });
-  if (bonds_->can_fail() && bonds_->fails_in_avalanches()) {
+  if (bonds_->fails_by_release()) {
     // What bonds would set free, with the parts beyond threads' rows, and their lower neighbours.
     bytes += double(bonds().count()) * (3.0 * sizeof(double) + sizeof(Index));
   }

@@ -10,6 +10,7 @@
 #include <H5public.h>
 #include <fmt/format.h>
 
+#include "assembly/borne_stretches.hpp"
 #include "cases/runner/commands/run_facts.hpp"
 #include "cases/runner/input/case_inputs.hpp"
 #include "cases/runner/process/failure.hpp"
@@ -325,6 +326,7 @@ class CaseRun {
     told.decision = [this](const DecisionRecord& record) { recorder_->decided(record); };
     told.accepted = [this](const StepRecord& record, const AcceptedState& state) {
       recorder_->accepted(record, state);
+      overload_ = std::max(overload_, record.overload);
       summary_.max_displacement = largest_of_all(state.trial.displacement);
       if (record.step > 0) ++steps_here_;
       if (options_.company && options_.company->accepted) {
@@ -386,6 +388,7 @@ class CaseRun {
     }
     summary_.max_displacement = largest_of_all(result.state.displacement);
     warn_of_numerical_work();
+    warn_of_overload();
     recorder_->finish();
     summary_.costs = costs(result.relaxation_seconds);
     if (numbering_) tell_traffic();
@@ -407,6 +410,19 @@ class CaseRun {
         "give "
         "more steps (loading.steps, relaxation.steps) or a smaller load",
         last->numerical_work / std::max(std::abs(last->external_work), 1e-300)));
+    progress_.say("warning: " + summary_.warnings.back());
+  }
+
+  /// Warns of steps that have driven bonds far past what they bear before any was damaged: their
+  /// softening has not been followed, and what they have set free beyond it is drained.
+  void warn_of_overload() {
+    // Bonds that soften are beyond their onset in every step; brittle ones need not be.
+    const double most = fails_by_steps(body_->model) ? 1.05 : 1.3;
+    if (!(overload_ > most)) return;
+    summary_.warnings.push_back(fmt::format(
+        "a step has driven bonds to {:.3g} times what they bear before it damaged any: the largest "
+        "force and the drained energy depend on the steps; give more steps (loading.steps)",
+        overload_));
     progress_.say("warning: " + summary_.warnings.back());
   }
 
@@ -455,7 +471,8 @@ class CaseRun {
   const Clock::time_point start_ = Clock::now();
   EarlierResults earlier_results_;  // until results_ takes them over
   double seconds_of_checkpoints_ = 0.0;
-  int steps_here_ = 0;  // accepted in this session
+  int steps_here_ = 0;     // accepted in this session
+  double overload_ = 0.0;  // the largest of its steps
   std::shared_ptr<const Body> body_;
   // With several ranks only.
   std::optional<RowGathering> gathering_;
