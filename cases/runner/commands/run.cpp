@@ -398,10 +398,11 @@ class CaseRun {
     results_->add_dossier(dossier.text, dossier.residual, dossier.displacement);
   }
 
-  /// Warns of steps so large that relaxation itself has supplied nearly all energy: forces between
-  /// them, and so a peak, have not been seen.
+  /// Warns of steps so large that relaxation itself has supplied most of the energy: forces between
+  /// them, and so a peak, have not been seen. In steps that follow the damage it supplies some per
+  /// cent.
   void warn_of_numerical_work() {
-    constexpr double most = 10.0;  // times the external work
+    constexpr double most = 2.0;  // times the external work
     const std::optional<StepRecord>& last = recorder_->last();
     if (!last || !(last->numerical_work > most * std::abs(last->external_work))) return;
     summary_.warnings.push_back(fmt::format(

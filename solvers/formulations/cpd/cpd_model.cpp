@@ -177,12 +177,12 @@ void refuse_damage_of_negative_constants(const MaterialSpecification& material,
     constexpr double round_off = 1e-9;
     const double ratio = ratio_of(constants);
     if (ratio >= -round_off) return;
-    throw InputError(
-        key + (material.poisson_ratio ? ".poisson_ratio" : "." + negative),
-        number_text(
-            material.poisson_ratio.value_or(negative == "c2" ? constants.c2 : constants.c3)),
-        "damage of cpd needs a Poisson's ratio of at least 0; here it is " + number_text(ratio) +
-            ", at which a tear takes a multiple of the fracture energy");
+    throw InputError(key + (material.poisson_ratio ? ".poisson_ratio" : "." + negative),
+                     number_text(material.poisson_ratio.value_or(negative == "c2" ? constants.c2
+                                                                                  : constants.c3)),
+                     "damage of cpd needs a Poisson's ratio of at least 0; here it is " +
+                         number_text(std::round(1e6 * ratio) / 1e6) +
+                         ", at which a tear takes a multiple of the fracture energy");
   }
   const double value = negative == "c2" ? constants.c2 : constants.c3;
   std::string larger = "give " + negative + " of at least 0";
