@@ -6,6 +6,9 @@
 #include <string>
 
 #include "assembly/operators/rows_of_blocks.hpp"
+#include "assembly/terms/bonds/deformation_gradients.hpp"
+#include "assembly/terms/bonds/point_stretches.hpp"
+#include "assembly/terms/bonds/stretches_along.hpp"
 #include "src/core/stopwatch.hpp"
 #include "src/core/vector_verbs.hpp"
 #include "src/parallel/index_map.hpp"
@@ -80,11 +83,12 @@ History Assembler::initial_history() const {
   return history;
 }
 
-History Assembler::history_of(std::span<const double> bond_stretches) const {
+History Assembler::history_of(std::span<const double> bond_stretches, const History& before) const {
   const BondFailure* const bonds = model_.failing_bonds();
   if (!bonds) return {};
   History history = initial_history();
-  history.replace(model_.slot_of(*bonds), bonds->history_of(bond_stretches));
+  const std::span<const double> rest = model_.failure_history(before.terms() ? before : history);
+  history.replace(model_.slot_of(*bonds), bonds->history_of(bond_stretches, rest));
   for (const auto& term : model_.terms()) term->follow(model_, history);
   return history;
 }
@@ -115,18 +119,47 @@ Evaluation Assembler::of_all(const Evaluation& mine, std::span<double> gradient)
   return sum_of(index_map_.ranks(), mine);
 }
 
+std::vector<BondDrive> Assembler::drives(const StateView& at) {
+  std::vector<BondDrive> all =
+      stretches_along(points_, model_.bonds(), at, {}, workspace_.threads());
+  drive(at, {}, all);
+  return all;
+}
+
+History Assembler::with_onsets(const StateView& at) {
+  History renewed = at.history;
+  const BondFailure* const bonds = model_.failing_bonds();
+  if (!bonds || !bonds->onsets()) return renewed;
+  const std::vector<double> largest =
+      largest_driving(points_, bonds->bonds(), drives(at), broken_bonds(model_, at.history));
+  const DeformationGradients gradients = deformation_gradients(points_, model_, at);
+  const std::span<const double> free = at.eigenstretch();
+  std::vector<StrengthOnsets::PointOnset> of_points(std::size_t(points_.own()));
+  const auto entries = std::size_t(points_.dimension * points_.dimension);
+  for (std::size_t i = 0; i < of_points.size(); ++i) {
+    if (!gradients.is_determined[i]) continue;
+    of_points[i] =
+        bonds->onsets()->of_point(i, points_.dimension, &gradients.displacement[i * entries],
+                                  free.empty() ? 0.0 : free[i], largest[i]);
+  }
+  bonds->renew_onsets(points_, of_points, renewed.change(model_.slot_of(*bonds)));
+  return renewed;
+}
+
 Evaluation Assembler::release(std::span<const double> displacement, History& history,
                               const SharedEnvironment& environment) {
   Evaluation found;
   if (!model_.fails_by_release()) return found;
-  bool is_known = false;
-  for_each_term([&](TermPasses& term, Write) {
-    const auto growth = term.release({displacement, history, Damage::grows, environment}, history);
-    if (!growth) return;
-    is_known = true;
-    found.growth = *growth;
-  });
-  if (!is_known) throw std::logic_error("Assembler: no term knows what bonds would set free");
+  const auto at = [&] { return StateView{displacement, history, Damage::grows, environment}; };
+  history = with_onsets(at());
+  if (model_.drives_bonds()) {
+    for_each_term([&](TermPasses& term, Write) {
+      if (const auto growth = term.release(at(), history)) found.growth = *growth;
+    });
+  } else {
+    const BondFailure& bonds = *model_.failing_bonds();
+    found.growth = bonds.damage(points_, drives(at()), history.change(model_.slot_of(bonds)));
+  }
   found.moves_equilibrium = found.growth.degrading > 0;
   return found;
 }
@@ -158,10 +191,17 @@ void Assembler::follower_force(const StateView& at, std::span<double> force) {
 }
 
 DamageGrowth Assembler::growth(const StateView& at) {
+  const History history = with_onsets(at);
+  StateView now(at.displacement, history, at.damage, at.environment);
+  now.curvature = at.curvature;
+  if (model_.fails_by_release() && !model_.drives_bonds()) {
+    const BondFailure& bonds = *model_.failing_bonds();
+    return of_all(bonds.growth(points_, drives(now), history.of(model_.slot_of(bonds))));
+  }
   Evaluation found;
   for_each_term([&](TermPasses& term, Write) {
     Evaluation of_term;
-    of_term.growth = term.growth(at);
+    of_term.growth = term.growth(now);
     found += of_term;
   });
   return of_all(found.growth);

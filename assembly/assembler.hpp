@@ -44,7 +44,9 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   [[nodiscard]] History initial_history() const;
 
   /// History that holds these largest stretches of the bonds (see bond_stretches).
-  [[nodiscard]] History history_of(std::span<const double> bond_stretches) const;
+  /// @param before from which the rest is taken; empty: before any load
+  [[nodiscard]] History history_of(std::span<const double> bond_stretches,
+                                   const History& before = {}) const;
 
   /// E [J]
   [[nodiscard]] Evaluation energy(const StateView& at);
@@ -115,6 +117,10 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   [[nodiscard]] double seconds_spent() const { return seconds_; }  ///< wall time of all calls [s]
 
  private:
+  /// Squared equivalent stretches of all bonds, without rates.
+  [[nodiscard]] std::vector<BondDrive> drives(const StateView& at);
+  /// A history before which bonds start to fail as the state says, see StrengthOnsets.
+  [[nodiscard]] History with_onsets(const StateView& at);
   /// Damages by release, if the model's bonds fail so. Returns its growth.
   Evaluation release(std::span<const double> displacement, History& history,
                      const SharedEnvironment& environment);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "assembly/terms/bonds/bond_look.hpp"
+#include "assembly/terms/bonds/stretches_along.hpp"
 #include "assembly/terms/damage.hpp"
 #include "src/core/threads.hpp"
 
@@ -17,8 +18,10 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Calls visit(law) if the bonds can be damaged; law.of_bond(bond) is that of one of them.
 template <class Visit>
-void with_law(const Model& model, const Visit& visit) {
-  if (const BondFailure* const bonds = model.failing_bonds()) bonds->with_damage_law(visit);
+void with_law(const Model& model, const History& history, const Visit& visit) {
+  if (const BondFailure* const bonds = model.failing_bonds()) {
+    bonds->with_damage_law(model.failure_history(history), visit);
+  }
 }
 
 /// Current unit vector along the bond between two points.
@@ -36,9 +39,7 @@ Coordinates direction(const Points& points, const StateView& at, Index i, Index 
 }
 
 double driving(const BondStretch& stretch) { return stretch.value; }
-double driving(const BondDrive& drive) {
-  return drive.stretch > 0.0 ? std::sqrt(std::max(drive.squared[0], 0.0)) : 0.0;
-}
+double driving(const BondDrive& drive) { return drive.driving(); }
 
 AdmissibleRange admissible_range(const BondStretch& stretch, double limit) {
   AdmissibleRange range;
@@ -47,11 +48,6 @@ AdmissibleRange admissible_range(const BondStretch& stretch, double limit) {
   if (stretch.rate < 0.0) range.low = way;
   return range;
 }
-
-/// A line of states: the direction of the displacements, with the rate of the eigenstretches.
-struct Line {
-  std::span<const double> rate{}, eigenstretch_rate{};
-};
 
 /// Calls visit(thread, point, bond) for every bond with a finite borne stretch, on several threads;
 /// each thread visits consecutive bonds.
@@ -85,17 +81,8 @@ void look_at_bonds(const Assembler& body, const StateView& at, const Visit& visi
 }
 
 std::vector<BondDrive> drives(Assembler& body, const StateView& at, const Line& line) {
-  const Bonds& bonds = body.model().bonds();
-  std::vector<BondDrive> all(std::size_t(bonds.count()));
-  look_at_bonds(body, at, [&](const auto& look) {
-#pragma omp parallel for num_threads(body.threads())
-    for (Index i = 0; i < bonds.points(); ++i) {
-      for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-        const auto [value, rate] = look.along(i, bond, line.rate, line.eigenstretch_rate);
-        all[std::size_t(bond)] = {value, rate};
-      }
-    }
-  });
+  std::vector<BondDrive> all =
+      stretches_along(body.points(), body.model().bonds(), at, line, body.threads());
   body.drive(at, line.rate, all);
   return all;
 }
@@ -131,7 +118,7 @@ std::array<double, 2> roots(double a, double b, double c) {
 std::vector<double> borne_stretches(const Model& model, const History& history) {
   const std::span<const double> largest = bond_stretches(model, history);
   std::vector<double> borne(largest.size());
-  with_law(model, [&](const auto& laws) {
+  with_law(model, history, [&](const auto& laws) {
     for (std::size_t bond = 0; bond < borne.size(); ++bond) {
       borne[bond] = model.bonds().weight(Offset(bond)) == 0.0
                         ? infinite
@@ -142,8 +129,11 @@ std::vector<double> borne_stretches(const Model& model, const History& history) 
 }
 
 bool fails_by_steps(const Model& model) {
-  bool all = model.failing_bonds() != nullptr;
-  with_law(model, [&](const auto& laws) {
+  const BondFailure* const bonds = model.failing_bonds();
+  if (bonds == nullptr) return false;
+  bool all = true;
+  const std::vector<double> history = bonds->initial_history();
+  bonds->with_damage_law(history, [&](const auto& laws) {
     for (Offset bond = 0; all && bond < model.bonds().count(); ++bond) {
       all = falls_by_steps(laws.of_bond(bond).law);
     }
@@ -186,7 +176,7 @@ BondDrops drop(Assembler& body, const StateView& at, std::span<const double> bor
   BondDrops result{{before.begin(), before.end()}, {borne.begin(), borne.end()}};
   const Bonds& network = model.bonds();
   const bool is_by_release = model.fails_by_release();
-  with_law(model, [&](const auto& laws) {
+  with_law(model, at.history, [&](const auto& laws) {
     for (const UtilisedBond& one : bonds) {
       const Offset bond = one.bond;
       const auto law = laws.of_bond(bond);
@@ -213,7 +203,7 @@ BondDrops drop(Assembler& body, const StateView& at, std::span<const double> bor
     }
   });
   if (is_by_release) {
-    const History after = body.history_of(result.histories);
+    const History after = body.history_of(result.histories, at.history);
     result.energy_lost = body.energy(at).energy -
                          body.energy({at.displacement, after, at.damage, at.environment}).energy;
   }

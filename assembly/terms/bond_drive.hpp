@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace peristat {
 
@@ -12,6 +14,11 @@ namespace peristat {
 struct BondDrive {
   double stretch = 0.0, rate = 0.0;  ///< s, s'
   std::array<double, 3> squared{};   ///< c_k
+
+  /// The equivalent stretch at t = 0.
+  [[nodiscard]] double driving() const {
+    return stretch > 0.0 ? std::sqrt(std::max(squared[0], 0.0)) : 0.0;
+  }
 };
 
 }  // namespace peristat

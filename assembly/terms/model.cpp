@@ -8,10 +8,10 @@
 namespace peristat {
 
 Model::Model(Bonds network, BondPotential potential, std::vector<char> never_fails,
-             DamageDrive drive)
-    : Model(std::make_shared<BondTerm>(
-          std::make_shared<BondFailure>(std::make_shared<const Bonds>(std::move(network)),
-                                        std::move(potential), std::move(never_fails), drive))) {}
+             DamageDrive drive, std::shared_ptr<const StrengthOnsets> onsets)
+    : Model(std::make_shared<BondTerm>(std::make_shared<BondFailure>(
+          std::make_shared<const Bonds>(std::move(network)), std::move(potential),
+          std::move(never_fails), drive, std::move(onsets)))) {}
 
 Model::Model(std::shared_ptr<Term> term) : failure_(term->failure()), terms_{std::move(term)} {
   if (!failure_) throw std::logic_error("a model is made with a term that has a failure model");
@@ -40,6 +40,10 @@ BlockPattern Model::visited_pattern() const {
   std::vector<Couplings> couplings;
   for (const auto& term : terms_) couplings.push_back(term->visited_couplings());
   return BlockPattern::united(couplings, bonds().points());
+}
+
+bool Model::drives_bonds() const {
+  return std::ranges::any_of(terms_, [](const auto& term) { return term->drives_bonds(); });
 }
 
 bool Model::has_symmetric_blocks() const {

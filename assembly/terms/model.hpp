@@ -22,9 +22,11 @@ class Model {
 
   /// Bonds with the energy sum_b w psi(l; L).
   /// @param never_fails per bond, 1: no damage whatever the stretch; empty: none
-  /// @param drive by release only beside a term that lowers their integrities
+  /// @param drive by release beside a term that lowers their integrities, or of bonds alone
+  /// @param onsets see BondFailure
   Model(Bonds network, BondPotential potential, std::vector<char> never_fails = {},
-        DamageDrive drive = DamageDrive::stretch);
+        DamageDrive drive = DamageDrive::stretch,
+        std::shared_ptr<const StrengthOnsets> onsets = nullptr);
 
   /// A term that has a failure model, and the network of that.
   /// @throws std::logic_error if it has none
@@ -67,6 +69,8 @@ class Model {
     const BondFailure* const bonds = failure_->as_bond_failure();
     return bonds != nullptr && bonds->fails_by_release();
   }
+  /// True if a term drives bonds beside their stretches; otherwise they fail by these alone.
+  [[nodiscard]] bool drives_bonds() const;
   [[nodiscard]] bool fails_in_avalanches() const {
     return has_history() && failure_->fails_in_avalanches();
   }

@@ -136,6 +136,8 @@ class Term {
 
   /// How states damage the body by what the term remembers; null: they don't.
   [[nodiscard]] virtual std::shared_ptr<const FailureModel> failure() const { return nullptr; }
+  /// True if it drives bonds that fail by release, beside their stretches, and damages them.
+  [[nodiscard]] virtual bool drives_bonds() const { return false; }
   /// Updates the part of its history that follows from other terms' histories.
   virtual void follow(const Model&, History&) const {}
 

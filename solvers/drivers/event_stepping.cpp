@@ -215,7 +215,7 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   settled.dropping = Index(batch.size());
   settled.breaking = dropped.breaking;
   settled.state = at;
-  settled.state.history = body.history_of(dropped.histories);
+  settled.state.history = body.history_of(dropped.histories, at.history);
   settled.borne = std::move(dropped.borne);
   const auto energy = [&](const State& of) {
     return body.energy(StateView(of, Damage::held)).energy;

@@ -23,7 +23,7 @@ bool are_sizes_of(const History& history, const Assembler& body) {
     if (!at_rest.of(term).empty() && !is_as_long(at_rest, term)) return false;
   }
   // Terms that follow others have no history before the others have changed.
-  const History followed = body.history_of(bond_stretches(body.model(), history));
+  const History followed = body.history_of(bond_stretches(body.model(), history), history);
   for (std::size_t term = 0; term < terms; ++term) {
     const bool is_told = !history.of(term).empty();
     if (at_rest.of(term).empty() && is_told && !is_as_long(followed, term)) return false;

@@ -40,6 +40,10 @@ void refuse_what_has_no_rate(const Body& body, const CrackTipSpecification& tip,
                      "needs bonds to cut, which this model with operator \"fft\" does not have; "
                      "take \"bonds\", or J without a cut");
   }
+  const BondFailure* const failing = body.model.failing_bonds();
+  if (failing && failing->onsets()) {
+    throw InputError(key, "", "is not allowed with a strength_surface; take J without a cut");
+  }
   const Conditions& conditions = *body.conditions;
   if (!(tip.cut >= body.setting.reach() * (1.0 - 1e-9))) {
     throw InputError(key, number_text(tip.cut),

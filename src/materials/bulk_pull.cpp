@@ -545,6 +545,18 @@ bool BulkPull::is_quick() const {
   return count <= most_simplices;
 }
 
+BulkPull::Course BulkPull::course(const std::array<double, 2>& principal, const AnyLaw& law) const {
+  Course mean;
+  for (const auto& [n, weight] : directions_) {
+    if (weight == 0.0) continue;
+    const Tensor form = sum(projector(n, dimension_, principal[0]),
+                            projector(normal_to(n, dimension_), dimension_, principal[1]));
+    mean.onset += weight * onset(form, law);
+    mean.peak += weight * peak(form, law);
+  }
+  return mean;
+}
+
 DirectionalSpread BulkPull::onset(Loading loading, const AnyLaw& law) const {
   return over(loading, [&](const Tensor& form) { return onset(form, law); });
 }

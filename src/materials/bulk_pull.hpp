@@ -57,6 +57,14 @@ class BulkPull {
   /// likewise.
   [[nodiscard]] DirectionalSpread onset(Loading loading, const AnyLaw& law) const;
 
+  /// Onset and peak under stresses of a fixed ratio in a plane, along normal directions: the mean
+  /// over these [Pa].
+  struct Course {
+    double onset = 0.0, peak = 0.0;
+  };
+  /// @param principal stresses; the first one is positive
+  [[nodiscard]] Course course(const std::array<double, 2>& principal, const AnyLaw& law) const;
+
   static constexpr std::size_t most_directions = 400;
 
   /// True if a strength takes seconds; for cpd in 3D it takes minutes at horizon ratios of 3.

@@ -40,8 +40,11 @@ class BondLaws {
   /// Number of the law of a bond.
   [[nodiscard]] std::size_t law_of(Offset bond) const { return law_[std::size_t(bond)]; }
   [[nodiscard]] AnyBondLaw at(Offset bond) const {
-    const auto b = std::size_t(bond);
-    return laws_[law_[b]].between(onset_[b], critical_[b]);
+    return at(bond, onset_[std::size_t(bond)], critical_[std::size_t(bond)]);
+  }
+  /// The law of a bond between other stretches.
+  [[nodiscard]] AnyBondLaw at(Offset bond, double onset, double critical) const {
+    return laws_[law_[std::size_t(bond)]].between(onset, critical);
   }
 
   /// Ranges of the bonds from the first on; lanes past the last bond belong to none.

@@ -173,20 +173,27 @@ struct Degraded {
   }
 };
 
-/// Bonds that lose their stiffness like Degraded ones, each by a law of its own.
+/// Bonds that lose their stiffness like Degraded ones, each by a law of its own, between stretches
+/// that are the law's or, where a strength surface moves them, a history's.
 template <class Whole = Harmonic>
 struct DegradedByBond {
   double modulus = 0.0;  ///< of the undamaged bonds
   std::shared_ptr<const BondLaws> laws;
-  Whole shape{1.0};           ///< their potential with the modulus 1
-  bool holds_damage = false;  ///< see Degraded
+  Whole shape{1.0};                  ///< their potential with the modulus 1
+  bool holds_damage = false;         ///< see Degraded
+  const double* onset = nullptr;     ///< of the bonds; null: the laws' own
+  const double* critical = nullptr;  ///< likewise
 
   static constexpr double never_fails = never_failing;
 
   [[nodiscard]] Degraded<AnyBondLaw, Whole> of_bond(Offset bond) const {
-    return {modulus, laws->at(bond), shape, holds_damage};
+    return {modulus, onset ? laws->at(bond, onset[bond], critical[bond]) : laws->at(bond), shape,
+            holds_damage};
   }
-  [[nodiscard]] DamageRange<Lanes> ranges(Offset first) const { return laws->ranges(first); }
+  [[nodiscard]] DamageRange<Lanes> ranges(Offset first) const {
+    if (onset) return {Lanes(onset + first), Lanes(critical + first)};
+    return laws->ranges(first);
+  }
   [[nodiscard]] double bytes() const { return laws->bytes(); }
 
   [[nodiscard]] PotentialDensity<Lanes> operator()(const Lanes& e, const Lanes& largest_stretch,

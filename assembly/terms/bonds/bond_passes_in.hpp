@@ -78,10 +78,7 @@ auto BondPassesIn<dimension>::dispatch(const StateView& at, const Body& body) co
       [&]<class P>(const P& potential) {
         if constexpr (PotentialWithHistory<P>) {
           const std::span<const double> history = at.history.of(slot_);
-          if (history.size() != std::size_t(failure_.bonds().count()) + lane_count) {
-            throw std::logic_error("bonds that can be damaged are evaluated after their history");
-          }
-          P law = potential;
+          P law = failure_.at_history(potential, history);
           law.holds_damage = at.damage == Damage::held || failure_.fails_in_avalanches();
           return with_law(law, history.data());
         } else {

@@ -61,4 +61,21 @@ double point_stretches(const Points& points, const Model& model, const StateView
   return largest;
 }
 
+std::vector<double> largest_driving(const Points& points, const Bonds& bonds,
+                                    std::span<const BondDrive> drives,
+                                    std::span<const char> broken) {
+  std::vector<double> largest(std::size_t(points.own()), 0.0);
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      if (!broken.empty() && broken[std::size_t(bond)]) continue;
+      const double driving = drives[std::size_t(bond)].driving();
+      for (const Index point : {i, bonds.partner[bond]}) {
+        double& of_point = largest[std::size_t(points.source(point))];
+        of_point = std::max(of_point, driving);
+      }
+    }
+  }
+  return largest;
+}
+
 }  // namespace peristat

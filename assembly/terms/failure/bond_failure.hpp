@@ -6,8 +6,11 @@
 #include <variant>
 #include <vector>
 
+#include "assembly/energy/evaluation.hpp"
+#include "assembly/terms/bond_drive.hpp"
 #include "assembly/terms/failure/damage_drive.hpp"
 #include "assembly/terms/failure/failure_model.hpp"
+#include "assembly/terms/failure/strength_onsets.hpp"
 #include "src/potentials/potential.hpp"
 
 namespace peristat {
@@ -25,33 +28,74 @@ namespace peristat {
 /// takes the place of s in the law. A bond thus takes w L C times the work of its law, whatever
 /// else is lost with it, and no loss sets less free than the bond takes. Integrities are constant
 /// in a search: the term that knows all of Y lowers them, see TermPasses::release.
+///
+/// With a strength surface (see StrengthOnsets) the history goes on with the onset and the critical
+/// stretch of each bond, each array as long as that of the largest stretches.
 class BondFailure final : public FailureModel {
  public:
   /// @param never_fails per bond, 1: no damage whatever the stretch; empty: none
+  /// @param onsets null: bonds start at the onsets of their laws. Otherwise these are
+  /// DegradedByBond
   BondFailure(std::shared_ptr<const Bonds> bonds, BondPotential potential,
-              std::vector<char> never_fails = {}, DamageDrive drive = DamageDrive::stretch)
+              std::vector<char> never_fails = {}, DamageDrive drive = DamageDrive::stretch,
+              std::shared_ptr<const StrengthOnsets> onsets = nullptr)
       : FailureModel(std::move(bonds)),
         potential_(std::move(potential)),
         never_fails_(std::move(never_fails)),
-        drive_(drive) {}
+        drive_(drive),
+        onsets_(std::move(onsets)) {}
 
   [[nodiscard]] DamageDrive drive() const { return drive_; }
 
   [[nodiscard]] const BondPotential& potential() const { return potential_; }
 
   /// Calls visit(law) if the bonds can be damaged; law.of_bond(bond) is that of one of them.
+  /// @param history which must outlive the call: it may have the stretches of the laws
+  /// @throws std::logic_error for a history of another length
   template <class Visit>
-  void with_damage_law(const Visit& visit) const {
+  void with_damage_law(std::span<const double> history, const Visit& visit) const {
     std::visit(
-        [&]<class P>(const P& law) {
-          if constexpr (PotentialWithHistory<P>) visit(law);
+        [&]<class P>(const P& potential) {
+          if constexpr (PotentialWithHistory<P>) visit(at_history(potential, history));
         },
         potential_);
   }
 
+  /// A potential of bonds with the stretches of a history.
+  template <class P>
+  [[nodiscard]] P at_history(const P& potential, std::span<const double> history) const {
+    require_length(history);
+    P law = potential;
+    if constexpr (requires { law.onset; }) {
+      if (onsets_) {
+        law.onset = history.data() + padded();
+        law.critical = history.data() + 2 * padded();
+      }
+    }
+    return law;
+  }
+
+  /// Rule by which bonds start to fail; null: at the onsets of their laws.
+  [[nodiscard]] const StrengthOnsets* onsets() const { return onsets_.get(); }
+
+  /// Moves the onsets of bonds that have not started to those of their points, see StrengthOnsets.
+  /// @param of_points of all points but images
+  void renew_onsets(const Points& points, std::span<const StrengthOnsets::PointOnset> of_points,
+                    std::span<double> history) const;
+
   /// History of bonds that have had these largest stretches.
+  /// @param before a history with the stretches of the laws
   /// @throws std::logic_error unless there is one for every bond
-  [[nodiscard]] std::vector<double> history_of(std::span<const double> largest_stretches) const;
+  [[nodiscard]] std::vector<double> history_of(std::span<const double> largest_stretches,
+                                               std::span<const double> before) const;
+
+  /// Damages the bonds that their own stretches drive, where nothing else does. Returns the damage,
+  /// or what it would be.
+  /// @param drives of all bonds
+  DamageGrowth damage(const Points& points, std::span<const BondDrive> drives,
+                      std::span<double> history) const;
+  [[nodiscard]] DamageGrowth growth(const Points& points, std::span<const BondDrive> drives,
+                                    std::span<const double> history) const;
 
   /// Energy that the law has dissipated [J], see weigh.
   [[nodiscard]] double dissipated_energy(std::span<const double> history,
@@ -77,9 +121,14 @@ class BondFailure final : public FailureModel {
   [[nodiscard]] const BondFailure* as_bond_failure() const override { return this; }
 
  private:
+  /// Length of the largest stretches, since kernels read whole batches of lanes.
+  [[nodiscard]] std::size_t padded() const { return std::size_t(bonds().count()) + lane_count; }
+  void require_length(std::span<const double> history) const;
+
   BondPotential potential_;
   std::vector<char> never_fails_;
   DamageDrive drive_;
+  std::shared_ptr<const StrengthOnsets> onsets_;
 };
 
 }  // namespace peristat

@@ -71,13 +71,14 @@ class SimplexPasses : public TermPasses, BlockTangent {
     const auto find = [&](const auto& visit) { visit_driven(at, influences(), visit); };
     const auto damage = [&](const DrivenBond& one, DamageGrowth& growth) {
       if (left.empty()) left = integrities(at.history);
-      failure_.with_damage_law([&](const auto& law) {
+      const std::span<double> stretches = history.change(slot_of_bonds_);
+      failure_.with_damage_law(stretches, [&](const auto& law) {
         const auto bond = std::size_t(one.bond);
         const Index j = term_.bonds().partner[one.bond];
         const double release =
             simplices_of_bond().release(one.point, j, at.displacement, influences());
         const auto& of_bond = law.of_bond(one.bond);
-        double& stretch = history.change(slot_of_bonds_)[bond];
+        double& stretch = stretches[bond];
         const double driving = equivalent_stretch(of_bond, one.bond, one.stretch, release);
         if (!damage_driven(of_bond, driving, stretch)) return;
         left[bond] = of_bond.integrity_after(stretch);
@@ -111,7 +112,7 @@ class SimplexPasses : public TermPasses, BlockTangent {
       Kernels::releases(workspace_, moved(at.displacement, -step, rate), influences, behind);
     }
     const Bonds& bonds = term_.bonds();
-    failure_.with_damage_law([&](const auto& law) {
+    failure_.with_damage_law(at.history.of(slot_of_bonds_), [&](const auto& law) {
       for (Offset bond = 0; bond < bonds.count(); ++bond) {
         const auto b = std::size_t(bond);
         if (bonds.weight(bond) == 0.0) continue;
@@ -216,7 +217,7 @@ class SimplexPasses : public TermPasses, BlockTangent {
     const BondLook<D> look(setting_.points, bonds, at);
     const std::span<const double> history = at.history.of(slot_of_bonds_);
     std::vector<Evaluation> found(workspace_.threads.ranges.size());
-    failure_.with_damage_law([&](const auto& law) {
+    failure_.with_damage_law(history, [&](const auto& law) {
       run_on_threads(workspace_.threads.threads(), [&](int thread) {
         const RowRange range = workspace_.threads.ranges[std::size_t(thread)];
         DamageGrowth growth;
@@ -316,10 +317,11 @@ Balances SimplexTerm::balances() const {
 /// Takes the integrity of bonds and points from the histories of the bonds.
 void SimplexTerm::follow(const Model& model, History& history) const {
   const auto count = std::size_t(bonds().count());
-  bonds_->with_damage_law([&](const auto& law) {
+  if (!bonds_->can_fail()) return;
+  const std::span<const double> largest_stretch = history.of(model.slot_of(*bonds_));
+  bonds_->with_damage_law(largest_stretch, [&](const auto& law) {
     std::vector<double> integrity(count + std::size_t(bonds().points()), 1.0);
     double* const of_point = integrity.data() + count;
-    const std::span<const double> largest_stretch = history.of(model.slot_of(*bonds_));
     for (Index i = 0; i < bonds().points(); ++i) {
       for (Offset bond = bonds().offset[i]; bond < bonds().offset[i + 1]; ++bond) {
         integrity[bond] = law.of_bond(bond).integrity_after(largest_stretch[bond]);

@@ -62,6 +62,7 @@ class SimplexTerm : public Term {
   }
 
   [[nodiscard]] Couplings couplings() const override { return bonds(); }
+  [[nodiscard]] bool drives_bonds() const override { return true; }
   [[nodiscard]] Balances balances() const override;
   void follow(const Model& model, History& history) const override;
   [[nodiscard]] std::vector<InteractionCount> counts() const override;

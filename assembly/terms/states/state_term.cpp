@@ -101,8 +101,9 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
                  std::span<BondDrive> drives) override {
     take_integrities(at);
     found_ = {};  // whose integrities the kernels had
+    const std::span<const double> history = at.history.of(slot_);
     failure_.with_damage_law(
-        [&](const auto& law) { kernels_.add_drive(law, at.history.of(slot_).data(), drives); });
+        history, [&](const auto& law) { kernels_.add_drive(law, history.data(), drives); });
   }
 
   [[nodiscard]] TangentForms forms() override { return {.blocks = this, .visits = this}; }
@@ -178,10 +179,10 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
   DamageGrowth visit_driven(const StateView& at, const Visit& visit) {
     if (!are_found(at)) find_states(at);
     DamageGrowth found;
-    failure_.with_damage_law([&](const auto& law) {
+    const std::span<const double> history = at.history.of(slot_);
+    failure_.with_damage_law(history, [&](const auto& law) {
       with_eigenstretch(at, [&](const auto& relief) {
-        found = kernels_.growth_by_release(at.displacement, law, relief,
-                                           at.history.of(slot_).data(), visit);
+        found = kernels_.growth_by_release(at.displacement, law, relief, history.data(), visit);
       });
     });
     return found;
@@ -189,7 +190,7 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
 
   /// Damages a bond, if what the ones before it have left still drives it.
   void damage(const DrivenBond& one, std::span<double> stretches, DamageGrowth& growth) {
-    failure_.with_damage_law([&](const auto& law) {
+    failure_.with_damage_law(stretches, [&](const auto& law) {
       const auto& of_bond = law.of_bond(one.bond);
       const auto loss = kernels_.loss_by_release(one, of_bond, stretches[std::size_t(one.bond)]);
       if (!(loss.driving > 0.0)) return;
@@ -217,7 +218,7 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
     bool any = false;
     for (const std::vector<std::size_t>& round : rounds_of(all)) {
       std::vector<double> losses(2 * round.size());
-      failure_.with_damage_law([&](const auto& law) {
+      failure_.with_damage_law(stretches, [&](const auto& law) {
         for (std::size_t k = 0; k < round.size(); ++k) {
           const SharedBond& one = all[round[k]];
           if (one.rank != index_map_.ranks().rank()) continue;
@@ -268,11 +269,8 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
   void take_integrities(const StateView& at) {
     if (!failure_.can_fail()) return;
     const std::span<const double> stretch = at.history.of(slot_);
-    if (stretch.size() < std::size_t(term_.bonds().count())) {
-      throw std::logic_error("bonds that can be damaged are evaluated after their history");
-    }
     if (stretch.data() == found_.view().history.of(slot_).data()) return;
-    failure_.with_damage_law([&](const auto& law) {
+    failure_.with_damage_law(stretch, [&](const auto& law) {
       kernels_.scale([&](Offset bond) {
         return law.of_bond(bond).integrity_after(stretch[std::size_t(bond)]);
       });
@@ -287,7 +285,7 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
                                      const History& before) const {
     const std::span<const double> history = before.of(slot_);
     double sum = 0.0;
-    failure_.with_damage_law([&](const auto& law) {
+    failure_.with_damage_law(history, [&](const auto& law) {
       sum = kernels_.losses(displacement, remembered, [&](Index i, Offset bond, double stretch) {
         if (!counts_bond(points_, i, term_.bonds().partner[bond])) return 0.0;
         const double ratio = law.of_bond(bond).borne(history[std::size_t(bond)]) / stretch;
@@ -328,7 +326,8 @@ StateTerm::StateTerm(std::shared_ptr<const Bonds> bonds, BondPotential potential
                      int threads)
     : extension_(rules.extension),
       failure_(std::make_shared<BondFailure>(std::move(bonds), std::move(potential),
-                                             std::move(never_fails), rules.drive)),
+                                             std::move(never_fails), rules.drive,
+                                             std::move(rules.onsets))),
       shares_(std::move(shares)),
       reaches_twice_(std::ranges::any_of(shares_.constants,
                                          [](const LamePair& of) { return of.lambda != of.mu; })),

@@ -22,6 +22,7 @@ enum class Extension {
 struct StateRules {
   Extension extension = Extension::linear;
   DamageDrive drive = DamageDrive::stretch;
+  std::shared_ptr<const StrengthOnsets> onsets{};  ///< see BondFailure
 };
 
 /// Ordinary state-based peridynamics as one energy: with xi the bond in the reference, r its
@@ -80,6 +81,7 @@ class StateTerm : public Term {
   [[nodiscard]] Couplings visited_couplings() const override { return bonds(); }
   [[nodiscard]] BlockCount block_count(int dimension) const override;
   [[nodiscard]] TangentKind tangent_kind() const override { return TangentKind::nearby; }
+  [[nodiscard]] bool drives_bonds() const override { return true; }
   [[nodiscard]] Balances balances() const override {
     return {true, extension_ == Extension::finite, true, true};
   }

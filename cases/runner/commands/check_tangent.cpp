@@ -191,9 +191,11 @@ double keep_off_kinks(const Body& body, const std::vector<double>& displacement,
   const BondFailure* const failing = body.model.failing_bonds();
   if (!failing) return largest_step;
   steepen(gradient, body.points.spacing, direction);
+  const std::vector<double> history = failing->initial_history();
   const auto range_of = [&](Offset bond) {
     DamageRange<double> range{};
-    failing->with_damage_law([&](const auto& laws) { range = laws.of_bond(bond).ranges(bond); });
+    failing->with_damage_law(history,
+                             [&](const auto& laws) { range = laws.of_bond(bond).ranges(bond); });
     return range;
   };
   double margin = std::numeric_limits<double>::infinity();  // the least of all bonds

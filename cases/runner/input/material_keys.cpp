@@ -34,8 +34,10 @@ namespace {
 /// other materials.
 void require_law(const Entry& at, DamageSpecification&) {
   if (at.from.has("law")) return;
-  for (const char* key : {"fracture_energy", "fracture_toughness", "strength", "critical", "onset",
-                          "peak", "hardening", "rate", "stretches", "forces", "drive"}) {
+  for (const char* key :
+       {"fracture_energy", "fracture_toughness", "strength", "critical", "onset", "peak",
+        "hardening", "rate", "stretches", "forces", "drive", "strength_surface",
+        "compressive_strength", "biaxial_strength", "strength_factor"}) {
     if (!at.from.has(key)) continue;
     at.from.refuse(key,
                    "needs a law in the same table, such as law = \"linear\"; write law = \"none\" "
@@ -113,6 +115,36 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
            .unless(is_whole, "")
            .by_rules(damage_rules)
            .early(),
+       K("strength_surface", &Spec::strength_surface,
+         choice<StrengthCriterion>({{"none", StrengthCriterion::none},
+                                    {"rankine", StrengthCriterion::rankine},
+                                    {"drucker_prager", StrengthCriterion::drucker_prager},
+                                    {"mohr_coulomb", StrengthCriterion::mohr_coulomb}}),
+         "stresses at which a body without flaws fails, through `strength` under uniaxial tension "
+         "([theory](theory.md#strength-under-any-stress)). `\"none\"`: one stretch for all "
+         "stresses; `\"rankine\"`: the largest principal stress; `\"drucker_prager\"` and "
+         "`\"mohr_coulomb\"`: also through `compressive_strength`. Bonds then fail by what their "
+         "loss would set free")
+           .unless(is_whole, "")
+           .by_rules(damage_rules)
+           .early(),
+       K("compressive_strength", &Spec::compressive_strength, positive("Pa"),
+         "$f_c$, uniaxial, for `drucker_prager` and `mohr_coulomb`")
+           .unless(is_whole, "")
+           .by_rules(damage_rules)
+           .moreover("above `strength`"),
+       K("biaxial_strength", &Spec::biaxial_strength, positive("Pa"),
+         "$f_b$ under equal tension in two directions, in the place of `compressive_strength`, for "
+         "`drucker_prager`")
+           .unless(is_whole, "")
+           .by_rules(damage_rules)
+           .moreover("above half of `strength`"),
+       K("strength_factor", &Spec::strength_factor, range_of_numbers(),
+         "least and largest factor by which the surface may change the `onset` of a bond; the "
+         "largest is at most the one at which a bond of the same work is brittle")
+           .unless(is_whole, "")
+           .by_rules(damage_rules)
+           .moreover("0.01 to 1, and 1 to 100"),
        K("critical", &Spec::critical, stretch(), "stretch $s_c$ at which a bond breaks")
            .unless(is_whole, "")
            .by_rules(damage_rules)

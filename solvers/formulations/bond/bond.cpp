@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "solvers/formulations/bond/bond_constants.hpp"
+#include "solvers/formulations/materials/strength_onsets_of.hpp"
 #include "src/materials/bulk_bonds.hpp"
 
 namespace peristat {
@@ -21,7 +22,10 @@ MadeModel make_bond_model(const ModelSetting& setting, Bonds bonds) {
   CutBonds cut = cut_bonds(bonds, setting.points, of.cracks);
   auto [potential, never_fails] =
       mixed.potential(bonds, fineness_of_bonds(setting.points, bonds, setting.bonds));
-  return {Model(std::move(bonds), std::move(potential), std::move(never_fails)), std::move(cut)};
+  const std::shared_ptr<const StrengthOnsets> onsets = strength_onsets_of(setting, moduli_of_bonds);
+  const DamageDrive drive = onsets ? DamageDrive::release : DamageDrive::stretch;
+  return {Model(std::move(bonds), std::move(potential), std::move(never_fails), drive, onsets),
+          std::move(cut)};
 }
 
 FractureScale scale_of_bonds(const MaterialSpecification& material, const std::string& key,
@@ -49,6 +53,7 @@ const Formulation& bond_formulation() {
                                                  Option::thermal_expansion,
                                                  Option::fibre,
                                                  Option::strength,
+                                                 Option::strength_surface,
                                                  Option::softening,
                                                  Option::critical_stretch,
                                                  Option::volume_correction,

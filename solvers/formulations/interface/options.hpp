@@ -26,6 +26,7 @@ enum class Option {
   critical_stretch,  ///< the law by which bonds break at once
   energy_density,    ///< the law by which points fail
   drive,             ///< of the damage of bonds, where release is possible
+  strength_surface,
   // Of a body
   volume_correction,
   horizon_shape,
@@ -77,7 +78,7 @@ struct OptionOf {
 };
 
 using OptionOfMaterial = OptionOf<MaterialSpecification>;
-inline constexpr std::array<OptionOfMaterial, 14> options_of_material{{
+inline constexpr std::array<OptionOfMaterial, 15> options_of_material{{
     {Option::plane, "plane", [](auto& m) { return m.plane != PlaneState::stress; }},
     {Option::kinematics, "kinematics", [](auto& m) { return m.kinematics != Kinematics::finite; }},
     {Option::potential, "potential", [](auto& m) { return m.potential != Harmonic::name; }},
@@ -94,6 +95,8 @@ inline constexpr std::array<OptionOfMaterial, 14> options_of_material{{
     {Option::fibre, "fibre", [](auto& m) { return m.fibre.has_value(); }},
     {Option::strength, "damage.strength", [](auto& m) { return m.damage.strength.has_value(); }},
     {Option::drive, "damage.drive", [](auto& m) { return m.damage.drive.has_value(); }},
+    {Option::strength_surface, "damage.strength_surface",
+     [](auto& m) { return m.damage.has_surface(); }},
 }};
 
 using OptionOfBody = OptionOf<BodySpecification>;

@@ -207,7 +207,7 @@ bool BondMaterials::has_one_law() const {
   for (const auto& [constant, material] : kinds_) {
     if (material->damage.law == DamageLaw::none) continue;
     if (!first) first = &material->damage;
-    if (!is_same(*first, material->damage)) return false;
+    if (!is_same(*first, material->damage) || material->damage.has_surface()) return false;
     if (material->fibre && material->fibre->transverse_critical) return false;
   }
   return factors_.strength.empty();

@@ -427,8 +427,13 @@ DamageSpecification with_stretches(const DamageSpecification& damage, const std:
   if (!damage.is_by_data()) return damage;
   const std::string table = key + ".damage.";
   if (scale.tear && damage.fracture_energy) require_quick(damage, table, *scale.tear);
-  const DamageSpecification found = damage.strength ? StrengthSearch(damage, table, scale).found()
-                                                    : law_of_peak(damage, table, scale, 0.0);
+  DamageSpecification found = damage.strength ? StrengthSearch(damage, table, scale).found()
+                                              : law_of_peak(damage, table, scale, 0.0);
+  if (damage.has_surface()) {
+    found.strength_of_peak = *damage.strength;
+    found.peak_factors =
+        std::make_shared<const PeakFactors>(*scale.pull, law_of(found), damage.surface());
+  }
   require_range(found, damage, key + ".damage.");
   return found;
 }

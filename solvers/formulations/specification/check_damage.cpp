@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "solvers/formulations/specification/require.hpp"
@@ -15,6 +16,10 @@ bool is_given(const DamageSpecification& damage, std::string_view key) {
   if (key == "fracture_energy") return damage.fracture_energy.has_value();
   if (key == "fracture_toughness") return damage.fracture_toughness.has_value();
   if (key == "strength") return damage.strength.has_value();
+  if (key == "strength_surface") return damage.has_surface();
+  if (key == "compressive_strength") return damage.compressive_strength.has_value();
+  if (key == "biaxial_strength") return damage.biaxial_strength.has_value();
+  if (key == "strength_factor") return damage.strength_factor != usual_strength_factor;
   if (key == "critical") return damage.critical != 0.0;
   if (key == "onset") return damage.onset != 0.0;
   if (key == "stretches") return !damage.stretches.empty();
@@ -61,14 +66,43 @@ void check_table(const DamageSpecification& damage, const std::string& table) {
           "once take law \"critical_stretch\"");
 }
 
+/// Refuses a strength surface with too little data, or through points that it does not have.
+void check_surface(const DamageSpecification& damage, const std::string& table) {
+  require_positive(damage.compressive_strength, table + "compressive_strength");
+  require_positive(damage.biaxial_strength, table + "biaxial_strength");
+  if (!damage.has_surface()) return;
+  require(damage.strength.has_value() || damage.strength_of_peak > 0.0, table + "strength", "",
+          "is missing; a strength_surface needs it");
+  require(damage.drive != DamageDrive::stretch, table + "drive", "stretch",
+          "must be \"release\" with a strength_surface");
+  const double tension = damage.strength.value_or(damage.strength_of_peak);
+  const auto& [compression, biaxial] =
+      std::pair(damage.compressive_strength, damage.biaxial_strength);
+  require(damage.strength_surface == StrengthCriterion::rankine || compression || biaxial,
+          table + "compressive_strength", "",
+          damage.strength_surface == StrengthCriterion::drucker_prager
+              ? "is missing; give it, or biaxial_strength"
+              : "is missing");
+  require(!compression || *compression > tension, table + "compressive_strength",
+          number_text(compression.value_or(0.0)),
+          "must be above strength, " + number_text(tension) + " Pa");
+  require(!biaxial || *biaxial > 0.5 * tension * (1.0 + 1e-9), table + "biaxial_strength",
+          number_text(biaxial.value_or(0.0)),
+          "must be above half of strength, " + number_text(0.5 * tension) + " Pa");
+  require_within(damage.strength_factor[0], 0.01, 1.0, table + "strength_factor[0]");
+  require_within(damage.strength_factor[1], 1.0, 100.0, table + "strength_factor[1]");
+}
+
 /// Refuses a law with too little or too much data to find its stretches.
 void check_data(const DamageSpecification& damage, const std::string& table) {
   require_positive(damage.fracture_energy, table + "fracture_energy");
   require_positive(damage.fracture_toughness, table + "fracture_toughness");
   require_positive(damage.strength, table + "strength");
+  check_surface(damage, table);
   if (damage.law == DamageLaw::none) {
     for (const std::string key :
-         {"fracture_energy", "fracture_toughness", "strength", "critical", "stretches", "drive"}) {
+         {"fracture_energy", "fracture_toughness", "strength", "critical", "stretches", "drive",
+          "strength_surface", "compressive_strength", "biaxial_strength", "strength_factor"}) {
       require_absent(is_given(damage, key), table + key, "needs a law");
     }
     return;

@@ -23,7 +23,7 @@ struct DamageRule {
   bool (*is_idle)(const DamageSpecification&);
   const char* why;
 };
-inline constexpr std::array<DamageRule, 18> damage_rules{
+inline constexpr std::array<DamageRule, 25> damage_rules{
     {{"stretches", [](auto& damage) { return !is_given_by_table(damage); },
       "is for the law \"table\""},
      {"forces", [](auto& damage) { return !is_given_by_table(damage); },
@@ -52,6 +52,22 @@ inline constexpr std::array<DamageRule, 18> damage_rules{
       "follows from strength; give one of them"},
      {"hardening", [](auto& damage) { return damage.law != DamageLaw::blended; },
       "is for the law \"blended\""},
+     {"strength_surface", [](auto& damage) { return !damage.softens(); },
+      "is for the laws that soften"},
+     {"strength_surface", is_given_by_table,
+      "is not for the law \"table\", whose stretches have a fixed ratio"},
+     {"compressive_strength", [](auto& damage) { return !damage.has_surface(); },
+      "needs strength_surface = \"drucker_prager\" or \"mohr_coulomb\""},
+     {"compressive_strength",
+      [](auto& damage) { return damage.strength_surface == StrengthCriterion::rankine; },
+      "is not for the surface \"rankine\""},
+     {"compressive_strength", [](auto& damage) { return damage.biaxial_strength.has_value(); },
+      "follows from biaxial_strength; give one of them"},
+     {"biaxial_strength",
+      [](auto& damage) { return damage.strength_surface != StrengthCriterion::drucker_prager; },
+      "is for strength_surface = \"drucker_prager\""},
+     {"strength_factor", [](auto& damage) { return !damage.has_surface(); },
+      "needs a strength_surface"},
      {"rate", [](auto& damage) { return !damage.has_rate(); },
       "is for the tanh laws and \"exponential\""}}};
 

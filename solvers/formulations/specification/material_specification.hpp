@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,7 +9,9 @@
 #include "assembly/terms/failure/damage_drive.hpp"
 #include "src/core/types.hpp"
 #include "src/materials/bond_constants.hpp"
+#include "src/materials/peak_factors.hpp"
 #include "src/materials/random_field.hpp"
+#include "src/materials/strength_surface.hpp"
 #include "src/neighbourhood/influence.hpp"
 #include "src/potentials/potential.hpp"
 
@@ -45,6 +49,8 @@ struct LawStretches {
   double onset = 0.0, critical = 0.0;
 };
 
+inline constexpr std::array<double, 2> usual_strength_factor{0.2, 100.0};
+
 struct DamageSpecification {
   DamageLaw law = DamageLaw::none;
   double onset = 0.0;                  ///< s_m, of the laws that soften
@@ -64,6 +70,15 @@ struct DamageSpecification {
   /// In the place of `onset` (of `critical` for the law critical_stretch): largest stress of the
   /// bulk under a pull, see with_stretches [Pa].
   std::optional<double> strength{};
+  /// Surface of the stresses at which a body without flaws fails, through `strength` and, if it
+  /// needs another one, one of these; see StrengthOnsets [Pa].
+  StrengthCriterion strength_surface = StrengthCriterion::none;
+  std::optional<double> compressive_strength{}, biaxial_strength{};
+  std::array<double, 2> strength_factor = usual_strength_factor;  ///< range of chi
+  /// With a surface also `strength`, which the stretches replace, and factors of the peak, found
+  /// with them; otherwise none.
+  double strength_of_peak = 0.0;
+  std::shared_ptr<const PeakFactors> peak_factors{};
   /// What drives the damage; none: see Formulation::default_drive.
   std::optional<DamageDrive> drive{};
   /// True if the stretches were computed from a fracture energy: those of a bond then depend on the
@@ -74,6 +89,17 @@ struct DamageSpecification {
 
   [[nodiscard]] constexpr bool has_fracture_energy() const {
     return fracture_energy || fracture_toughness;
+  }
+  [[nodiscard]] constexpr bool has_surface() const {
+    return strength_surface != StrengthCriterion::none;
+  }
+  /// That surface, where there is one.
+  [[nodiscard]] StrengthSurface surface() const {
+    const double tension = strength.value_or(strength_of_peak);
+    const double compression = biaxial_strength
+                                   ? peristat::compressive_strength(tension, *biaxial_strength)
+                                   : compressive_strength.value_or(0.0);
+    return {strength_surface, tension, compression};
   }
   /// True if some stretches are still to be computed from these data.
   [[nodiscard]] bool is_by_data() const {

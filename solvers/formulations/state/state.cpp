@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 
+#include "solvers/formulations/materials/strength_onsets_of.hpp"
 #include "solvers/formulations/solid/solid_constants.hpp"
 #include "solvers/formulations/specification/require.hpp"
 #include "solvers/formulations/state/state_model.hpp"
@@ -33,7 +34,7 @@ const Formulation& state_formulation() {
       .takes = {Option::plane, Option::poisson_ratio, Option::thermal_expansion,
                 Option::volume_correction, Option::surface_correction, Option::eigenstrains,
                 Option::pressures, Option::images, Option::strength, Option::softening,
-                Option::critical_stretch, Option::drive, Option::events},
+                Option::critical_stretch, Option::drive, Option::strength_surface, Option::events},
       .least_dimension = 2,
       .default_influence = InverseInfluence::name,
       .part_bonds = PartBonds::of_neighbours,
@@ -44,7 +45,8 @@ const Formulation& state_formulation() {
       .make_model =
           [](const ModelSetting& setting, Bonds bonds) {
             return make_state_model(setting, std::move(bonds),
-                                    {Extension::finite, DamageDrive::release});
+                                    {Extension::finite, DamageDrive::release,
+                                     strength_onsets_of(setting, moduli_of_solid)});
           },
       .moduli = moduli_of_solid,
       .describe = describe_solid,

@@ -96,7 +96,8 @@ std::vector<double> torn(const BoxBody& body, double height, double opening, dou
 double taken_across(const BoxBody& body, double height) {
   const auto* failure = body.model.failing_bonds();
   double sum = 0.0;
-  failure->with_damage_law([&](const auto& law) {
+  const std::vector<double> history = failure->initial_history();
+  failure->with_damage_law(history, [&](const auto& law) {
     tests::for_each_bond(body.model.bonds(), [&](Index i, Index j, Offset bond) {
       if ((body.points.position(i)[0] < height) == (body.points.position(j)[0] < height)) return;
       sum += body.model.bonds().weight(bond) * body.model.bonds().length(bond) *

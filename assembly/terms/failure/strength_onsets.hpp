@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "src/materials/lame_constants.hpp"
+#include "src/materials/peak_factors.hpp"
+#include "src/materials/strength_surface.hpp"
+
+namespace peristat {
+
+/// Strength and elastic response of a material, which a strength surface needs.
+struct MaterialStrength {
+  StrengthSurface surface;                            ///< of the largest stresses
+  std::shared_ptr<const PeakFactors> peak_factors{};  ///< null: 1
+  LamePair elastic;
+  double across = 0.0;  ///< in plane strain Poisson's ratio, otherwise 0
+  /// Range of the factor chi of a bond's onset; beside it chi <= sqrt(2 M) / s_m, see
+  /// StrengthOnsets.
+  std::array<double, 2> factor{};
+};
+
+/// Rule by which bonds start to fail where the stress of their points reaches a strength surface.
+///
+/// The utilisation rho_i of a point follows from its elastic stress C : eps_i, times the factor by
+/// which the stress grows from the first bond's onset to its peak. One of the point's bonds has
+/// the largest (equivalent) stretch m_i, which is m_i / rho_i at the strength, however the stress
+/// is composed. A bond of the onset s_m starts at
+///
+///   chi s_m,   chi = (chi_i + chi_j) / 2,   chi_i = m_i / (rho_i s_m),
+///
+/// so that under a homogeneous stress the bond that is stretched most starts exactly at rho = 1, on
+/// any lattice and in any direction. chi_i is kept within a range, and is its upper end where
+/// rho_i <= 0. With chi s_m as the onset the law gets the critical stretch with which its work M is
+/// what it was: the fracture energy is that of the law. That needs M >= (chi s_m)^2 / 2.
+///
+/// chi is found anew in accepted states until a bond starts, and is constant from then on. As it is
+/// homogeneous of degree 0 in the load, steps do not matter while the stress grows in proportion.
+class StrengthOnsets {
+ public:
+  /// @param of_point number of its material per point; empty: the first one
+  /// @param factor of each point's strength; empty: 1
+  /// @param is_linear whether strains are those of small displacements
+  StrengthOnsets(std::vector<std::optional<MaterialStrength>> materials,
+                 std::vector<std::uint8_t> of_point, std::vector<double> factor, bool is_linear)
+      : materials_(std::move(materials)),
+        of_point_(std::move(of_point)),
+        factor_(std::move(factor)),
+        is_linear_(is_linear) {}
+
+  /// What the bonds of a point start by.
+  struct PointOnset {
+    double stretch = 0.0;                           ///< m_i / rho_i; infinite for rho_i <= 0
+    std::optional<std::array<double, 2>> factor{};  ///< none: chi_i is 1
+    /// chi_i s_m of a bond.
+    [[nodiscard]] double of_bond(double onset, double most_of_law) const;
+  };
+
+  /// @param displacement_gradient F - I, D x D entries, row major
+  /// @param free stress-free stretch
+  /// @param largest_stretch m_i
+  [[nodiscard]] PointOnset of_point(std::size_t point, int dimension,
+                                    const double* displacement_gradient, double free,
+                                    double largest_stretch) const;
+
+ private:
+  [[nodiscard]] std::array<double, 3> principal_stresses(const MaterialStrength& of, int dimension,
+                                                         const double* displacement_gradient,
+                                                         double free) const;
+
+  std::vector<std::optional<MaterialStrength>> materials_;
+  std::vector<std::uint8_t> of_point_;
+  std::vector<double> factor_;
+  bool is_linear_;
+};
+
+}  // namespace peristat

@@ -1,0 +1,36 @@
+#include "solvers/formulations/materials/strength_onsets_of.hpp"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "solvers/formulations/specification/require.hpp"
+
+namespace peristat {
+std::shared_ptr<const StrengthOnsets> strength_onsets_of(const ModelSetting& setting,
+                                                         Formulation::OfMaterial<Moduli> moduli) {
+  std::vector<std::optional<MaterialStrength>> strengths;
+  bool is_any = false;
+  for (const auto& [material, key, name] : setting.materials.all()) {
+    strengths.emplace_back();
+    const DamageSpecification& damage = material->damage;
+    if (!damage.has_surface()) continue;
+    const std::string of_key = key + ".damage.strength_surface";
+    require(setting.index_map.is_whole(), of_key, "", "is for one rank");
+    require(setting.of.teeth == 0, of_key, "", "is not for mode \"path\"");
+    const Moduli found = moduli(*material, key, setting.bonds, setting.points.spacing);
+    const PlaneState plane = found.is_thin ? PlaneState::stress : PlaneState::strain;
+    const int dimension = setting.points.dimension;
+    const bool is_plane_strain = dimension == 2 && !found.is_thin;
+    strengths.back() = {damage.surface(), damage.peak_factors,
+                        lame_constants(found.youngs_modulus, found.poisson_ratio, dimension, plane),
+                        is_plane_strain ? found.poisson_ratio : 0.0, damage.strength_factor};
+    is_any = true;
+  }
+  if (!is_any) return nullptr;
+  const bool is_linear = setting.of.material.model == MaterialModel::lps;
+  return std::make_shared<const StrengthOnsets>(std::move(strengths), setting.materials.of_points(),
+                                                setting.factors.strength, is_linear);
+}
+
+}  // namespace peristat
