@@ -9,6 +9,7 @@
 #include "assembly/terms/bonds/deformation_gradients.hpp"
 #include "assembly/terms/bonds/point_stretches.hpp"
 #include "assembly/terms/bonds/stretches_along.hpp"
+#include "assembly/terms/bonds_alone.hpp"
 #include "src/core/stopwatch.hpp"
 #include "src/core/vector_verbs.hpp"
 #include "src/parallel/index_map.hpp"
@@ -158,7 +159,8 @@ Evaluation Assembler::release(std::span<const double> displacement, History& his
     });
   } else {
     const BondFailure& bonds = *model_.failing_bonds();
-    found.growth = bonds.damage(points_, drives(at()), history.change(model_.slot_of(bonds)));
+    found.growth =
+        damage_bonds_alone(bonds, points_, drives(at()), history.change(model_.slot_of(bonds)));
   }
   found.moves_equilibrium = found.growth.degrading > 0;
   return found;
@@ -196,7 +198,8 @@ DamageGrowth Assembler::growth(const StateView& at) {
   now.curvature = at.curvature;
   if (model_.fails_by_release() && !model_.drives_bonds()) {
     const BondFailure& bonds = *model_.failing_bonds();
-    return of_all(bonds.growth(points_, drives(now), history.of(model_.slot_of(bonds))));
+    return of_all(
+        growth_of_bonds_alone(bonds, points_, drives(now), history.of(model_.slot_of(bonds))));
   }
   Evaluation found;
   for_each_term([&](TermPasses& term, Write) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -18,6 +19,28 @@ struct ReleaseBody {
   Model model, bond_model;
 
   ReleaseBody(const BoxSetting& box, double poisson_ratio, const BondPotential& potential)
+      : ReleaseBody(
+            box, poisson_ratio, [&](const Bonds&) { return potential; }, nullptr) {}
+
+  /// Bonds of one law whose onsets follow from strengths.
+  ReleaseBody(const BoxSetting& box, double poisson_ratio, const AnyBondLaw& law,
+              std::shared_ptr<const StrengthOnsets> onsets)
+      : ReleaseBody(
+            box, poisson_ratio,
+            [&](const Bonds& bonds) -> BondPotential {
+              auto laws = std::make_shared<BondLaws>(std::vector<AnyBondLaw>{law},
+                                                     std::size_t(bonds.count()));
+              for (Offset bond = 0; bond < bonds.count(); ++bond) {
+                laws->set(bond, 0, law.onset(), law.critical());
+              }
+              return DegradedByBond<>{1.0, std::move(laws)};
+            },
+            onsets) {}
+
+ private:
+  ReleaseBody(const BoxSetting& box, double poisson_ratio,
+              const std::function<BondPotential(const Bonds&)>& potential_of,
+              std::shared_ptr<const StrengthOnsets> onsets)
       : points(points_with_ends(box)) {
     BondSetting setting = bond_setting(box);
     setting.influence = [](double) { return 1.0; };  // K = 1 / r
@@ -36,13 +59,16 @@ struct ReleaseBody {
     bonds.set_weights([&](Index i, Offset bond) {
       return shares.whole[bond].weight * (q(i) + q(bonds.partner[bond]));
     });
-    bond_model = Model(bonds, potential);
-    term = std::make_shared<StateTerm>(std::make_shared<const Bonds>(std::move(bonds)), potential,
-                                       std::vector<char>(), std::move(shares),
-                                       StateRules{Extension::finite, DamageDrive::release}, 1);
+    const BondPotential potential = potential_of(bonds);
+    bond_model =
+        Model(bonds, potential, {}, onsets ? DamageDrive::release : DamageDrive::stretch, onsets);
+    term = std::make_shared<StateTerm>(
+        std::make_shared<const Bonds>(std::move(bonds)), potential, std::vector<char>(),
+        std::move(shares), StateRules{Extension::finite, DamageDrive::release, onsets}, 1);
     model = Model(std::shared_ptr<Term>(term));
   }
 
+ public:
   [[nodiscard]] std::size_t dofs() const { return points.reference.size(); }
 
   /// Moves the points beyond x apart.

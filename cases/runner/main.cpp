@@ -214,6 +214,13 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
   add("--fracture-energy", damage.fracture_energy, "[J/m2]");
   add("--fracture-toughness", damage.fracture_toughness, "[Pa sqrt(m)]");
   add("--strength", damage.strength, "[Pa]");
+  add("--strength-surface", damage.strength_surface,
+      "rankine, drucker_prager or mohr_coulomb, through --strength")
+      ->transform(names<StrengthCriterion>({{"rankine", StrengthCriterion::rankine},
+                                            {"drucker_prager", StrengthCriterion::drucker_prager},
+                                            {"mohr_coulomb", StrengthCriterion::mohr_coulomb}}));
+  add("--compressive-strength", damage.compressive_strength, "with --strength-surface [Pa]");
+  add("--biaxial-strength", damage.biaxial_strength, "with drucker_prager [Pa]");
   add("--critical", damage.critical, "stretch");
   add("--onset", damage.onset, "stretch");
   add("--peak", damage.peak, "blended: stretch");

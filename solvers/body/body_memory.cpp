@@ -58,6 +58,11 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.bonds = double(body.model.bonds().count());
   size.bytes_per_bond = double(sizeof(Index) + body.model.bonds().kind.bytes_per_bond());
   size.has_history = body.model.has_history();
+  const BondFailure* const failing = body.model.failing_bonds();
+  // Onsets and critical stretches, as the history is kept before and after a step, and the drives.
+  if (failing && failing->onsets()) {
+    size.bytes_per_bond += double(4 * sizeof(double) + sizeof(BondDrive));
+  }
   size.is_convolved = body.model.tangent_kind() == TangentKind::products;
   size.has_symmetric_blocks = body.model.has_symmetric_blocks();
   size.is_constrained = !body.conditions->constraints().none();

@@ -11,6 +11,8 @@
 #include "solvers/formulations/linear_bond/linear_bond.hpp"
 #include "solvers/formulations/lps_collocation/lps_collocation.hpp"
 #include "solvers/formulations/lps_energy/lps_energy.hpp"
+#include "solvers/formulations/materials/bond_potential.hpp"
+#include "solvers/formulations/solid/strength_onsets_of.hpp"
 #include "solvers/formulations/specification/for_each_material.hpp"
 #include "solvers/formulations/state/state.hpp"
 
@@ -128,6 +130,17 @@ FractureScale fracture_scale_of(const MaterialSpecification& material, const std
   return formulation.fracture_scale(material, key, setting, spacing);
 }
 
+DamageSpecification damage_with_stretches(const MaterialSpecification& material,
+                                          const std::string& key, const BondSetting& setting,
+                                          double spacing, const FractureScale& scale) {
+  DamageSpecification damage = with_stretches(material.damage, key, scale);
+  if (!damage.has_surface()) return damage;
+  const Moduli moduli = formulation_of(material).moduli(material, key, setting, spacing);
+  damage.peak_factors = std::make_shared<const PeakFactors>(
+      *scale.pull, law_of(damage), material_strength(damage, moduli, setting.dimension));
+  return damage;
+}
+
 double modulus_of_tip(const MaterialSpecification& material, const std::string& key,
                       const BondSetting& setting, double spacing) {
   const Moduli of = formulation_of(material).moduli(material, key, setting, spacing);
@@ -185,7 +198,7 @@ void find_stretches(const Formulation& formulation, MaterialSpecification& mater
   const FractureScale scale = fracture_scale_of(material, key, setting, spacing);
   const bool is_by_energy = material.damage.fracture_energy.has_value();
   std::vector<LawStretches> of_horizons = by_horizon(material, key, setting, spacing, fineness);
-  material.damage = with_stretches(material.damage, key, scale);
+  material.damage = damage_with_stretches(material, key, setting, spacing, scale);
   material.damage.is_by_energy = is_by_energy;
   material.damage.of_horizons = std::move(of_horizons);
 }

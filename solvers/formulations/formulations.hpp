@@ -47,6 +47,13 @@ void resolve_drives(BodySpecification& of);
                                               const std::string& key, const BondSetting& setting,
                                               double spacing);
 
+/// The law of a material with stretches in the place of its data, see with_stretches of a law, and
+/// with a strength surface the factors of its peaks.
+[[nodiscard]] DamageSpecification damage_with_stretches(const MaterialSpecification& material,
+                                                        const std::string& key,
+                                                        const BondSetting& setting, double spacing,
+                                                        const FractureScale& scale);
+
 /// Modulus E' of a crack of mode I, G = K^2 / E': E in plane stress, E / (1 - nu^2) in plane strain
 /// and 3D, by the moduli of the material's model [Pa].
 [[nodiscard]] double modulus_of_tip(const MaterialSpecification& material, const std::string& key,

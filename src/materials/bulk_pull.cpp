@@ -18,6 +18,7 @@
 #include "src/neighbourhood/bulk_neighbourhood.hpp"
 #include "src/neighbourhood/lattice_ball.hpp"
 #include "src/neighbourhood/side_influence.hpp"
+#include "src/potentials/critical_of_work.hpp"
 
 namespace peristat {
 namespace {
@@ -55,6 +56,23 @@ Coordinates normal_to(const Coordinates& n, int dimension) {
   return unit(cross(n, is_upright ? Coordinates{1, 0, 0} : Coordinates{0, 0, 1}));
 }
 
+/// Eigenvalues of a tensor in Kelvin's notation.
+template <int D>
+std::array<double, 3> principal_strains(const Vector& kelvin) {
+  std::array<double, std::size_t(D) * D> tensor{};
+  std::ptrdiff_t k = 0;
+  for (int a = 0; a < D; ++a) tensor[std::size_t(a * D + a)] = kelvin[k++];
+  for (int a = 0; a < D; ++a) {
+    for (int b = 0; b < a; ++b) {
+      tensor[std::size_t(a * D + b)] = tensor[std::size_t(b * D + a)] =
+          kelvin[k++] / std::numbers::sqrt2;
+    }
+  }
+  std::array<double, 3> values{};
+  std::ranges::copy(symmetric_eigenvalues<D>(tensor.data()), values.begin());
+  return values;
+}
+
 /// Numbers directions; opposite ones and those that differ by round-off have one number.
 class Numbers {
  public:
@@ -80,19 +98,23 @@ struct BulkPull::State {
   double stress = 0.0;
   double theta = 0.0;             // of states
   std::vector<double> largest{};  // (equivalent) stretches of fibres so far
+  std::vector<AnyLaw> laws{};     // of fibres, whose onsets move; empty: all have the given one
 };
 
 /// The equilibria of one law under one form of stress.
 class BulkPull::Equilibrium {
  public:
-  Equilibrium(const BulkPull& bulk, const Tensor& form, const AnyLaw& law)
+  Equilibrium(const BulkPull& bulk, const Tensor& form, const AnyLaw& law,
+              const MovingOnsets* moving)
       : bulk_(bulk),
         law_(law),
+        moving_(moving),
         size_(entries_of_tensor[std::size_t(bulk.dimension_ - 1)]),
         form_(vector(form)),
         drop_(law.onset() < law.critical() ? 0.0 : 1.0),
         fibres_(bulk.fibres_.size()) {
     for (const Fibre& fibre : bulk.fibres_) total_ += fibre.stiffness;
+    if (moving_) work_ = law.work(Harmonic{1.0}, law.critical());
   }
 
   /// State in which the first bond reaches its onset; without strain if the lattice has no
@@ -100,7 +122,7 @@ class BulkPull::Equilibrium {
   [[nodiscard]] State first() {
     State state;
     state.largest.assign(fibres_.size(), 0.0);
-    set_secants(state.largest);
+    set_secants(state);
     const Matrix stiffness = secant_stiffness();
     const std::vector<double> eigenvalues =
         symmetric_modes(entries_of(stiffness), int(size_)).values;
@@ -111,11 +133,14 @@ class BulkPull::Equilibrium {
     for (const Fibre& fibre : bulk_.fibres_) {
       longest = std::max(longest, driving(fibre, vector(fibre.dyad).dot(of_unit), theta).stretch);
     }
-    state.stress = law_.onset() / longest;
+    const double rho = moving_ ? moving_->utilisation(principal(of_unit)) : 0.0;
+    const double begin = moving_ ? onset_at(longest, rho) : law_.onset();
+    state.stress = begin / longest;
     if (!std::isfinite(state.stress)) return state;
     state.strain = state.stress * of_unit;
     state.theta = state.stress * theta;
     state.along = form_.dot(state.strain);
+    if (moving_) state.laws.assign(fibres_.size(), moved_law(begin));
     return state;
   }
 
@@ -183,6 +208,41 @@ class BulkPull::Equilibrium {
     return state.stress * since.along > (1.0 + 1e-9) * since.stress * state.along;
   }
 
+  [[nodiscard]] const AnyLaw& law_of(const State& state, std::size_t fibre) const {
+    return state.laws.empty() ? law_ : state.laws[fibre];
+  }
+
+  /// Principal strains, in 2D those in the plane.
+  [[nodiscard]] std::array<double, 3> principal(const Vector& strain) const {
+    return bulk_.dimension_ == 2 ? principal_strains<2>(strain) : principal_strains<3>(strain);
+  }
+
+  /// Onset of bonds that have not started, where the longest one has this stretch.
+  [[nodiscard]] double onset_at(double longest, double rho) const {
+    const double moved = rho > 0.0 ? longest / rho : std::numeric_limits<double>::infinity();
+    return std::clamp(moved, moving_->range[0] * law_.onset(), moving_->range[1] * law_.onset());
+  }
+
+  [[nodiscard]] AnyLaw moved_law(double onset) const {
+    return law_.between(onset, critical_of_work(bond_law(law_), onset, work_, law_.critical()));
+  }
+
+  /// Moves the onsets of fibres that have not started.
+  void renew(State& state) const {
+    double longest = 0.0;
+    for (std::size_t k = 0; k < fibres_.size(); ++k) {
+      const Fibre& fibre = bulk_.fibres_[k];
+      if (state.largest[k] >= state.laws[k].critical()) continue;
+      const double stretch = vector(fibre.dyad).dot(state.strain);
+      longest = std::max(longest, driving(fibre, stretch, state.theta).stretch);
+    }
+    const AnyLaw moved =
+        moved_law(onset_at(longest, moving_->utilisation(principal(state.strain))));
+    for (std::size_t k = 0; k < fibres_.size(); ++k) {
+      if (state.largest[k] <= state.laws[k].onset()) state.laws[k] = moved;
+    }
+  }
+
   [[nodiscard]] Vector vector(const Tensor& of) const {
     return Eigen::Map<const Eigen::VectorXd>(of.data(), size_);
   }
@@ -199,11 +259,12 @@ class BulkPull::Equilibrium {
       const double stretch = vector(fibre.dyad).dot(state.strain);
       state.largest[k] = std::max(state.largest[k], driving(fibre, stretch, state.theta).stretch);
     }
+    if (moving_) renew(state);
   }
 
-  void set_secants(const std::vector<double>& largest) {
+  void set_secants(const State& state) {
     for (std::size_t k = 0; k < fibres_.size(); ++k) {
-      fibres_[k] = {0.0, law_.integrity(largest[k]), 0.0, 0.0};
+      fibres_[k] = {0.0, law_of(state, k).integrity(state.largest[k]), 0.0, 0.0};
     }
   }
 
@@ -245,9 +306,10 @@ class BulkPull::Equilibrium {
       const double s = n.dot(state.strain), a = bulk_.fibres_[k].stiffness;
       const Driving drive = driving(bulk_.fibres_[k], s, state.theta);
       const bool grows = drive.stretch > largest[k];
-      const double slope = grows ? law_.slope(drive.stretch) : 0.0;
+      const AnyLaw& law = law_of(state, k);
+      const double slope = grows ? law.slope(drive.stretch) : 0.0;
       Strained& fibre = fibres_[k];
-      fibre = {s, law_.integrity(grows ? drive.stretch : largest[k]), slope * drive.by_stretch,
+      fibre = {s, law.integrity(grows ? drive.stretch : largest[k]), slope * drive.by_stretch,
                slope * drive.by_theta};
       const double force = s + 0.5 * bulk_.zeta_ * state.theta;
       stress += a * fibre.integrity * force * n;
@@ -316,7 +378,7 @@ class BulkPull::Equilibrium {
     state.along = along;
     constexpr int most_iterations = 3000;
     for (int k = 0; k < most_iterations; ++k) {
-      set_secants(state.largest);
+      set_secants(state);
       const Vector of_unit = strain_of_form(secant_stiffness());
       state.stress = along / form_.dot(of_unit);
       // No resistance is left.
@@ -330,7 +392,8 @@ class BulkPull::Equilibrium {
       grow(state);
       double growth = 0.0;
       for (std::size_t b = 0; b < before.size(); ++b) {
-        growth = std::max(growth, law_.integrity(before[b]) - law_.integrity(state.largest[b]));
+        const AnyLaw& law = law_of(state, b);
+        growth = std::max(growth, law.integrity(before[b]) - law.integrity(state.largest[b]));
       }
       if (growth < tolerance) break;
     }
@@ -339,6 +402,8 @@ class BulkPull::Equilibrium {
 
   const BulkPull& bulk_;
   const AnyLaw& law_;
+  const MovingOnsets* moving_;  // null: onsets stay
+  double work_ = 0.0;           // of the law, where they move
   std::ptrdiff_t size_;
   Vector form_;
   double drop_;         // 1: bonds are brittle
@@ -488,17 +553,19 @@ std::vector<BulkPull::Form> BulkPull::forms(Loading loading) const {
   return result;
 }
 
-double BulkPull::onset(const Tensor& form, const AnyLaw& law) const {
-  return Equilibrium(*this, form, law).first().stress;
+double BulkPull::onset(const Tensor& form, const AnyLaw& law, const MovingOnsets* moving) const {
+  return Equilibrium(*this, form, law, moving).first().stress;
 }
 
 /// Follows the strain in steps of 2 %, and around each peak in finer and finer ones, until the
 /// stress is below 0.9 of the peak.
-double BulkPull::peak(const Tensor& form, const AnyLaw& law) const {
+double BulkPull::peak(const Tensor& form, const AnyLaw& law, const MovingOnsets* moving) const {
   constexpr double coarsest = 0.02, finest = 1e-10, finer = 0.125;
   constexpr double left = 0.9;  // of the peak: a body that has lost a tenth breaks
-  Equilibrium equilibrium(*this, form, law);
+  Equilibrium equilibrium(*this, form, law, moving);
   const State first = equilibrium.first();
+  double farthest = law.critical();
+  for (const AnyLaw& of : first.laws) farthest = std::max(farthest, of.critical());
   double best = first.stress;
   const auto march = [&](const auto& again, State here, double step, double end) -> void {
     State before = here;
@@ -512,7 +579,7 @@ double BulkPull::peak(const Tensor& form, const AnyLaw& law) const {
       best = std::max(best, there.stress);
       if (there.stress < left * best) return;
       // Triangles that are left under compression would carry more and more as the strain grows.
-      if (*std::ranges::max_element(there.largest) > 4.0 * law.critical()) return;
+      if (*std::ranges::max_element(there.largest) > 4.0 * farthest) return;
       before = std::move(here);
       here = std::move(there);
     }
@@ -545,16 +612,25 @@ bool BulkPull::is_quick() const {
   return count <= most_simplices;
 }
 
-BulkPull::Course BulkPull::course(const std::array<double, 2>& principal, const AnyLaw& law) const {
-  Course mean;
+template <class Quantity>
+double BulkPull::mean(const std::array<double, 2>& principal, const Quantity& of_form) const {
+  double mean = 0.0;
   for (const auto& [n, weight] : directions_) {
     if (weight == 0.0) continue;
-    const Tensor form = sum(projector(n, dimension_, principal[0]),
-                            projector(normal_to(n, dimension_), dimension_, principal[1]));
-    mean.onset += weight * onset(form, law);
-    mean.peak += weight * peak(form, law);
+    mean += weight * of_form(sum(projector(n, dimension_, principal[0]),
+                                 projector(normal_to(n, dimension_), dimension_, principal[1])));
   }
   return mean;
+}
+
+double BulkPull::peak(const std::array<double, 2>& principal, const AnyLaw& law,
+                      const MovingOnsets* moving) const {
+  return mean(principal, [&](const Tensor& form) { return peak(form, law, moving); });
+}
+
+double BulkPull::onset(const std::array<double, 2>& principal, const AnyLaw& law,
+                       const MovingOnsets* moving) const {
+  return mean(principal, [&](const Tensor& form) { return onset(form, law, moving); });
 }
 
 DirectionalSpread BulkPull::onset(Loading loading, const AnyLaw& law) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "src/core/types.hpp"
@@ -17,6 +18,14 @@ enum class Loading {
   biaxial,  ///< equal in all directions normal to n (in 2D in both)
   shear,    ///< equal tension and compression along two directions
   compression,
+};
+
+/// Onsets that follow the strain until a bond starts, as a strength surface moves them. With the
+/// largest (equivalent) stretch m of unbroken bonds a bond starts at m / rho, and its law keeps its
+/// work.
+struct MovingOnsets {
+  std::function<double(const std::array<double, 3>& strains)> utilisation;  ///< rho
+  std::array<double, 2> range{};  ///< of the onset over that of the law
 };
 
 /// Response of a point deep inside a lattice to a homogeneous stress that grows: the strength of a
@@ -57,13 +66,13 @@ class BulkPull {
   /// likewise.
   [[nodiscard]] DirectionalSpread onset(Loading loading, const AnyLaw& law) const;
 
-  /// Onset and peak under stresses of a fixed ratio in a plane, along normal directions: the mean
-  /// over these [Pa].
-  struct Course {
-    double onset = 0.0, peak = 0.0;
-  };
-  /// @param principal stresses; the first one is positive
-  [[nodiscard]] Course course(const std::array<double, 2>& principal, const AnyLaw& law) const;
+  /// The same under stresses of a fixed ratio along two normal directions, the mean over these
+  /// [Pa].
+  /// @param moving null: onsets are the law's
+  [[nodiscard]] double onset(const std::array<double, 2>& principal, const AnyLaw& law,
+                             const MovingOnsets* moving = nullptr) const;
+  [[nodiscard]] double peak(const std::array<double, 2>& principal, const AnyLaw& law,
+                            const MovingOnsets* moving = nullptr) const;
 
   static constexpr std::size_t most_directions = 400;
 
@@ -99,10 +108,14 @@ class BulkPull {
 
   void spread_evenly(double first_moment);
   [[nodiscard]] std::vector<Form> forms(Loading loading) const;
-  [[nodiscard]] double peak(const Tensor& form, const AnyLaw& law) const;
-  [[nodiscard]] double onset(const Tensor& form, const AnyLaw& law) const;
+  [[nodiscard]] double peak(const Tensor& form, const AnyLaw& law,
+                            const MovingOnsets* moving = nullptr) const;
+  [[nodiscard]] double onset(const Tensor& form, const AnyLaw& law,
+                             const MovingOnsets* moving = nullptr) const;
   template <class Quantity>
   [[nodiscard]] DirectionalSpread over(Loading loading, const Quantity& of_form) const;
+  template <class Quantity>
+  [[nodiscard]] double mean(const std::array<double, 2>& principal, const Quantity& of_form) const;
 
   int dimension_;
   double zeta_ = 0.0;

@@ -5,55 +5,72 @@
 #include <functional>
 #include <numbers>
 
-#include "src/potentials/critical_of_work.hpp"
+#include "src/potentials/harmonic.hpp"
 
 namespace peristat {
 namespace {
 
 /// Angles of the table. Below the least one compression prevails, and bodies of bonds have no peak.
-constexpr double least = -75.0, step = 15.0;
-constexpr int count = 9;
+constexpr double least = -75.0, most = 45.0;
 
-/// Factor under one ratio of stresses. The surface moves the onset of all bonds by the factor chi,
-/// which depends on the result.
-/// @param strength of the first bond without the surface, of unit stresses
-double factor_of(const BulkPull& bulk, const AnyLaw& law, const std::array<double, 2>& stresses,
-                 double rho, double guess) {
-  const double work = law.work(Harmonic{1.0}, law.critical());
-  const double first = bulk.course(stresses, {CriticalStretch{law.onset()}}).onset;
-  const double most = std::sqrt(2.0 * work) / law.onset();
-  constexpr int turns = 2;
-  double factor = guess;
-  for (int k = 0; k < turns; ++k) {
-    const double onset = std::min(1.0 / (first * rho * factor), most) * law.onset();
-    const double critical = critical_of_work(bond_law(law), onset, work, law.critical());
-    const auto [begins, largest] = bulk.course(stresses, law.between(onset, critical));
-    factor = largest / begins;
-  }
-  return factor;
+/// Degrees between two angles, in 3D more: a pull takes longer.
+double step_in(int dimension) { return dimension == 2 ? 7.5 : 15.0; }
+
+double angle_of(double first, double second) {
+  return std::atan2(second, first) * 180.0 / std::numbers::pi;
 }
 
 }  // namespace
 
-PeakFactors::PeakFactors(const BulkPull& bulk, const AnyLaw& law, const StrengthSurface& surface) {
-  const auto [onset, peak] = bulk.course({1.0, 0.0}, law);
-  for (int k = 0; k < count; ++k) {
-    const double angle = (least + k * step) * std::numbers::pi / 180.0;
-    const std::array<double, 2> stresses{std::cos(angle), std::sin(angle)};
-    const double rho = surface.utilisation({stresses[0], stresses[1], 0.0});
-    factors_.push_back(rho > 0.0 ? factor_of(bulk, law, stresses, rho, peak / onset) : 1.0);
+PeakFactors::PeakFactors(const BulkPull& bulk, const AnyLaw& law, const MaterialStrength& strength)
+    : bulk_(bulk), law_(law), strength_(strength) {
+  const double work = law.work(Harmonic{1.0}, law.critical());
+  strength_.factor[1] = std::min(strength.factor[1], std::sqrt(2.0 * work) / law.onset());
+  const std::array<double, 2> pull{1.0, 0.0};
+  uniaxial_ = bulk.peak(pull, law) / bulk.onset(pull, law);
+  const double step = step_in(strength.dimension);
+  for (double degrees = least; degrees <= most; degrees += step) {
+    const double angle = degrees * std::numbers::pi / 180.0;
+    factors_.push_back(onset({std::cos(angle), std::sin(angle)}).factor);
   }
+}
+
+PeakFactors::Onset PeakFactors::onset(const std::array<double, 2>& stresses) const {
+  const double rho = strength_.surface.utilisation({stresses[0], stresses[1], 0.0});
+  if (!(rho > 0.0)) return {strength_.factor[1], 1.0};
+  const bool has_peak = angle_of(stresses[0], stresses[1]) > least - 1.0;
+  const double first = bulk_.onset(stresses, law_);
+  constexpr int turns = 2;
+  Onset found{1.0, has_peak ? uniaxial_ : 1.0};
+  for (int k = 0; k < turns && has_peak; ++k) {
+    const MovingOnsets moving{[&](const std::array<double, 3>& strains) {
+                                return found.factor * strength_.utilisation(strains);
+                              },
+                              strength_.factor};
+    const double begins = bulk_.onset(stresses, law_, &moving);
+    found.factor = bulk_.peak(stresses, law_, &moving) / begins;
+  }
+  found.chi = 1.0 / (first * rho * found.factor);
+  return found;
 }
 
 double PeakFactors::at(const std::array<double, 3>& principal) const {
   std::array<double, 3> sorted = principal;
   std::ranges::sort(sorted, std::greater());
   const double other = std::abs(sorted[1]) > std::abs(sorted[2]) ? sorted[1] : sorted[2];
-  const double angle = std::atan2(other, sorted[0]) * 180.0 / std::numbers::pi;
-  const double place = std::clamp((angle - least) / step, 0.0, double(count - 1));
-  const auto low = std::min(std::size_t(place), std::size_t(count - 2));
+  const double last = double(factors_.size() - 1);
+  const double place =
+      std::clamp((angle_of(sorted[0], other) - least) / step_in(strength_.dimension), 0.0, last);
+  const auto low = std::min(std::size_t(place), factors_.size() - 2);
   const double share = place - double(low);
   return (1.0 - share) * factors_[low] + share * factors_[low + 1];
+}
+
+PeakFactors::Strength PeakFactors::strength(const std::array<double, 2>& stresses) const {
+  const double asked = 1.0 / strength_.surface.utilisation({stresses[0], stresses[1], 0.0});
+  const auto [chi, factor] = onset(stresses);
+  const double reached = asked * std::clamp(chi, strength_.factor[0], strength_.factor[1]) / chi;
+  return {asked, reached, reached / factor};
 }
 
 }  // namespace peristat

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "assembly/terms/failure/one_by_one.hpp"
 #include "src/core/lanes.hpp"
 #include "src/geometry/counts_bond.hpp"
 #include "src/potentials/critical_of_work.hpp"
@@ -63,35 +62,6 @@ void BondFailure::renew_onsets(const Points& points,
         }
       },
       potential_);
-}
-
-DamageGrowth BondFailure::growth(const Points& points, std::span<const BondDrive> drives,
-                                 std::span<const double> history) const {
-  DamageGrowth all;
-  with_damage_law(history, [&](const auto& law) {
-    for_each_bond(bonds(), [&](Index i, Offset bond) {
-      DamageGrowth of_bond;
-      judge_driven(law.of_bond(bond), {0.0, i, bond}, drives[std::size_t(bond)].driving(),
-                   history[std::size_t(bond)], of_bond, [](const DrivenBond&) {});
-      all.utilisation = std::max(all.utilisation, of_bond.utilisation);
-      if (!counts_bond(points, i, bonds().partner[bond])) return;
-      all.degrading += of_bond.degrading;
-      all.breaking += of_bond.breaking;
-    });
-  });
-  return all;
-}
-
-DamageGrowth BondFailure::damage(const Points& points, std::span<const BondDrive> drives,
-                                 std::span<double> history) const {
-  const DamageGrowth found = growth(points, drives, history);
-  with_damage_law(history, [&](const auto& law) {
-    for_each_bond(bonds(), [&](Index, Offset bond) {
-      const auto b = std::size_t(bond);
-      static_cast<void>(damage_driven(law.of_bond(bond), drives[b].driving(), history[b]));
-    });
-  });
-  return {found.degrading, found.breaking};
 }
 
 double BondFailure::dissipated_energy(std::span<const double> history, const Points* points) const {

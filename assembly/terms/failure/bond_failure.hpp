@@ -6,8 +6,6 @@
 #include <variant>
 #include <vector>
 
-#include "assembly/energy/evaluation.hpp"
-#include "assembly/terms/bond_drive.hpp"
 #include "assembly/terms/failure/damage_drive.hpp"
 #include "assembly/terms/failure/failure_model.hpp"
 #include "assembly/terms/failure/strength_onsets.hpp"
@@ -88,14 +86,6 @@ class BondFailure final : public FailureModel {
   /// @throws std::logic_error unless there is one for every bond
   [[nodiscard]] std::vector<double> history_of(std::span<const double> largest_stretches,
                                                std::span<const double> before) const;
-
-  /// Damages the bonds that their own stretches drive, where nothing else does. Returns the damage,
-  /// or what it would be.
-  /// @param drives of all bonds
-  DamageGrowth damage(const Points& points, std::span<const BondDrive> drives,
-                      std::span<double> history) const;
-  [[nodiscard]] DamageGrowth growth(const Points& points, std::span<const BondDrive> drives,
-                                    std::span<const double> history) const;
 
   /// Energy that the law has dissipated [J], see weigh.
   [[nodiscard]] double dissipated_energy(std::span<const double> history,

@@ -9,10 +9,10 @@
 namespace peristat {
 namespace {
 
-/// Principal strains of U - I with U^2 = F^T F, or of small displacements. From Green's strain, so
-/// that small ones keep their digits.
+/// Principal strains of U - I with U^2 = F^T F, or of small displacements, less a free stretch.
+/// From Green's strain, so that small ones keep their digits.
 template <int D>
-std::array<double, D> principal_strains(const double* h, bool is_linear) {
+std::array<double, 3> principal_strains(const double* h, double free, bool is_linear) {
   std::array<double, std::size_t(D) * D> green{};
   for (int r = 0; r < D; ++r) {
     for (int c = 0; c < D; ++c) {
@@ -22,25 +22,13 @@ std::array<double, D> principal_strains(const double* h, bool is_linear) {
           0.5 * (h[r * D + c] + h[c * D + r] + (is_linear ? 0.0 : product));
     }
   }
-  std::array<double, D> strains = symmetric_eigenvalues<D>(green.data());
-  if (is_linear) return strains;
-  for (double& of : strains) of = 2.0 * of / (1.0 + std::sqrt(std::max(1.0 + 2.0 * of, 0.0)));
-  return strains;
-}
-
-template <int D>
-std::array<double, 3> principal_stresses_in(const MaterialStrength& of, const double* gradient,
-                                            double free, bool is_linear) {
-  std::array<double, 3> stresses{};
-  const std::array<double, D> strains = principal_strains<D>(gradient, is_linear);
-  double trace = 0.0;
-  for (const double strain : strains) trace += strain - free;
-  for (int k = 0; k < D; ++k) {
-    stresses[std::size_t(k)] =
-        of.elastic.lambda * trace + 2.0 * of.elastic.mu * (strains[std::size_t(k)] - free);
+  std::array<double, 3> strains{};
+  std::ranges::copy(symmetric_eigenvalues<D>(green.data()), strains.begin());
+  for (double& of : strains) {
+    if (!is_linear) of = 2.0 * of / (1.0 + std::sqrt(std::max(1.0 + 2.0 * of, 0.0)));
+    of -= free;
   }
-  if constexpr (D == 2) stresses[2] = of.across * (stresses[0] + stresses[1]);
-  return stresses;
+  return strains;
 }
 
 }  // namespace
@@ -56,22 +44,16 @@ StrengthOnsets::PointOnset StrengthOnsets::of_point(std::size_t point, int dimen
                                                     double free, double largest_stretch) const {
   const auto& material = materials_[of_point_.empty() ? 0 : of_point_[point]];
   if (!material) return {};
-  const std::array<double, 3> stresses =
-      principal_stresses(*material, dimension, displacement_gradient, free);
-  const double of_peak = material->surface.utilisation(stresses);
-  const double rho =
-      of_peak * (material->peak_factors ? material->peak_factors->at(stresses) : 1.0);
+  const std::array<double, 3> strains =
+      dimension == 2 ? principal_strains<2>(displacement_gradient, free, is_linear_)
+                     : principal_strains<3>(displacement_gradient, free, is_linear_);
+  const std::array<double, 3> stresses = material->of.stresses(strains);
+  const double to_peak = material->peak_factors ? material->peak_factors->at(stresses) : 1.0;
+  const double rho = to_peak * material->of.surface.utilisation(stresses);
   const bool can_start = rho > 0.0 && largest_stretch > 0.0;
   const double factor = factor_.empty() ? 1.0 : factor_[point];
   return {can_start ? factor * largest_stretch / rho : std::numeric_limits<double>::infinity(),
-          material->factor};
-}
-
-std::array<double, 3> StrengthOnsets::principal_stresses(const MaterialStrength& of, int dimension,
-                                                         const double* displacement_gradient,
-                                                         double free) const {
-  return dimension == 2 ? principal_stresses_in<2>(of, displacement_gradient, free, is_linear_)
-                        : principal_stresses_in<3>(of, displacement_gradient, free, is_linear_);
+          material->of.factor};
 }
 
 }  // namespace peristat

@@ -8,21 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "src/materials/lame_constants.hpp"
+#include "src/materials/material_strength.hpp"
 #include "src/materials/peak_factors.hpp"
-#include "src/materials/strength_surface.hpp"
 
 namespace peristat {
 
-/// Strength and elastic response of a material, which a strength surface needs.
-struct MaterialStrength {
-  StrengthSurface surface;                            ///< of the largest stresses
-  std::shared_ptr<const PeakFactors> peak_factors{};  ///< null: 1
-  LamePair elastic;
-  double across = 0.0;  ///< in plane strain Poisson's ratio, otherwise 0
-  /// Range of the factor chi of a bond's onset; beside it chi <= sqrt(2 M) / s_m, see
-  /// StrengthOnsets.
-  std::array<double, 2> factor{};
+/// A strength, and the factors from the first onset to the peak; null: 1.
+struct PointStrength {
+  MaterialStrength of;
+  std::shared_ptr<const PeakFactors> peak_factors{};
 };
 
 /// Rule by which bonds start to fail where the stress of their points reaches a strength surface.
@@ -46,7 +40,7 @@ class StrengthOnsets {
   /// @param of_point number of its material per point; empty: the first one
   /// @param factor of each point's strength; empty: 1
   /// @param is_linear whether strains are those of small displacements
-  StrengthOnsets(std::vector<std::optional<MaterialStrength>> materials,
+  StrengthOnsets(std::vector<std::optional<PointStrength>> materials,
                  std::vector<std::uint8_t> of_point, std::vector<double> factor, bool is_linear)
       : materials_(std::move(materials)),
         of_point_(std::move(of_point)),
@@ -69,11 +63,7 @@ class StrengthOnsets {
                                     double largest_stretch) const;
 
  private:
-  [[nodiscard]] std::array<double, 3> principal_stresses(const MaterialStrength& of, int dimension,
-                                                         const double* displacement_gradient,
-                                                         double free) const;
-
-  std::vector<std::optional<MaterialStrength>> materials_;
+  std::vector<std::optional<PointStrength>> materials_;
   std::vector<std::uint8_t> of_point_;
   std::vector<double> factor_;
   bool is_linear_;

@@ -87,9 +87,23 @@ std::string over_directions(const DirectionalSpread& of) {
   return object({pair("mean", of.mean), pair("least", of.least), pair("most", of.most)});
 }
 
+/// Strengths on a surface, and those of the body; null where there are none.
+std::string strengths_of_surface(const PeakFactors& factors) {
+  const auto of = [&](const char* name, double first, double second) {
+    const auto [asked, reached, onset] = factors.strength({first, second});
+    if (!(asked > 0.0) || !std::isfinite(asked)) return fmt::format("\"{}\": null", name);
+    return fmt::format("\"{}\": {}", name,
+                       object({exact_pair("surface", asked), exact_pair("reached", reached),
+                               exact_pair("onset", onset)}));
+  };
+  return object({of("uniaxial", 1.0, 0.0), of("biaxial", 1.0, 1.0), of("shear", 1.0, -1.0),
+                 of("compression", 0.0, -1.0)});
+}
+
 /// Stresses at which bonds begin to soften and at which a body fails, for several states of stress.
 std::string strengths(const DamageSpecification& damage, const BulkPull& pull, int dimension) {
   const AnyLaw law = law_of(damage);
+  if (damage.peak_factors) return strengths_of_surface(*damage.peak_factors);
   const auto of = [&](const char* name, Loading loading) {
     std::vector<std::string> pairs{"\"onset\": " + over_directions(pull.onset(loading, law))};
     if (loading != Loading::compression) {
@@ -195,7 +209,7 @@ std::string damage_calibration(const MaterialSpecification& given, const std::st
   if (setting.lattice && !takes(material.model, Option::constants)) {
     bonds.emplace(setting_of_bonds(formulation_of(material), setting));
   }
-  return damage_section(with_stretches(material.damage, key, scale), scale, bonds,
+  return damage_section(damage_with_stretches(material, key, setting, spacing, scale), scale, bonds,
                         setting.dimension, with_strengths);
 }
 

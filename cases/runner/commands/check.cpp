@@ -105,6 +105,25 @@ std::string strength_text(const DamageSpecification& damage, const FractureScale
                            of.least, of.most);
 }
 
+/// Prints strengths on a surface, and those that the law does not reach.
+void print_surface(std::FILE* out, const DamageSpecification& damage, const std::string& name) {
+  constexpr double same = 0.01;
+  const auto text = [&](const char* of, double first, double second) {
+    const auto [asked, reached, begins] = damage.peak_factors->strength({first, second});
+    if (!(asked > 0.0) || !std::isfinite(asked)) return fmt::format("{} none", of);
+    std::string told = fmt::format("{} {:.4g} Pa", of, reached);
+    if (reached < (1.0 - same) * asked) {
+      told += fmt::format(" where {:.4g} Pa are asked (too little work for more)", asked);
+    } else if (reached > (1.0 + same) * asked) {
+      told += fmt::format(" where {:.4g} Pa are asked (strength_factor ends)", asked);
+    }
+    return told;
+  };
+  fmt::print(out, "{} {}; {}; bonds begin to soften under compression at {}\n",
+             heading("strengths", name), text("equal biaxial", 1.0, 1.0), text("shear", 1.0, -1.0),
+             text("", 0.0, -1.0).substr(1));
+}
+
 /// Prints stresses at which bonds begin to soften, and strengths under other stresses.
 void print_strengths(std::FILE* out, const DamageSpecification& damage, const std::string& name,
                      const FractureScale& scale, int dimension) {
@@ -115,6 +134,7 @@ void print_strengths(std::FILE* out, const DamageSpecification& damage, const st
   };
   const auto onset = [&](Loading loading) { return scale.pull->onset(loading, law).mean; };
   if (onset(Loading::tension) == 0.0) return;
+  if (damage.peak_factors) return print_surface(out, damage, name);
   fmt::print(out,
              "{} bonds begin to soften at {} of tension, {} of compression; equal biaxial strength "
              "{}, shear strength {}\n",

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "solvers/formulations/bond/bond_constants.hpp"
-#include "solvers/formulations/materials/strength_onsets_of.hpp"
+#include "solvers/formulations/solid/strength_onsets_of.hpp"
 #include "src/materials/bulk_bonds.hpp"
 
 namespace peristat {

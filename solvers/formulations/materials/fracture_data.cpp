@@ -429,11 +429,7 @@ DamageSpecification with_stretches(const DamageSpecification& damage, const std:
   if (scale.tear && damage.fracture_energy) require_quick(damage, table, *scale.tear);
   DamageSpecification found = damage.strength ? StrengthSearch(damage, table, scale).found()
                                               : law_of_peak(damage, table, scale, 0.0);
-  if (damage.has_surface()) {
-    found.strength_of_peak = *damage.strength;
-    found.peak_factors =
-        std::make_shared<const PeakFactors>(*scale.pull, law_of(found), damage.surface());
-  }
+  if (damage.has_surface()) found.strength_of_peak = *damage.strength;
   require_range(found, damage, key + ".damage.");
   return found;
 }

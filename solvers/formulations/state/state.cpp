@@ -3,8 +3,8 @@
 #include <memory>
 #include <utility>
 
-#include "solvers/formulations/materials/strength_onsets_of.hpp"
 #include "solvers/formulations/solid/solid_constants.hpp"
+#include "solvers/formulations/solid/strength_onsets_of.hpp"
 #include "solvers/formulations/specification/require.hpp"
 #include "solvers/formulations/state/state_model.hpp"
 

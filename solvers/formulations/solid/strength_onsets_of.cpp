@@ -1,4 +1,4 @@
-#include "solvers/formulations/materials/strength_onsets_of.hpp"
+#include "solvers/formulations/solid/strength_onsets_of.hpp"
 
 #include <optional>
 #include <utility>
@@ -7,9 +7,18 @@
 #include "solvers/formulations/specification/require.hpp"
 
 namespace peristat {
+
+MaterialStrength material_strength(const DamageSpecification& damage, const Moduli& moduli,
+                                   int dimension) {
+  const PlaneState plane = moduli.is_thin ? PlaneState::stress : PlaneState::strain;
+  return {damage.surface(), dimension,
+          lame_constants(moduli.youngs_modulus, moduli.poisson_ratio, dimension, plane),
+          dimension == 2 && !moduli.is_thin ? moduli.poisson_ratio : 0.0, damage.strength_factor};
+}
+
 std::shared_ptr<const StrengthOnsets> strength_onsets_of(const ModelSetting& setting,
                                                          Formulation::OfMaterial<Moduli> moduli) {
-  std::vector<std::optional<MaterialStrength>> strengths;
+  std::vector<std::optional<PointStrength>> strengths;
   bool is_any = false;
   for (const auto& [material, key, name] : setting.materials.all()) {
     strengths.emplace_back();
@@ -19,12 +28,8 @@ std::shared_ptr<const StrengthOnsets> strength_onsets_of(const ModelSetting& set
     require(setting.index_map.is_whole(), of_key, "", "is for one rank");
     require(setting.of.teeth == 0, of_key, "", "is not for mode \"path\"");
     const Moduli found = moduli(*material, key, setting.bonds, setting.points.spacing);
-    const PlaneState plane = found.is_thin ? PlaneState::stress : PlaneState::strain;
-    const int dimension = setting.points.dimension;
-    const bool is_plane_strain = dimension == 2 && !found.is_thin;
-    strengths.back() = {damage.surface(), damage.peak_factors,
-                        lame_constants(found.youngs_modulus, found.poisson_ratio, dimension, plane),
-                        is_plane_strain ? found.poisson_ratio : 0.0, damage.strength_factor};
+    strengths.back() = {material_strength(damage, found, setting.points.dimension),
+                        damage.peak_factors};
     is_any = true;
   }
   if (!is_any) return nullptr;

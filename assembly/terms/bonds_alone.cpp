@@ -1,0 +1,42 @@
+#include "assembly/terms/bonds_alone.hpp"
+
+#include <algorithm>
+
+#include "assembly/terms/failure/one_by_one.hpp"
+#include "src/geometry/counts_bond.hpp"
+
+namespace peristat {
+
+DamageGrowth growth_of_bonds_alone(const BondFailure& bonds, const Points& points,
+                                   std::span<const BondDrive> drives,
+                                   std::span<const double> history) {
+  const Bonds& network = bonds.bonds();
+  DamageGrowth all;
+  bonds.with_damage_law(history, [&](const auto& law) {
+    for (Index i = 0; i < network.points(); ++i) {
+      for (Offset bond = network.offset[i]; bond < network.offset[i + 1]; ++bond) {
+        DamageGrowth of_bond;
+        judge_driven(law.of_bond(bond), {0.0, i, bond}, drives[std::size_t(bond)].driving(),
+                     history[std::size_t(bond)], of_bond, [](const DrivenBond&) {});
+        all.utilisation = std::max(all.utilisation, of_bond.utilisation);
+        if (!counts_bond(points, i, network.partner[bond])) continue;
+        all.degrading += of_bond.degrading;
+        all.breaking += of_bond.breaking;
+      }
+    }
+  });
+  return all;
+}
+
+DamageGrowth damage_bonds_alone(const BondFailure& bonds, const Points& points,
+                                std::span<const BondDrive> drives, std::span<double> history) {
+  const DamageGrowth found = growth_of_bonds_alone(bonds, points, drives, history);
+  bonds.with_damage_law(history, [&](const auto& law) {
+    for (std::size_t b = 0; b < drives.size(); ++b) {
+      static_cast<void>(damage_driven(law.of_bond(Offset(b)), drives[b].driving(), history[b]));
+    }
+  });
+  return {found.degrading, found.breaking};
+}
+
+}  // namespace peristat
