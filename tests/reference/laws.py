@@ -12,6 +12,20 @@ FRACTIONS = ((numpy.arange(PANELS)[:, None] + (NODES + 1) / 2) / PANELS).ravel()
 SHARES = numpy.tile(WEIGHTS / 2 / PANELS, PANELS)
 
 
+def petersson(x):
+    """Stress over strength, and its slope, at a share of the opening at which no stress is left."""
+    is_steep = numpy.real(x) <= 2 / 9
+    return numpy.where(is_steep, 1 - 3 * x, 3 / 7 * (1 - x)), numpy.where(is_steep, -3.0, -3 / 7)
+
+
+def cornelissen(x):
+    fall, end = numpy.exp(-6.93 * x), 28 * numpy.exp(-6.93)
+    return (1 + (3 * x) ** 3) * fall - x * end, (81 * x**2 - 6.93 * (1 + (3 * x) ** 3)) * fall - end
+
+
+CURVES = {"bilinear": petersson, "cornelissen": cornelissen}
+
+
 def ends_of(table):
     """Onset and critical stretch of the law table: the last pair of the elastic part, and the last pair."""
     pairs = list(zip(table["stretches"], table["forces"], strict=True))
@@ -84,11 +98,27 @@ class Law:
         end = numpy.exp(-self.rate)
         exponential = (numpy.exp(-self.rate * fallen) - end) / (1 - end)
         left = numpy.where(self.name == numpy.array("exponential"), exponential, 1 - fallen)
+        for name in ("bilinear", "cornelissen"):
+            if numpy.any(self.name == numpy.array(name)):
+                left = numpy.where(self.name == numpy.array(name), self.opened(name, stretch), left)
         rising = self.onset + self.hardening * (stretch - self.onset)
         force = numpy.where(numpy.real(stretch) < peak, rising, highest * left)
         if self.curve is not None:
             force = numpy.where(self.name == numpy.array("table"), self.on_curve(stretch)[0], force)
         return force / stretch
+
+    def opened(self, name, stretch):
+        """Force over the largest one of a law of the opening w = s - f: f/s_m = g(w/s_c)."""
+        x, ratio = stretch / self.critical, self.onset / self.critical
+        # Newton's method, also for complex numbers; it descends from the right on a convex curve.
+        with numpy.errstate(all="ignore"):  # it means nothing for bonds of other laws
+            for _ in range(100):
+                force, slope = CURVES[name](x)
+                step = (ratio * force + x - stretch / self.critical) / (ratio * slope + 1)
+                x = x - step
+                if not (numpy.abs(step) > 1e-15).any():
+                    break
+            return CURVES[name](x)[0]
 
     def on_curve(self, stretch):
         """Force of the law table, and its integral from 0."""
@@ -128,8 +158,10 @@ class Law:
         if beyond.any():
             law = self.spread(real.shape).of(beyond)
             end = top[beyond]
-            # In two pieces: the force of the blended law has a kink at its peak.
-            kink = numpy.where(law.name == "blended", numpy.where(numpy.real(end) < law.peak, end, law.peak), law.onset)
+            # In two pieces: the force of the blended law has a kink at its peak, that of the bilinear one at its knee.
+            peak = numpy.where(law.name == "bilinear", law.onset / 3 + 2 / 9 * law.critical, law.peak)
+            has_kink = (law.name == "blended") | (law.name == "bilinear")
+            kink = numpy.where(has_kink, numpy.where(numpy.real(end) < peak, end, peak), law.onset)
             value[beyond] += law.between(law.onset, kink) + law.between(kink, end)
             if self.curve is not None:
                 value[beyond] = numpy.where(law.name == "table", law.on_curve(end)[1], value[beyond])
