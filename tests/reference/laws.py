@@ -109,6 +109,10 @@ class Law:
 
     def opened(self, name, stretch):
         """Force over the largest one of a law of the opening w = s - f: f/s_m = g(w/s_c)."""
+        return CURVES[name](self.share(name, stretch))[0]
+
+    def share(self, name, stretch):
+        """The opening over the critical stretch."""
         x, ratio = stretch / self.critical, self.onset / self.critical
         # Newton's method, also for complex numbers; it descends from the right on a convex curve.
         with numpy.errstate(all="ignore"):  # it means nothing for bonds of other laws
@@ -118,7 +122,18 @@ class Law:
                 x = x - step
                 if not (numpy.abs(step) > 1e-15).any():
                     break
-            return CURVES[name](x)[0]
+        return x
+
+    def work_of_opening(self, name, stretch):
+        """Integral of f ds = f (dw + df) from 0, over the opening: as a function of s it may be steep."""
+        onset, critical = (numpy.broadcast_to(part, stretch.shape)[:, None] for part in (self.onset, self.critical))
+        x = self.share(name, stretch)
+        kink = numpy.where(numpy.real(x) < 2 / 9, x, 2 / 9)
+        work = self.onset**2 / 2
+        for start, end in ((0 * x, kink), (kink, x)):
+            force, slope = CURVES[name](start[:, None] + (end - start)[:, None] * FRACTIONS)
+            work = work + (end - start) * ((onset * force * (onset * slope + critical)) @ SHARES)
+        return work
 
     def on_curve(self, stretch):
         """Force of the law table, and its integral from 0."""
@@ -158,13 +173,15 @@ class Law:
         if beyond.any():
             law = self.spread(real.shape).of(beyond)
             end = top[beyond]
-            # In two pieces: the force of the blended law has a kink at its peak, that of the bilinear one at its knee.
-            peak = numpy.where(law.name == "bilinear", law.onset / 3 + 2 / 9 * law.critical, law.peak)
-            has_kink = (law.name == "blended") | (law.name == "bilinear")
-            kink = numpy.where(has_kink, numpy.where(numpy.real(end) < peak, end, peak), law.onset)
+            # In two pieces: the force of the blended law has a kink at its peak.
+            kink = numpy.where(law.name == "blended", numpy.where(numpy.real(end) < law.peak, end, law.peak), law.onset)
             value[beyond] += law.between(law.onset, kink) + law.between(kink, end)
             if self.curve is not None:
                 value[beyond] = numpy.where(law.name == "table", law.on_curve(end)[1], value[beyond])
+            for name in CURVES:
+                if (law.name == name).any():
+                    with numpy.errstate(all="ignore"):
+                        value[beyond] = numpy.where(law.name == name, law.work_of_opening(name, end), value[beyond])
         return value
 
     def between(self, start, end):
