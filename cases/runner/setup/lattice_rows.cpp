@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "src/measures/small_algebra.hpp"
 
@@ -52,6 +53,22 @@ std::vector<Coordinates> normals_of_rows(const Lattice& lattice) {
   return normals;
 }
 
+/// Angle between a crack and the nearest row [degrees]; none for outlines and shapes.
+std::optional<double> angle_to_row(const std::vector<Coordinates>& vertices,
+                                   const Lattice& lattice) {
+  const Coordinates normal = normal_of(vertices);
+  const double c = std::cos(lattice.angle / per_radian), s = std::sin(lattice.angle / per_radian);
+  const Coordinates own{c * normal[0] + s * normal[1], c * normal[1] - s * normal[0], normal[2]};
+  if (!(dot<3>(own, own) > 0.0)) return std::nullopt;
+  double least = 90.0;
+  for (const Coordinates& row : normals_of_rows(lattice)) {
+    const Coordinates across = cross(own, row);
+    const double angle = std::atan2(std::sqrt(dot<3>(across, across)), std::abs(dot<3>(own, row)));
+    least = std::min(least, per_radian * angle);
+  }
+  return least;
+}
+
 bool lies_in_symmetry(const Case& from, const std::vector<Coordinates>& vertices) {
   return std::ranges::any_of(from.constraints.symmetries, [&](const auto& plane) {
     const auto* const lattice = std::get_if<Lattice>(&from.body);
@@ -77,27 +94,13 @@ bool has_rows_to_lock_to(const Case& from) {
           }));
 }
 
-std::optional<double> angle_to_row(const Crack& crack, const Lattice& lattice) {
-  const Coordinates normal = normal_of(vertices_of(crack));
-  const double c = std::cos(lattice.angle / per_radian), s = std::sin(lattice.angle / per_radian);
-  const Coordinates own{c * normal[0] + s * normal[1], c * normal[1] - s * normal[0], normal[2]};
-  if (!(dot<3>(own, own) > 0.0)) return std::nullopt;
-  double least = 90.0;
-  for (const Coordinates& row : normals_of_rows(lattice)) {
-    const Coordinates across = cross(own, row);
-    const double angle = std::atan2(std::sqrt(dot<3>(across, across)), std::abs(dot<3>(own, row)));
-    least = std::min(least, per_radian * angle);
-  }
-  return least;
-}
-
 std::vector<std::string> cracks_along_rows(const Case& from) {
   std::vector<std::string> keys;
   if (!has_rows_to_lock_to(from)) return keys;
   for (std::size_t k = 0; k < from.cracks.size(); ++k) {
-    const std::optional<double> angle = angle_to_row(from.cracks[k], std::get<Lattice>(from.body));
-    if (!angle || *angle > along_row + 1e-9) continue;
-    if (lies_in_symmetry(from, vertices_of(from.cracks[k]))) continue;
+    const std::vector<Coordinates> vertices = vertices_of(from.cracks[k]);
+    const std::optional<double> angle = angle_to_row(vertices, std::get<Lattice>(from.body));
+    if (!angle || *angle > along_row + 1e-9 || lies_in_symmetry(from, vertices)) continue;
     keys.push_back("crack[" + std::to_string(k) + "]");
   }
   return keys;

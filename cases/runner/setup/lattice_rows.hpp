@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,12 +21,8 @@ inline constexpr double along_row = 10.0;
 /// True if the points stand on a lattice, unperturbed, and bonds of theirs may fail.
 [[nodiscard]] bool has_rows_to_lock_to(const Case& from);
 
-/// Angle between a crack and the nearest of the lattice's lines (3D: planes) along axes and
-/// diagonals [degrees]; none for outlines and shapes.
-[[nodiscard]] std::optional<double> angle_to_row(const Crack& crack, const Lattice& lattice);
-
-/// Keys of the initial cracks along rows to which they may lock. A crack in a plane of symmetry is
-/// left out, as it can't turn.
+/// Keys of the straight initial cracks along rows to which they may lock: lines of the lattice (3D:
+/// planes) along axes and diagonals. A crack in a plane of symmetry is left out, as it can't turn.
 [[nodiscard]] std::vector<std::string> cracks_along_rows(const Case& from);
 
 }  // namespace peristat
