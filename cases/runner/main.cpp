@@ -210,7 +210,9 @@ void add_bond_calibration(CLI::App& command, CommandLine& line) {
                               {"tanh_continuous", Law::tanh_continuous},
                               {"linear", Law::linear},
                               {"exponential", Law::exponential},
-                              {"blended", Law::blended}}));
+                              {"blended", Law::blended},
+                              {"bilinear", Law::bilinear},
+                              {"cornelissen", Law::cornelissen}}));
   add("--fracture-energy", damage.fracture_energy, "[J/m2]");
   add("--fracture-toughness", damage.fracture_toughness, "[Pa sqrt(m)]");
   add("--strength", damage.strength, "[Pa]");

@@ -25,6 +25,8 @@ struct CrackTipValues {
   double spread = 0.0;  ///< largest difference between J and that of a third of the ring, over J
   std::array<double, 3> k{};  ///< K_I, K_II, K_III [Pa m^1/2]
   double t_stress = 0.0;      ///< [Pa]
+  /// T* = T sqrt(pi delta)/sqrt(K_I^2 + K_II^2), delta the horizon at the tip; 0 if both K are 0.
+  double t_star = 0.0;
 };
 
 /// A plane frame at the tip: e1 ahead, e2 across the crack, e3 along the front.

@@ -189,6 +189,22 @@ void CrackTipIntegrals::weigh() {
     weighted_.push_back(weighted);
   }
   factor_ = (is_on_plane_ ? 2.0 : 1.0) / front_length(points_.own());
+  horizon_ = horizon_at_tip();
+}
+
+/// Horizon of the point next to the tip, where points have their own.
+double CrackTipIntegrals::horizon_at_tip() const {
+  if (points_.horizons.empty()) return setting_.horizon;
+  double nearest = std::numeric_limits<double>::infinity(), horizon = 0.0;
+  for (const Weighted& weighted : weighted_) {
+    const Coordinates at = frame_.components(points_.position(weighted.point));
+    const double r = std::hypot(at[0], at[1]);
+    if (!(r < nearest)) continue;
+    nearest = r;
+    horizon = points_.horizons[std::size_t(points_.source(weighted.point))];
+  }
+  const double of_all = -sums().largest_of_all(-nearest);
+  return sums().largest_of_all(nearest == of_all ? horizon : 0.0);
 }
 
 double CrackTipIntegrals::largest(std::span<const double> values) const {
@@ -324,6 +340,8 @@ CrackTipValues CrackTipIntegrals::values(Assembler& assembler, const StateView& 
   const bool has_mode_3 = points_.dimension == 3 && !is_on_plane_ && !is_front_halved_;
   if (has_mode_3) found.k[2] = elasticity.shear_modulus * with(2);
   found.t_stress = elasticity.plane_modulus * with(3);
+  const double k = std::hypot(found.k[0], found.k[1]);
+  if (k > 0.0) found.t_star = found.t_stress * std::sqrt(std::numbers::pi * horizon_) / k;
   return found;
 }
 

@@ -37,7 +37,8 @@ struct CrackTipSetting {
 /// int (P : g (x) grad q - W dq/dX1) dA (Li, Shih and Needleman 1985 at finite strain).
 ///
 /// K and T follow from the interaction with an auxiliary field v at small strain, M = dJ(u + s
-/// v)/ds at s = 0: K_I = E' M/2, K_III = mu M, T = E' M.
+/// v)/ds at s = 0: K_I = E' M/2, K_III = mu M, T = E' M. T* relates T to the stress of the singular
+/// field at a distance of half a horizon, K/sqrt(pi delta).
 class CrackTipIntegrals {
  public:
   /// @param key of the tip, for errors
@@ -73,6 +74,7 @@ class CrackTipIntegrals {
   void check_ring(const std::string& key) const;
   void weigh();
   [[nodiscard]] double front_length(Index points) const;
+  [[nodiscard]] double horizon_at_tip() const;
   [[nodiscard]] Sums sums() const { return {setting_.index_map, points_.dimension}; }
   [[nodiscard]] double largest(std::span<const double> values) const;
   [[nodiscard]] Rings fluxes(Assembler& assembler, const StateView& at,
@@ -91,7 +93,8 @@ class CrackTipIntegrals {
   bool is_on_plane_ = false;      // the crack lies in a plane of symmetry
   bool is_front_halved_ = false;  // a plane of symmetry crosses the front
   std::vector<Weighted> weighted_;
-  double factor_ = 1.0;  // from sums over the points to J
+  double factor_ = 1.0;   // from sums over the points to J
+  double horizon_ = 0.0;  // at the tip [m]
 };
 
 }  // namespace peristat

@@ -93,6 +93,16 @@ std::vector<double> kinks_of(const ForceTable& law) {
   }
   return kinks;
 }
+/// At small shares of the opening the stretch of a steep curve is nearly stationary: pieces shrink
+/// towards the onset.
+std::vector<double> kinks_of(const OpeningLaw& law) {
+  if (law.curve == OpeningCurve::bilinear) return {law.stretch_at(kink_of_bilinear)};
+  std::vector<double> kinks;
+  for (const double share : {0.3, 0.09, 0.027, 0.008, 0.0024}) {
+    kinks.push_back(law.stretch_at(share));
+  }
+  return kinks;
+}
 
 /// Share of the range from onset to critical that the quadrature's ten points resolve.
 double share_per_step(const CriticalStretch&) { return 1.0; }
@@ -101,6 +111,7 @@ double share_per_step(const ForceEnvelope& law) {
   return 1.0 / std::max(1.0, std::ceil(law.decay / 4.0));
 }
 double share_per_step(const ForceTable&) { return 1.0; }
+double share_per_step(const OpeningLaw&) { return 1.0; }
 
 /// int T d(e^2/2) over the opening, e the relative change of the measure.
 template <class Law, class Change>

@@ -6,6 +6,7 @@
 #include "src/potentials/force_envelope.hpp"
 #include "src/potentials/force_table.hpp"
 #include "src/potentials/harmonic.hpp"
+#include "src/potentials/opening_law.hpp"
 #include "src/potentials/saw_tooth.hpp"
 #include "src/potentials/stepwise_law.hpp"
 #include "src/potentials/tanh_degradation.hpp"
@@ -53,10 +54,11 @@ struct OneLawOf {
 };
 
 /// The laws that a material may have.
-using AnyLaw = OneLawOf<CriticalStretch, TanhDegradation, ForceEnvelope, ForceTable>;
+using AnyLaw = OneLawOf<CriticalStretch, TanhDegradation, ForceEnvelope, ForceTable, OpeningLaw>;
 
 /// Law of a bond: one of these, or the saw-tooth of one.
-using AnyBondLaw = OneLawOf<CriticalStretch, TanhDegradation, ForceEnvelope, ForceTable, SawTooth>;
+using AnyBondLaw =
+    OneLawOf<CriticalStretch, TanhDegradation, ForceEnvelope, ForceTable, OpeningLaw, SawTooth>;
 
 [[nodiscard]] inline AnyBondLaw bond_law(const AnyLaw& law) {
   return std::visit([](const auto& one) { return AnyBondLaw{one}; }, law.law);

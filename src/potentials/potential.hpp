@@ -11,6 +11,7 @@
 #include "src/potentials/force_envelope.hpp"
 #include "src/potentials/force_table.hpp"
 #include "src/potentials/harmonic.hpp"
+#include "src/potentials/opening_law.hpp"
 #include "src/potentials/saw_tooth.hpp"
 #include "src/potentials/tanh_degradation.hpp"
 
@@ -43,8 +44,8 @@ template <Potential... Whole>
 struct BondPotentials {
   using Any = std::variant<Whole..., Degraded<CriticalStretch, Whole>...,
                            Degraded<TanhDegradation, Whole>..., Degraded<ForceEnvelope, Whole>...,
-                           Degraded<ForceTable, Whole>..., Degraded<SawTooth, Whole>...,
-                           DegradedByBond<Whole>...>;
+                           Degraded<ForceTable, Whole>..., Degraded<OpeningLaw, Whole>...,
+                           Degraded<SawTooth, Whole>..., DegradedByBond<Whole>...>;
 
   /// Calls visit(potential) for each of them, with the modulus 1.
   template <class Visit>

@@ -1,5 +1,6 @@
 """J integral, stress intensity factors and T-stress of [[crack_tip]]."""
 
+import json
 import math
 import re
 
@@ -9,6 +10,7 @@ import numpy
 from tests.acceptance.constraints_test import plane
 from tests.acceptance.programme_test import Programmes
 from tests.reference.case import Case
+from tests.reference.centre_crack import centre_crack
 from tests.reference.crack_tip import CrackTip, Elasticity
 from tests.reference.program import ROOT
 from tests.reference.verify import Verification
@@ -76,7 +78,7 @@ class CrackTips(Programmes):
 
     def assert_same(self, row, expected):
         largest = max(abs(value) for name, value in expected.items() if name.startswith("K"))
-        size = {"J": expected["J"], "T": largest / math.sqrt(2 * math.pi * 6e-3)}
+        size = {"J": expected["J"], "T": largest / math.sqrt(2 * math.pi * 6e-3), "T_star": largest / math.hypot(expected["K1"], expected["K2"])}
         for name, value in expected.items():
             self.assertAlmostEqual(row[f"tip_{name}"], value, delta=1e-6 * size.get(name, largest), msg=name)
 
@@ -107,6 +109,103 @@ class CrackTips(Programmes):
         for name in ("K1", "K2"):
             self.assertLess(abs(row[f"tip_{name}"]), 0.01 * E * strain * math.sqrt(math.pi * 0.01))
 
+    def test_t_star_of_every_model(self):
+        """A mixed field with a T-stress, given to the rim. K_I, which takes a share of T, and T are within 4 %."""
+        mix, horizon = 0.344, 3.015 * 5e-4
+        size = 1e6 * math.hypot(1, mix) / math.sqrt(math.pi * horizon)
+        for nu, material in (
+            (1 / 3, f'youngs_modulus = {E}\n[quadrature]\nvolume_correction = "linear"'),
+            (0.4, f'model = "cpd"\nyoungs_modulus = {E}\npoisson_ratio = 0.4'),
+            (0.2, f'model = "state"\nyoungs_modulus = {E}\npoisson_ratio = 0.2'),
+        ):
+            own = Elasticity(E, nu, True)
+            fields = [williams(mode, own.shear, own.kolosov) for mode in (0, 1)]
+            for t_star in (-0.4, -0.1, 0, 0.4):
+                with self.subTest(material=material, t_star=t_star):
+                    strain = t_star * size / E
+                    field = [f"{fields[0][0]}+{mix}*({fields[1][0]})+{strain}*load*x",
+                             f"{fields[0][1]}+{mix}*({fields[1][1]})-{nu * strain}*load*y"]  # fmt: skip
+                    row = self.rows(square(field, material=material), "lattice.spacing=5e-4")[-1]
+                    self.assertAlmostEqual(row["tip_T_star"], t_star, delta=0.008 + 0.02 * abs(t_star))
+                    self.assertAlmostEqual(row["tip_T"] / size, t_star, delta=0.01 + 0.03 * abs(t_star))
+                    k = math.hypot(row["tip_K1"], row["tip_K2"])
+                    self.assertAlmostEqual(row["tip_T_star"] * k, row["tip_T"] * math.sqrt(math.pi * horizon), delta=1e-6 * k)
+
+    def test_a_crack_in_an_endless_plate(self):
+        """Pulled at an angle to the crack (Westergaard's functions): K_I, K_II and T = sigma cos(2 angle)."""
+        a, stress, own = 0.025, 1e8, Elasticity(E, 1 / 3, True)
+        k = own.kolosov
+        # sqrt(z^2 - a^2) and z/sqrt(z^2 - a^2), cut along the crack from x = -2a to 0, whose middle is at -a.
+        left, right = f"(x+{2 * a})", "x"
+        size = f"sqrt(sqrt(({left}^2+y^2)*({right}^2+y^2)))"
+        half = f"((atan2(y,{left})+atan2(y,{right}))/2)"
+        root = (f"({size}*cos({half}))", f"({size}*sin({half}))")
+        over = (f"(((x+{a})*cos({half})+y*sin({half}))/{size})", f"((y*cos({half})-(x+{a})*sin({half}))/{size})")
+        for degrees in (90, 60, 30):
+            angle = math.radians(degrees)
+            one, two = stress * math.sin(angle) ** 2, stress * math.sin(angle) * math.cos(angle)
+            t = stress * math.cos(2 * angle)
+            unit = f"load/{2 * own.shear}"
+            field = [
+                f"{unit}*({one}*({(k - 1) / 2}*{root[0]}-y*{over[1]})+{two}*({(k + 1) / 2}*{root[1]}+y*{over[0]}))+{t / E}*load*x",
+                f"{unit}*({one}*({(k + 1) / 2}*{root[1]}-y*{over[0]})+{two}*(-{(k - 1) / 2}*{root[0]}-y*{over[1]}))-{t / 3 / E}*load*y",
+            ]
+            with self.subTest(degrees):
+                row = self.rows(square(field), "lattice.spacing=5e-4")[-1]
+                full = stress * math.sqrt(math.pi * a)
+                self.assertAlmostEqual(row["tip_K1"] / full, one / stress, delta=0.02)
+                self.assertAlmostEqual(row["tip_K2"] / full, two / stress, delta=0.02)
+                self.assertAlmostEqual(row["tip_T"] / stress, t / stress, delta=0.03)
+                expected = t * math.sqrt(math.pi * 3.015 * 5e-4) / math.hypot(one, two) / math.sqrt(math.pi * a)
+                self.assertAlmostEqual(row["tip_T_star"], expected, delta=0.01)
+
+    def test_a_plate_under_tension(self):
+        """As wide as high, with free sides: K_I and T of the boundary collocation of tests/reference/centre_crack.py, which
+        has the handbook's K_I of a long plate and the T/K of Leevers and Radon (1982), -1 - 0.085 a/W."""
+        for share in (0.1, 0.3, 0.5):
+            k, t, error = centre_crack(share, 1, 2.5)
+            handbook = (1 - 0.025 * share**2 + 0.06 * share**4) / math.sqrt(math.cos(math.pi * share / 2))
+            self.assertLess(abs(k / handbook - 1) + error, 6e-3)
+            k, t, error = centre_crack(share, 1, 1)
+            self.assertLess(abs(t / k + 1 + 0.085 * share) + error, 6e-3)
+        k, t, _ = centre_crack(0.3, 1, 1)
+        text = """\
+dimension = 2
+[lattice]
+spacing = 5e-4
+thickness = 1e-3
+[[lattice.shape]]
+add = "box"
+max = [0.03, 0.03]
+min = [0, 0]
+[[crack]]
+from = [-9e-3, 0]
+to = [9e-3, 0]
+[material]
+youngs_modulus = 200e9
+calibration = "lattice"
+[quadrature]
+volume_correction = "linear"
+surface_correction = "energy"
+[[symmetry]]
+axis = "x"
+[[symmetry]]
+axis = "y"
+[[load]]
+side = "y+"
+depth = "horizon"
+traction = [0, "1e7*load"]
+[[crack_tip]]
+name = "tip"
+at = [9e-3, 0]
+direction = [1, 0]
+"""
+        row = self.rows(text)[-1]
+        # Measured 1.019 and 0.982: the horizon is a sixth of the crack's half.
+        self.assertAlmostEqual(row["tip_K1"] / (1e7 * math.sqrt(math.pi * 9e-3)) / k, 1, delta=0.025)
+        self.assertAlmostEqual(row["tip_T"] / 1e7 / t, 1, delta=0.025)
+        self.assertAlmostEqual(row["tip_T_star"] / (t / k * math.sqrt(3.015 * 5e-4 / 9e-3)), 1, delta=0.04)
+
     def test_factors_do_not_depend_on_the_unit_of_length(self):
         """The same square scaled from 1 m to 1 mm and 1 km: at the same modulus J grows with the length, K with its
         root."""
@@ -126,6 +225,33 @@ class CrackTips(Programmes):
             found.append((row["tip_J"] / unit, row["tip_K1"] / unit**0.5, row["tip_K2"] / unit**0.5, row["tip_T"]))
         for values in found[1:]:
             numpy.testing.assert_allclose(values, found[0], rtol=1e-8)
+
+    def test_a_mixed_crack_with_a_negative_t_stress_is_warned_of_where_it_may_lock_to_rows(self):
+        own, text = Elasticity(E, 1 / 3, True), {}
+        fields = [williams(mode, own.shear, own.kolosov) for mode in (0, 1)]
+        law = f'youngs_modulus = {E}\n[material.damage]\nlaw = "critical_stretch"\ncritical = 0.5'
+        for name, mix, strain in (("mixed", 0.344, -2e-5), ("low", 0.344, -1e-6), ("positive", 0.344, 2e-5), ("opening", 0.01, -2e-5)):
+            text[name] = square([f"{one}+{mix}*({two})+{strain}*load*({axis})" for one, two, axis in zip(*fields, ("x", "-y/3", "0"))],
+                                material=law)  # fmt: skip
+        for name, warns, *more in (
+            ("mixed", True),
+            ("low", False),
+            ("positive", False),
+            ("opening", False),
+            ("mixed", False, 'material.damage={law="none"}'),
+            ("mixed", False, 'lattice.points="blue_noise"'),
+            ("mixed", True, "lattice.angle=18"),
+        ):
+            with self.subTest(name=name, more=more):
+                row = self.rows(text[name], *more)[-1]
+                told = json.loads((self.folder / "out/summary.json").read_text())["warnings"]
+                told = [warning for warning in told if "locks to a row" in warning]
+                self.assertEqual(len(told), warns, (row["tip_T_star"], told))
+                if warns:
+                    self.assertIn(f"T* = {row['tip_T_star']:.2g}", told[0])
+                    self.assertIn("blue_noise", told[0])
+                if name == "mixed":
+                    self.assertLess(row["tip_T_star"], -0.1)
 
     def test_half_a_square_is_the_whole(self):
         thin = Elasticity(E, 1 / 3, True)

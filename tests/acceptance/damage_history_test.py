@@ -20,6 +20,8 @@ LAWS = (
     {"law": "linear", "onset": 0.012, "critical": 0.05},
     {"law": "exponential", "onset": 0.01, "critical": 0.045, "rate": 4.0},
     {"law": "blended", "onset": 0.01, "peak": 0.025, "critical": 0.045, "hardening": 0.3},
+    {"law": "bilinear", "onset": 0.01, "critical": 0.045},
+    {"law": "cornelissen", "onset": 0.006, "critical": 0.045},
     {"law": "table", "stretches": [0.01, 0.02, 0.03, 0.045], "forces": [0.01, 0.013, 0.006, 0.002]},
 )
 MODES = ("newton", "relaxation", "adaptive")

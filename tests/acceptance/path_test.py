@@ -47,6 +47,7 @@ mode = "path"
 CRACK = '[[crack]]\nfrom = [0.006, 0.0]\nto = [0.006, 0.0015]\n'
 BRITTLE = 'law = "critical_stretch"\ncritical = 0.01\n'
 LINEAR = 'law = "linear"\nonset = 0.005\ncritical = 0.02\n'
+OPENING = 'law = "cornelissen"\nonset = 0.004\ncritical = 0.08\n'
 TANH = 'law = "tanh"\nonset = 0.008\ncritical = 0.012\n'
 
 
@@ -95,6 +96,9 @@ class Judged(Paths):
 
     def test_tanh_softening(self):
         self.judged(strip(TANH, more="[loading]\nteeth = 3\n"))
+
+    def test_softening_by_the_opening(self):
+        self.judged(strip(OPENING, more="[loading]\nteeth = 2\n"))
 
     def test_one_tooth(self):
         self.judged(strip(LINEAR, more="[loading]\nteeth = 1\n"))

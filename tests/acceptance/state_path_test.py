@@ -16,6 +16,7 @@ from tests.same_results import differences
 PLATE = cut(SOLID, max="[1.0, 1.2]") + CRACK + PULL
 BRITTLE = {"law": "critical_stretch", "critical": 0.01}
 LINEAR = {"law": "linear", "onset": 0.006, "critical": 0.015}
+OPENING = {"law": "cornelissen", "onset": 0.0015, "critical": 0.03}
 
 
 def damage(law):
@@ -109,6 +110,10 @@ class Judged(Paths):
             with self.subTest(nu):
                 rows = self.followed(plate(LINEAR, nu, "teeth = 2\n"), LINEAR, teeth=2)
                 self.assertGreater(rows["broken_bonds"][-1], 10)
+
+    def test_softening_by_the_opening(self):
+        rows = self.followed(plate(OPENING, more="teeth = 2\n"), OPENING, teeth=2)
+        self.assertGreater(rows["broken_bonds"][-1], 10)
 
     def test_avalanches_at_held_loads(self):
         """A path that would go back behind an entry of the table."""

@@ -34,7 +34,7 @@ WORDS = """dimension title lattice points ratio spacing horizon_ratio thickness 
     strain temperature change thermal_expansion volumes neighbours at cut_bonds dynamics end_time time_step step_share history_every initial velocity scheme
     spectral_radius absorbing degree traction_form boundary statistic expected
     kinematics operator stabilisation foundation units force time mass stress energy length_unit""".split()
-CHOICES = """rms_error max_error divergence blue_noise none linear exact exact_centroids volume energy mean bulk bond cpd lps collocation full paper surface stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended table piecewise_constant cubic quintic septic gaussian inverse newton
+CHOICES = """rms_error max_error divergence blue_noise none linear exact exact_centroids volume energy mean bulk bond cpd lps collocation full paper surface stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended bilinear cornelissen table piecewise_constant cubic quintic septic gaussian inverse newton
     relaxation adaptive flow dynamic auto cholesky pcg minres gmres lu bicgstab local_operator jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk ellipse image stl polygon
     cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length crack_angle

@@ -14,6 +14,8 @@ LAWS = {
     "linear": {"law": "linear", "onset": 0.025, "critical": 0.09},
     "exponential": {"law": "exponential", "onset": 0.02, "critical": 0.1, "rate": 2.5},
     "blended": {"law": "blended", "onset": 0.02, "peak": 0.045, "critical": 0.085, "hardening": 0.4},
+    "bilinear": {"law": "bilinear", "onset": 0.02, "critical": 0.09},
+    "cornelissen": {"law": "cornelissen", "onset": 0.012, "critical": 0.09},
     "table": {"law": "table", "stretches": [0.02, 0.03, 0.05, 0.09], "forces": [0.02, 0.024, 0.01, 0.003]},
 }
 

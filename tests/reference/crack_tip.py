@@ -98,4 +98,6 @@ class CrackTip:
         factor = [self.elasticity.plane / 2, self.elasticity.plane / 2, self.elasticity.shear, self.elasticity.plane]
         names = ["K1", "K2", "K3", "T"] if self.dimension == 3 else ["K1", "K2", None, "T"]
         found = {name: factor[mode] * self.interaction(u, mode) for mode, name in enumerate(names) if name}
+        k = numpy.hypot(found["K1"], found["K2"])
+        found["T_star"] = found["T"] * numpy.sqrt(numpy.pi * self.mechanics.case.horizon()) / k
         return {"J": self.flux(u)} | found

@@ -12,6 +12,20 @@ FRACTIONS = ((numpy.arange(PANELS)[:, None] + (NODES + 1) / 2) / PANELS).ravel()
 SHARES = numpy.tile(WEIGHTS / 2 / PANELS, PANELS)
 
 
+def petersson(x):
+    """Stress over strength, and its slope, at a share of the opening at which no stress is left."""
+    is_steep = numpy.real(x) <= 2 / 9
+    return numpy.where(is_steep, 1 - 3 * x, 3 / 7 * (1 - x)), numpy.where(is_steep, -3.0, -3 / 7)
+
+
+def cornelissen(x):
+    fall, end = numpy.exp(-6.93 * x), 28 * numpy.exp(-6.93)
+    return (1 + (3 * x) ** 3) * fall - x * end, (81 * x**2 - 6.93 * (1 + (3 * x) ** 3)) * fall - end
+
+
+CURVES = {"bilinear": petersson, "cornelissen": cornelissen}
+
+
 def ends_of(table):
     """Onset and critical stretch of the law table: the last pair of the elastic part, and the last pair."""
     pairs = list(zip(table["stretches"], table["forces"], strict=True))
@@ -84,11 +98,42 @@ class Law:
         end = numpy.exp(-self.rate)
         exponential = (numpy.exp(-self.rate * fallen) - end) / (1 - end)
         left = numpy.where(self.name == numpy.array("exponential"), exponential, 1 - fallen)
+        for name in ("bilinear", "cornelissen"):
+            if numpy.any(self.name == numpy.array(name)):
+                left = numpy.where(self.name == numpy.array(name), self.opened(name, stretch), left)
         rising = self.onset + self.hardening * (stretch - self.onset)
         force = numpy.where(numpy.real(stretch) < peak, rising, highest * left)
         if self.curve is not None:
             force = numpy.where(self.name == numpy.array("table"), self.on_curve(stretch)[0], force)
         return force / stretch
+
+    def opened(self, name, stretch):
+        """Force over the largest one of a law of the opening w = s - f: f/s_m = g(w/s_c)."""
+        return CURVES[name](self.share(name, stretch))[0]
+
+    def share(self, name, stretch):
+        """The opening over the critical stretch."""
+        x, ratio = stretch / self.critical, self.onset / self.critical
+        # Newton's method, also for complex numbers; it descends from the right on a convex curve.
+        with numpy.errstate(all="ignore"):  # it means nothing for bonds of other laws
+            for _ in range(100):
+                force, slope = CURVES[name](x)
+                step = (ratio * force + x - stretch / self.critical) / (ratio * slope + 1)
+                x = x - step
+                if not (numpy.abs(step) > 1e-15).any():
+                    break
+        return x
+
+    def work_of_opening(self, name, stretch):
+        """Integral of f ds = f (dw + df) from 0, over the opening: as a function of s it may be steep."""
+        onset, critical = (numpy.broadcast_to(part, stretch.shape)[:, None] for part in (self.onset, self.critical))
+        x = self.share(name, stretch)
+        kink = numpy.where(numpy.real(x) < 2 / 9, x, 2 / 9)
+        work = self.onset**2 / 2
+        for start, end in ((0 * x, kink), (kink, x)):
+            force, slope = CURVES[name](start[:, None] + (end - start)[:, None] * FRACTIONS)
+            work = work + (end - start) * ((onset * force * (onset * slope + critical)) @ SHARES)
+        return work
 
     def on_curve(self, stretch):
         """Force of the law table, and its integral from 0."""
@@ -133,6 +178,10 @@ class Law:
             value[beyond] += law.between(law.onset, kink) + law.between(kink, end)
             if self.curve is not None:
                 value[beyond] = numpy.where(law.name == "table", law.on_curve(end)[1], value[beyond])
+            for name in CURVES:
+                if (law.name == name).any():
+                    with numpy.errstate(all="ignore"):
+                        value[beyond] = numpy.where(law.name == name, law.work_of_opening(name, end), value[beyond])
         return value
 
     def between(self, start, end):

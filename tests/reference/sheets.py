@@ -83,6 +83,10 @@ def root(rising, low, high):
     return middle
 
 
+# Least critical stretch over onset of the laws whose force follows from an opening.
+STEEPEST = {"bilinear": 3.0, "cornelissen": 6.93 + 28 * math.exp(-6.93)}
+
+
 def total_work(damage):
     return float(Law.of_table(damage).moment(numpy.array([float(damage["critical"])]))[0])
 
@@ -102,9 +106,9 @@ def peak_force(damage):
 
 def with_critical(damage, work):
     """The critical stretch at which the law dissipates a given work."""
-    start = damage.get("peak", damage["onset"])
+    start = damage.get("peak", damage["onset"]) * STEEPEST.get(damage["law"], 1.0)
     missing = lambda critical: total_work(damage | {"critical": critical}) - work
-    return damage | {"critical": root(missing, start * (1 + 1e-9), 4 * (start + work / start))}
+    return damage | {"critical": root(missing, start * (1 + 1e-9), 4 * start + 6 * work / damage["onset"])}
 
 
 def with_stretches(damage, of_work, pull=None):
@@ -141,7 +145,7 @@ def of_bonds(damage, work, peak):
         damage.setdefault("onset", peak / 2)
         if peak:
             damage["peak"] = damage["onset"] + (peak - damage["onset"]) / hardening
-    elif peak and damage["law"] in ("linear", "exponential"):
+    elif peak and damage["law"] in ("linear", "exponential", "bilinear", "cornelissen"):
         damage["onset"] = peak
     elif peak:
         complete = lambda onset: with_critical(damage | {"onset": onset}, work) if work else damage | {"onset": onset}

@@ -125,12 +125,15 @@ class Generator:
         if self.of_kernel.random() < 0.3:
             material["influence"] = str(self.of_kernel.choice([*POWERS, "gaussian"]))
         law = self.choice("none", "critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended",
-                          "table", weights=(0.2, 0.2, 0.15, 0.2, 0.1, 0.05, 0.05, 0.05))  # fmt: skip
+                          "table", "bilinear", "cornelissen",
+                          weights=(0.2, 0.2, 0.15, 0.2, 0.07, 0.04, 0.04, 0.04, 0.03, 0.03))  # fmt: skip
         self.critical = self.power(-4, -1)
         if law != "none":
             damage = {"law": law, "critical": self.critical}
             if law != "critical_stretch":
                 damage["onset"] = self.critical * self.between(0.2, 0.95)
+            if law in ("bilinear", "cornelissen"):
+                damage["onset"] *= {"bilinear": 1 / 3, "cornelissen": 1 / 7}[law]
             if law in ("tanh", "tanh_continuous", "exponential"):
                 damage["rate"] = self.power(-0.5, 1)
             if law == "blended":

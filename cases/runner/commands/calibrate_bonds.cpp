@@ -147,7 +147,8 @@ std::string damage_section(const DamageSpecification& damage, const FractureScal
   }
   pairs.push_back(exact_pair("characteristic_length",
                              scale.youngs_modulus * energy / (strength.mean * strength.mean)));
-  pairs.push_back(exact_pair("largest_spacing", largest_spacing(energy, strength.mean, scale)));
+  pairs.push_back(
+      exact_pair("largest_spacing", largest_spacing(damage, energy, strength.mean, scale)));
   return object(pairs);
 }
 

@@ -1,11 +1,13 @@
 #include "cases/runner/commands/run.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 
 #include <H5public.h>
 #include <fmt/format.h>
@@ -24,6 +26,7 @@
 #include "cases/runner/results/tables/driven_sets.hpp"
 #include "cases/runner/results/tables/motion_columns.hpp"
 #include "cases/runner/setup/body.hpp"
+#include "cases/runner/setup/lattice_rows.hpp"
 #include "cases/runner/setup/part_body.hpp"
 #include "cases/runner/setup/preflight.hpp"
 #include "cases/runner/setup/preflight_rules.hpp"
@@ -192,6 +195,7 @@ class CaseRun {
       preflight_ += fmt::format("{}: {}\n", label, fact);
     }
     summary_.warnings = warnings_of(preflight);
+    may_lock_ = has_rows_to_lock_to(from_);
     for (const std::string& warning : summary_.warnings) progress_.say("warning: " + warning);
     // Loads that can't be found are refused before results are touched.
     if (finds_loads(study_->options(), *body_->conditions)) study_->analyze();
@@ -327,6 +331,7 @@ class CaseRun {
     told.accepted = [this](const StepRecord& record, const AcceptedState& state) {
       recorder_->accepted(record, state);
       overload_ = std::max(overload_, record.overload);
+      if (may_lock_) note_tips(*recorder_->last());
       summary_.max_displacement = largest_of_all(state.trial.displacement);
       if (record.step > 0) ++steps_here_;
       if (options_.company && options_.company->accepted) {
@@ -389,6 +394,7 @@ class CaseRun {
     summary_.max_displacement = largest_of_all(result.state.displacement);
     warn_of_numerical_work();
     warn_of_overload();
+    warn_of_locking();
     recorder_->finish();
     summary_.costs = costs(result.relaxation_seconds);
     if (numbering_) tell_traffic();
@@ -425,6 +431,36 @@ class CaseRun {
         "force and the drained energy depend on the steps; give more steps (loading.steps)",
         overload_));
     progress_.say("warning: " + summary_.warnings.back());
+  }
+
+  /// Keeps the lowest T* of each tip in mixed mode, while the integrals about it mean something.
+  void note_tips(const StepRecord& record) {
+    constexpr double most_spread = 0.1;
+    for (const CrackTipSpecification& tip : from_.crack_tips) {
+      const auto value = [&](const char* of) {
+        const auto found = record.probes.find(tip.name + of);
+        return found == record.probes.end() ? 0.0 : found->second.front();
+      };
+      const double t_star = value("_T_star"), k1 = value("_K1"), k2 = value("_K2");
+      const bool turns = std::abs(k2) > turning_share * std::hypot(k1, k2);
+      if (!turns || !(t_star < locking_t_star) || value("_J_spread") > most_spread) continue;
+      const auto known = lowest_t_star_.find(tip.name);
+      if (known != lowest_t_star_.end() && known->second[0] <= t_star) continue;
+      lowest_t_star_[tip.name] = {t_star, k1, k2, record.load_factor};
+    }
+  }
+
+  void warn_of_locking() {
+    for (const auto& [name, lowest] : lowest_t_star_) {
+      const auto& [t_star, k1, k2, load] = lowest;
+      summary_.warnings.push_back(fmt::format(
+          "crack tip {}: T* = {:.2g} in mixed mode, K_I = {:.3g} and K_II = {:.3g} Pa m^0.5, at "
+          "load factor {:.4g}: below {:g} a crack locks to a row of a lattice and turns too "
+          "little; points without rows are lattice.points = \"blue_noise\" (model bond), or those "
+          "of a file, and T* falls with the root of the horizon",
+          name, t_star, k1, k2, load, locking_t_star));
+      progress_.say("warning: " + summary_.warnings.back());
+    }
   }
 
   /// Prints the traffic between ranks, in counts that do not depend on the machine.
@@ -472,8 +508,10 @@ class CaseRun {
   const Clock::time_point start_ = Clock::now();
   EarlierResults earlier_results_;  // until results_ takes them over
   double seconds_of_checkpoints_ = 0.0;
-  int steps_here_ = 0;     // accepted in this session
-  double overload_ = 0.0;  // the largest of its steps
+  int steps_here_ = 0;                                          // accepted in this session
+  double overload_ = 0.0;                                       // the largest of its steps
+  bool may_lock_ = false;                                       // cracks to the rows of a lattice
+  std::map<std::string, std::array<double, 4>> lowest_t_star_;  // of tips, with K_I, K_II and load
   std::shared_ptr<const Body> body_;
   // With several ranks only.
   std::optional<RowGathering> gathering_;

@@ -77,6 +77,8 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
                             {"linear", DamageLaw::linear},
                             {"exponential", DamageLaw::exponential},
                             {"blended", DamageLaw::blended},
+                            {"bilinear", DamageLaw::bilinear},
+                            {"cornelissen", DamageLaw::cornelissen},
                             {"table", DamageLaw::table},
                             {"energy_density", DamageLaw::energy_density}}),
          "`\"none\"`: no damage, and the other keys of the table have no effect; "
@@ -85,7 +87,10 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "(1 − tanh `rate`)/2 at both ends; `\"tanh_continuous\"`: the same law, rescaled to have "
          "no jumps; `\"linear\"`: the force falls linearly from `onset` to zero at `critical`; "
          "`\"exponential\"`: it falls exponentially, without a jump at `critical`; `\"blended\"`: "
-         "it rises on a lower slope from `onset` to `peak`, and then falls linearly; `\"table\"`: "
+         "it rises on a lower slope from `onset` to `peak`, and then falls linearly; "
+         "`\"bilinear\"`: the force over the opening of the bond falls to a third at 2/9 of "
+         "`critical`, and then to zero, as concrete does [Petersson 1981]; `\"cornelissen\"`: it "
+         "follows the curve of concrete of [Cornelissen et al. 1986]; `\"table\"`: "
          "the force is the curve of `stretches` and `forces`; `\"energy_density\"`: a point fails "
          "at once and irreversibly where its energy density exceeds `fracture_energy` / (2 δ); "
          "this law is for `kinematics = \"linear\"`, and with `solver.operator = \"fft\"` for all "
@@ -158,7 +163,8 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
            .then(require_key(
                [](auto& damage) { return damage.onset == 0.0 && !damage.is_by_data(); }))
            .written_if([](auto& damage, auto&) { return damage.onset != 0.0; })
-           .moreover("below `critical`")
+           .moreover("below `critical`; `bilinear` below a third of it, `cornelissen` below 0.1437 "
+                     "of it")
            .default_words("required without `strength`; with `fracture_energy` half the stretch of "
                           "a brittle bond of that energy, for `blended` a quarter"),
        K("peak", &Spec::peak, stretch(), "`blended`: stretch $s_p$ at which the force is largest")

@@ -12,6 +12,7 @@
 #include "assembly/terms/damage.hpp"
 #include "assembly/terms/points/point_term.hpp"
 #include "cases/runner/setup/body.hpp"
+#include "cases/runner/setup/lattice_rows.hpp"
 #include "solvers/formulations/formulations.hpp"
 #include "solvers/formulations/materials/bond_materials.hpp"
 #include "src/core/expression.hpp"
@@ -455,6 +456,7 @@ Preflight preflight_of(const Case& from, const Body& body, const Communicator& r
   if (!of.is_quasi_static) of.steps = 1;
   of.begins_moving = !from.initial.empty();
   of.has_notch = !of.cracks.empty() || !of.openings.empty();
+  of.along_rows = cracks_along_rows(from);
   of.idle = idle_keys(from);
   return of;
 }
@@ -504,6 +506,16 @@ std::string mesh_text(const Preflight::OfMesh& mesh) {
                                      : "its boundary cuts no bonds");
 }
 
+/// A note, no warning: in mode I a crack stays in its row anyway.
+std::string rows_text(const Preflight& of) {
+  return fmt::format(
+      "{}: within {:g} degrees of a row of the lattice, along an axis or a diagonal; if the load "
+      "is "
+      "not that of mode I, a crack may stay in the row where it should turn; points without rows "
+      "are lattice.points = \"blue_noise\" (model bond), or those of a file",
+      fmt::join(of.along_rows, ", "), along_row);
+}
+
 std::string zone_text(const Preflight& of, const Preflight::Fracture& fracture) {
   const double zone = fracture.characteristic_length();
   std::string text = fmt::format("{}strength {:.4g} MPa, E G/ft^2 = {:.4g} m: {:.3g} spacings",
@@ -538,6 +550,7 @@ std::vector<std::pair<std::string, std::string>> preflight_lines(const Preflight
   for (const auto& [key, bonds] : of.cracks) {
     lines.emplace_back("crack", fmt::format("{} cuts {} bonds", key, bonds));
   }
+  if (!of.along_rows.empty()) lines.emplace_back("rows", rows_text(of));
   for (const Preflight::Applied& value : of.applied) {
     if (value.largest > 0.0) lines.emplace_back("applied", applied_text(of, value));
   }

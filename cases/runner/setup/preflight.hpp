@@ -97,6 +97,7 @@ struct Preflight {
   std::vector<Idle> idle;
   std::vector<std::string> of_materials;  ///< warnings that models give of their fracture data
   bool begins_moving = false;             ///< by initial fields
+  std::vector<std::string> along_rows;    ///< keys of cracks, see cracks_along_rows
   bool has_notch = false;  ///< a crack or a subtracted shape, at which stress concentrates
 
   /// The shortest length of a kind; null: there is none.

@@ -61,6 +61,8 @@ bool same_law(const DamageSpecification& one, const DamageSpecification& other) 
       return one.stretches == other.stretches && one.forces == other.forces;
     case DamageLaw::critical_stretch:
     case DamageLaw::linear:
+    case DamageLaw::bilinear:
+    case DamageLaw::cornelissen:
     case DamageLaw::none:
     case DamageLaw::energy_density:
       break;

@@ -41,6 +41,9 @@ AnyLaw law_of(const DamageSpecification& damage) {
     case DamageLaw::table:
       return {ForceTable{std::make_shared<const ForceCurve>(damage.stretches, damage.forces),
                          damage.stretches.back()}};
+    case DamageLaw::bilinear:
+    case DamageLaw::cornelissen:
+      return {OpeningLaw{onset, critical, damage.opening_curve()}};
     case DamageLaw::critical_stretch:
     case DamageLaw::none:
       break;

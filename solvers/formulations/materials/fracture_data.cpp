@@ -36,18 +36,21 @@ DamageSpecification shape(DamageSpecification damage, double onset) {
   return damage;
 }
 
-/// Limits of onset over critical stretch for laws that soften, except the blended one.
-constexpr double smallest_ratio = 1e-6, largest_ratio = 1.0 - 1e-9;
-
-template <class Function>
-double ratio_at(const Function& of, double value) {
-  return inverse(of, value, smallest_ratio, largest_ratio);
-}
+/// Least onset over critical stretch for laws that soften, except the blended one.
+constexpr double smallest_ratio = 1e-6;
 
 DamageSpecification brittle_law(double critical) {
   DamageSpecification damage;
   damage.law = DamageLaw::critical_stretch;
   damage.critical = critical;
+  return damage;
+}
+
+/// The law of the same kind and critical stretch that softens fastest: for most a brittle one.
+DamageSpecification fastest_law(DamageSpecification damage, double critical) {
+  if (!damage.opens()) return brittle_law(critical);
+  damage.critical = critical;
+  damage.onset = damage.largest_onset() * critical;
   return damage;
 }
 
@@ -57,7 +60,11 @@ class Search {
   /// @param peak f_p of a law with a strength; 0: without one
   Search(const DamageSpecification& damage, std::string key, const FractureScale& scale,
          double peak)
-      : result_(damage), key_(std::move(key)), scale_(scale), peak_(peak) {
+      : result_(damage),
+        key_(std::move(key)),
+        scale_(scale),
+        largest_ratio_(damage.largest_onset()),
+        peak_(peak) {
     if (damage.fracture_energy) {
       work_ = *damage.fracture_energy / (scale.micromodulus * scale.crossing);
     }
@@ -99,7 +106,7 @@ class Search {
         return force(ratio) * force(ratio) / total_work(shape(result_, ratio));
       };
       const double wanted = peak_ * peak_ / work_;
-      if (!(wanted < squared(largest_ratio))) refuse_unresolved("strength", 0.5 * peak_ * peak_);
+      if (!(wanted < squared(largest_ratio_))) refuse_unresolved("strength", least_work(peak_));
       if (!(wanted > squared(smallest_ratio))) refuse_round();
       const double ratio = ratio_at(squared, wanted);
       result_.critical = std::sqrt(work_ / total_work(shape(result_, ratio)));
@@ -107,11 +114,12 @@ class Search {
       return;
     }
     const double wanted = peak_ / result_.critical;
-    if (!(wanted < force(largest_ratio))) {
-      throw InputError(
-          key_ + "strength", number_text(strength_),
-          "must be less than the strength of brittle bonds with this critical stretch, " +
-              short_text(scale_.strength(brittle_law(result_.critical))) + " Pa");
+    if (!(wanted < force(largest_ratio_))) {
+      const double most = scale_.strength(fastest_law(result_, result_.critical));
+      throw InputError(key_ + "strength", number_text(strength_),
+                       "must be less than the strength of " +
+                           std::string(result_.opens() ? "this law" : "brittle bonds") +
+                           " with this critical stretch, " + short_text(most) + " Pa");
     }
     if (!(wanted > force(smallest_ratio))) refuse_round();
     result_.onset = ratio_at(force, wanted) * result_.critical;
@@ -124,7 +132,7 @@ class Search {
     const auto work = [this](double ratio) {
       return -total_work(shape(result_, ratio)) / (ratio * ratio);
     };
-    if (!(-wanted < work(largest_ratio))) refuse_unresolved("onset", 0.5 * onset * onset);
+    if (!(-wanted < work(largest_ratio_))) refuse_unresolved("onset", least_work(onset));
     result_.critical = onset / ratio_at(work, -wanted);
   }
 
@@ -156,17 +164,31 @@ class Search {
     }
   }
 
-  /// @param least work of the law that breaks as soon as it softens
+  template <class Function>
+  [[nodiscard]] double ratio_at(const Function& of, double value) const {
+    return inverse(of, value, smallest_ratio, largest_ratio_);
+  }
+
+  /// Work of the law with this onset that softens fastest.
+  [[nodiscard]] double least_work(double onset) const {
+    const DamageSpecification fastest = fastest_law(result_, 1.0);
+    return total_work(fastest) * std::pow(onset / peak_force(fastest), 2);
+  }
+
+  /// @param least work of the law that softens fastest
   [[noreturn]] void refuse_unresolved(const std::string& datum, double least) const {
-    throw InputError(key_ + datum, "",
-                     "bonds of this horizon would break before they soften: up to the onset of "
-                     "softening they take up " +
-                         short_text(least * scale_.micromodulus * scale_.crossing) +
-                         " J/m2, but the fracture energy is only " +
-                         short_text(work_ * scale_.micromodulus * scale_.crossing) +
-                         " J/m2. Take a finer lattice: at this horizon ratio a spacing below " +
-                         short_text(scale_.spacing * work_ / least) + " m resolves it" +
-                         remark_on_units(work_ / least));
+    throw InputError(
+        key_ + datum, "",
+        std::string(result_.opens() ? "bonds of this horizon would snap back as they open: "
+                                      "without that they take up at least "
+                                    : "bonds of this horizon would break before they soften: up "
+                                      "to the onset of softening they take up ") +
+            short_text(least * scale_.micromodulus * scale_.crossing) +
+            " J/m2, but the fracture energy is only " +
+            short_text(work_ * scale_.micromodulus * scale_.crossing) +
+            " J/m2. Take a finer lattice: at this horizon ratio a spacing below " +
+            short_text(scale_.spacing * work_ / least) + " m resolves it" +
+            remark_on_units(work_ / least));
   }
 
   /// A spacing far below the given one indicates other units, not a coarse lattice.
@@ -197,6 +219,7 @@ class Search {
   const FractureScale& scale_;
   double strength_ = 0.0;  // [Pa], for messages
   double work_ = 0.0;      // required W; 0: none
+  double largest_ratio_;   // of onset over critical stretch
   double peak_;            // required f_p; 0: none
 };
 
@@ -305,7 +328,8 @@ class StrengthSearch {
       if (damage_.fracture_energy) refuse_both(brittle, of_unit);
       return law_of_peak(damage_, key_, scale_, brittle);
     }
-    return below(brittle);
+    const DamageSpecification fastest = fastest_law(damage_, 1.0);
+    return below(*damage_.strength / scale_.strength(fastest) * peak_force(fastest));
   }
 
  private:
@@ -314,18 +338,19 @@ class StrengthSearch {
 
   /// Iterates by secants of the logarithm between a force that is too small, also for the law, and
   /// one that is too large.
-  [[nodiscard]] DamageSpecification below(double brittle) {
-    double small = -INFINITY, large = INFINITY, last = std::log(brittle);
+  /// @param most force of the law that softens fastest
+  [[nodiscard]] DamageSpecification below(double most) {
+    double small = -INFINITY, large = INFINITY, last = std::log(most);
     // A refusal here refuses the law.
-    law_ = law_of_peak(damage_, key_, scale_, brittle);
+    law_ = law_of_peak(damage_, key_, scale_, most);
     double last_excess = excess(), next = last - last_excess;
     if (std::abs(last_excess) <= tolerance) return *law_;
     (last_excess > 0.0 ? large : small) = last;
     for (int k = 0; k < most_trials && large - small > 1e-13; ++k) {
       const double found = excess_at(next);
       if (std::abs(found) <= tolerance) return *law_;
-      // Without a law the force is too small for it, or, above the brittle one, too large.
-      const bool is_large = std::isnan(found) ? next > std::log(brittle) : found > 0.0;
+      // Without a law the force is too small for it, or, above the first one, too large.
+      const bool is_large = std::isnan(found) ? next > std::log(most) : found > 0.0;
       (is_large ? large : small) = next;
       double guess = next - found * (next - last) / (found - last_excess);
       if (!(guess > small && guess < large)) {
@@ -384,7 +409,8 @@ class StrengthSearch {
 
 /// Refuses a law so steep that finding its stretches would take minutes.
 void require_quick(const DamageSpecification& damage, const std::string& key, const CpdTear& tear) {
-  const AnyLaw law = law_of(damage.softens() ? shape(damage, 0.5) : damage);
+  const AnyLaw law =
+      law_of(damage.softens() ? shape(damage, 0.5 * damage.largest_onset()) : damage);
   if (tear.quadrature_points(law) <= most_quadrature_points_of_tear) return;
   throw InputError(
       key + "fracture_energy", number_text(*damage.fracture_energy),
@@ -457,6 +483,7 @@ double peak_force(const DamageSpecification& damage) {
   const AnyLaw law = law_of(damage);
   if (const auto* table = std::get_if<ForceTable>(&law.law)) return table->peak_force();
   if (const auto* envelope = std::get_if<ForceEnvelope>(&law.law)) return envelope->peak_force();
+  if (damage.opens()) return damage.onset;
   // The force of a tanh law rises to one peak and falls; the peak is found by golden sections.
   const auto force = [&](double s) { return s * law.integrity(s); };
   double a = damage.onset, b = damage.critical;
@@ -468,9 +495,10 @@ double peak_force(const DamageSpecification& damage) {
   return std::max(damage.onset, force(0.5 * (a + b)));
 }
 
-double largest_spacing(double fracture_energy, double strength, const FractureScale& scale) {
-  const double critical = strength / scale.strength(brittle_law(1.0));
-  return scale.spacing * fracture_energy / scale.energy(brittle_law(critical));
+double largest_spacing(const DamageSpecification& damage, double fracture_energy, double strength,
+                       const FractureScale& scale) {
+  const double critical = strength / scale.strength(fastest_law(damage, 1.0));
+  return scale.spacing * fracture_energy / scale.energy(fastest_law(damage, critical));
 }
 
 double bearable_energy_density(const DamageSpecification& damage, double horizon) {

@@ -64,10 +64,10 @@ inline constexpr int horizon_steps = 16;
 /// f_p, the largest force for the modulus 1.
 [[nodiscard]] double peak_force(const DamageSpecification& damage);
 
-/// Largest spacing at the same horizon ratio with which a law can have both this strength and this
-/// fracture energy: there it is brittle [m].
-[[nodiscard]] double largest_spacing(double fracture_energy, double strength,
-                                     const FractureScale& scale);
+/// Largest spacing at the same horizon ratio with which a law of this kind can have both this
+/// strength and this fracture energy: there it is brittle, or as steep as an OpeningLaw can be [m].
+[[nodiscard]] double largest_spacing(const DamageSpecification& damage, double fracture_energy,
+                                     double strength, const FractureScale& scale);
 
 /// W_c = G_c / (2 delta), the energy density at which points fail ([FCBM] eq. 21) [J/m3].
 [[nodiscard]] double bearable_energy_density(const DamageSpecification& damage, double horizon);

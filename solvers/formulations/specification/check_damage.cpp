@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "solvers/formulations/specification/require.hpp"
 #include "src/potentials/force_table.hpp"
 
@@ -139,8 +141,12 @@ void check_damage(const DamageSpecification& damage, const std::string& table) {
   check_stretch(damage.onset, "onset");
   if (damage.has_rate()) require_within(damage.rate, 0.1, 50.0, table + "rate");
   if (damage.critical != 0.0) {
-    require(damage.onset < damage.critical * (1.0 - 1e-9), table + "onset",
-            number_text(damage.onset), "must be smaller than critical");
+    require(damage.onset < damage.critical * damage.largest_onset(), table + "onset",
+            number_text(damage.onset),
+            damage.opens() ? fmt::format("must be smaller than {:.4g} of critical: with this law a "
+                                         "bond would otherwise snap back as it opens",
+                                         damage.largest_onset())
+                           : "must be smaller than critical");
   }
   if (damage.law != DamageLaw::blended) return;
   require_within(damage.hardening, 0.0, 0.99, table + "hardening");

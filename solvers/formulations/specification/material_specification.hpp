@@ -41,7 +41,9 @@ enum class DamageLaw {
   linear,
   exponential,
   blended,
-  table  ///< the force is a given curve
+  table,       ///< the force is a given curve
+  bilinear,    ///< by the opening of a crack, see OpeningLaw
+  cornelissen  ///< likewise
 };
 
 /// Stretches of a law of bonds; those of `critical_stretch` are equal.
@@ -116,8 +118,20 @@ struct DamageSpecification {
   }
   /// True if the law has a rate.
   [[nodiscard]] bool has_rate() const {
-    return softens() && law != DamageLaw::linear && law != DamageLaw::blended &&
-           law != DamageLaw::table;
+    return law == DamageLaw::tanh || law == DamageLaw::tanh_continuous ||
+           law == DamageLaw::exponential;
+  }
+  /// True if the force follows from the opening of a crack.
+  [[nodiscard]] bool opens() const {
+    return law == DamageLaw::bilinear || law == DamageLaw::cornelissen;
+  }
+  /// Softening curve of a law that opens.
+  [[nodiscard]] OpeningCurve opening_curve() const {
+    return law == DamageLaw::bilinear ? OpeningCurve::bilinear : OpeningCurve::cornelissen;
+  }
+  /// Limit of the onset over the critical stretch of a law that softens, which it stays below.
+  [[nodiscard]] double largest_onset() const {
+    return (opens() ? largest_onset_of(opening_curve()) : 1.0) * (1.0 - 1e-9);
   }
   /// Fraction of the range from onset to critical over which the force rises.
   [[nodiscard]] double rise() const {

@@ -72,7 +72,8 @@ class CaseFilePage(unittest.TestCase):
         complete = {key for key, sets in found.items() if any(sets)}
         self.assertLessEqual({"law", "mode", "model", "influence", "volume_correction", "linear", "form"}, complete)
         laws = next(values for values in found["law"] if values)
-        self.assertEqual(laws, {"none", "critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended", "table",
+        self.assertEqual(laws, {"none", "critical_stretch", "tanh", "tanh_continuous", "linear", "exponential", "blended", "bilinear",
+                                "cornelissen", "table",
                                 "energy_density"})  # fmt: skip
 
     def test_one_table_is_printed_by_name(self):

@@ -19,7 +19,10 @@ std::vector<ProbeColumns> crack_tip_columns(const Case& from) {
     for (std::size_t mode = 0; mode < modes(from) && has_isotropic_materials(from); ++mode) {
       columns.push_back({tip.name + stress_intensities[mode], 1, "Pa m^0.5"});
     }
-    if (has_isotropic_materials(from)) columns.push_back({tip.name + "_T", 1, "Pa"});
+    if (has_isotropic_materials(from)) {
+      columns.push_back({tip.name + "_T", 1, "Pa"});
+      columns.push_back({tip.name + "_T_star", 1, "1"});
+    }
     if (tip.cut == 0.0) continue;
     columns.push_back({tip.name + "_G_displacement", 1, "J/m2"});
     columns.push_back({tip.name + "_G_load", 1, "J/m2"});
@@ -39,7 +42,10 @@ std::string add_crack_tip_values(const Case& from, const std::vector<CrackTip>& 
     for (std::size_t mode = 0; mode < modes(from) && has_isotropic_materials(from); ++mode) {
       values[name + stress_intensities[mode]] = {found.k[mode]};
     }
-    if (has_isotropic_materials(from)) values[name + "_T"] = {found.t_stress};
+    if (has_isotropic_materials(from)) {
+      values[name + "_T"] = {found.t_stress};
+      values[name + "_T_star"] = {found.t_star};
+    }
     if (!tips[k].release) continue;
     const std::optional<ReleaseRates> rates = tips[k].release->rates(state, stage);
     if (!rates) {

@@ -23,14 +23,20 @@ constexpr double energy = 10.0;
 const double unit = scale.micromodulus * scale.crossing;  // G over W
 const double brittle = std::sqrt(2.0 * energy / unit);
 
-const std::vector<DamageLaw> softening{DamageLaw::tanh, DamageLaw::tanh_continuous,
-                                       DamageLaw::linear, DamageLaw::exponential,
-                                       DamageLaw::blended};
+const std::vector<DamageLaw> softening{
+    DamageLaw::tanh,    DamageLaw::tanh_continuous, DamageLaw::linear,     DamageLaw::exponential,
+    DamageLaw::blended, DamageLaw::bilinear,        DamageLaw::cornelissen};
 
 DamageSpecification law(DamageLaw of) {
   DamageSpecification damage;
   damage.law = of;
   return damage;
+}
+
+/// Largest onset of a bond with the work W over that of a brittle one, sqrt(2 W): for laws that
+/// open, W = s_m s_c (5/18 or 0.1947) and s_c > 3 s_m or 6.957 s_m.
+double largest_share(DamageLaw of) {
+  return of == DamageLaw::bilinear ? std::sqrt(0.6) : of == DamageLaw::cornelissen ? 0.6075 : 1.0;
 }
 
 TEST(FractureData, OfABrittleBondGiveItsStretch) {
@@ -47,7 +53,7 @@ TEST(FractureData, OfEveryLawThatSoftensComeBack) {
     for (const double share : {0.7, 0.83, 0.95}) {
       DamageSpecification damage = law(of);
       damage.fracture_energy = energy;
-      damage.strength = share * brittle * scale.youngs_modulus;
+      damage.strength = share * largest_share(of) * brittle * scale.youngs_modulus;
       if (of == DamageLaw::blended) damage.hardening = 0.9;
       const DamageSpecification found = with_stretches(damage, "m", scale);
       EXPECT_NEAR(unit * total_work(found) / energy, 1.0, 1e-12) << int(of);
@@ -77,7 +83,7 @@ TEST(FractureData, GiveTheOnsetOfACriticalStretchByTheStrength) {
   for (const DamageLaw of : softening) {
     DamageSpecification damage = law(of);
     damage.critical = 4e-4;
-    damage.strength = 0.8 * 4e-4 * scale.youngs_modulus;
+    damage.strength = (damage.opens() ? 0.1 : 0.8) * 4e-4 * scale.youngs_modulus;
     if (of == DamageLaw::blended) damage.hardening = 0.95;
     const DamageSpecification found = with_stretches(damage, "m", scale);
     EXPECT_EQ(found.critical, 4e-4);
@@ -123,10 +129,14 @@ TEST(FractureData, TooStrongForTheHorizonAreRefusedWithASpacingThatResolvesThem)
   for (const DamageLaw of : softening) {
     DamageSpecification damage = law(of);
     damage.fracture_energy = energy;
-    damage.strength = 2.0 * brittle * scale.youngs_modulus;
+    const double strength = 2.0 * largest_share(of) * brittle * scale.youngs_modulus;
+    damage.strength = strength;
     if (of == DamageLaw::blended) damage.onset = 1.999 * brittle;  // its rise takes next to nothing
     const std::string told = refusal(damage);
-    EXPECT_TRUE(tells(told, "m.damage.strength: bonds of this horizon would break")) << told;
+    EXPECT_TRUE(tells(told, damage.opens()
+                                ? "m.damage.strength: bonds of this horizon would snap back"
+                                : "m.damage.strength: bonds of this horizon would break"))
+        << told;
     EXPECT_TRUE(tells(told, "spacing below 0.000249") || tells(told, "spacing below 0.00025 m"))
         << told;
     // A little below that spacing it is found: W grows as the spacing falls.
@@ -135,9 +145,21 @@ TEST(FractureData, TooStrongForTheHorizonAreRefusedWithASpacingThatResolvesThem)
     finer.spacing *= 0.2487;
     EXPECT_LT(with_stretches(damage, "m", finer).onset,
               with_stretches(damage, "m", finer).critical);
+    // 1e-3: of the digits of largest_share.
+    EXPECT_NEAR(largest_spacing(damage, energy, strength, scale) / 2.5e-4, 1.0, 1e-3);
   }
-  EXPECT_NEAR(largest_spacing(energy, 2.0 * brittle * scale.youngs_modulus, scale) / 2.5e-4, 1.0,
-              1e-9);
+}
+
+TEST(FractureData, OfLawsThatOpenAreTheOpeningsOfTheirCurves) {
+  DamageSpecification damage = law(DamageLaw::bilinear);
+  damage.fracture_energy = energy;
+  damage.strength = 7e6;
+  // W = s_m s_c / 3.6
+  EXPECT_NEAR(with_stretches(damage, "m", scale).critical / (3.6 * energy / unit / 1e-4), 1.0,
+              1e-8);
+  damage.law = DamageLaw::cornelissen;
+  EXPECT_NEAR(with_stretches(damage, "m", scale).critical / (5.136 * energy / unit / 1e-4), 1.0,
+              1e-4);
 }
 
 TEST(FractureData, ABrittleBondHasNotBoth) {
@@ -270,7 +292,7 @@ TEST(FractureData, OfCpdComeBackAsTheEnergyOfATear) {
       damage.fracture_energy = energy;
       const DamageSpecification alone = with_stretches(damage, "m", of);
       EXPECT_NEAR(of.energy(alone) / energy, 1.0, 1e-9) << int(each);
-      damage.strength = 0.8 * strength;
+      damage.strength = 0.8 * largest_share(each) * strength;
       if (each == DamageLaw::blended) damage.hardening = 0.9;
       const DamageSpecification strong = with_stretches(damage, "m", of);
       EXPECT_NEAR(of.energy(strong) / energy, 1.0, 1e-9) << int(each);
@@ -289,7 +311,7 @@ TEST(FractureData, OfCpdComeBackAsTheEnergyOfATear) {
       if (each == DamageLaw::blended) damage.onset = 1.29 * sudden.critical;
       EXPECT_THROW(static_cast<void>(with_stretches(damage, "m", of)), InputError) << int(each);
     }
-    EXPECT_NEAR(largest_spacing(energy, strength, of) / 1e-3, 1.0, 1e-9);
+    EXPECT_NEAR(largest_spacing(whole.damage, energy, strength, of) / 1e-3, 1.0, 1e-9);
     DamageSpecification both = law(DamageLaw::critical_stretch);
     both.fracture_energy = energy;
     both.strength = strength;

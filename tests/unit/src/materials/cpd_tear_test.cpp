@@ -20,6 +20,8 @@ const std::vector<AnyLaw> laws{
     {ForceEnvelope{0.01, 0.02}},
     {ForceEnvelope{1e-4, 0.02, 10.0}},
     {ForceEnvelope{0.005, 0.02, 0.0, 0.4, 0.5}},
+    {OpeningLaw{0.005, 0.02, OpeningCurve::bilinear}},
+    {OpeningLaw{0.14369 * 0.02, 0.02, OpeningCurve::cornelissen}},
     {ForceTable{std::make_shared<const ForceCurve>(std::vector{0.005, 0.011, 0.013, 0.02},
                                                    std::vector{0.005, 0.008, 0.004, 0.001}),
                 0.02}}};

@@ -56,6 +56,19 @@ ForceTable example<ForceTable>() {
   return table_of(stretches_of_table, forces_of_table);
 }
 
+struct Bilinear : OpeningLaw {};
+struct Cornelissen : OpeningLaw {};
+/// An onset that lets a bond open without a snap-back.
+constexpr double early = 0.002;
+template <>
+Bilinear example<Bilinear>() {
+  return {{early, critical, OpeningCurve::bilinear}};
+}
+template <>
+Cornelissen example<Cornelissen>() {
+  return {{early, critical, OpeningCurve::cornelissen}};
+}
+
 /// Numerical integral of T phi_0' from a to b by the composite midpoint rule with Richardson's
 /// extrapolation; neither end nor the points meet a jump of T, nor cells a kink.
 template <class Law, class Whole = Harmonic>
@@ -65,7 +78,12 @@ double work_between(const Law& law, double a, double b, const Whole& whole = {1.
     if (a < kink && kink < b)
       return work_between(law, a, kink, whole) + work_between(law, kink, b, whole);
   }
-  if constexpr (requires { law.curve; }) {
+  if constexpr (requires { law.stretch_at(kink_of_bilinear); }) {
+    const double kink = law.stretch_at(kink_of_bilinear);
+    if (a * (1.0 + 1e-12) < kink && kink < b * (1.0 - 1e-12))
+      return work_between(law, a, kink, whole) + work_between(law, kink, b, whole);
+  }
+  if constexpr (requires { law.curve->knots(); }) {
     for (const ForceCurve::Knot& knot : law.curve->knots()) {
       const double kink = knot.stretch * law.critical();
       if (a * (1.0 + 1e-12) < kink && kink < b * (1.0 - 1e-12))
@@ -97,8 +115,9 @@ class EveryDegradation<Degraded<Law, Whole>> : public ::testing::Test {
 };
 using Degradations =
     ::testing::Types<Degraded<CriticalStretch>, Degraded<TanhDegradation>, Degraded<ForceEnvelope>,
-                     Degraded<ForceTable>, Degraded<CriticalStretch, Stiffening>,
-                     Degraded<TanhDegradation, Stiffening>, Degraded<ForceEnvelope, Stiffening>>;
+                     Degraded<ForceTable>, Degraded<Bilinear>, Degraded<Cornelissen>,
+                     Degraded<CriticalStretch, Stiffening>, Degraded<TanhDegradation, Stiffening>,
+                     Degraded<ForceEnvelope, Stiffening>, Degraded<Cornelissen, Stiffening>>;
 TYPED_TEST_SUITE(EveryDegradation, Degradations);
 
 TYPED_TEST(EveryDegradation, FirstIsDerivativeOfValueInLoadingAndUnloading) {
@@ -167,7 +186,7 @@ TYPED_TEST(EveryDegradation, WhatIsStoredAndDissipatedIsWhatWasTakenUp) {
     EXPECT_GE(this->potential_.dissipated(e), 0.0);
   }
   EXPECT_GT(this->potential_.dissipated(0.04), 0.0);
-  EXPECT_EQ(this->potential_.dissipated(0.9 * onset), 0.0);
+  EXPECT_EQ(this->potential_.dissipated(0.9 * this->potential_.law.onset()), 0.0);
 }
 
 TYPED_TEST(EveryDegradation, UnloadsAlongTheSecantAndReloadsAlongIt) {
@@ -362,6 +381,77 @@ TEST(ForceTable, KeepsItsFormBetweenOtherStretches) {
   for (const double s : {0.0165, 0.0183, 0.0199}) {
     EXPECT_DOUBLE_EQ(twice.integrity(2.0 * s), law.integrity(s));
     EXPECT_NEAR(2.0 * twice.slope(2.0 * s) / law.slope(s), 1.0, 1e-12);
+  }
+}
+
+/// The curves as published, over the opening w with f_t = 1 and w_c = 1.
+double petersson(double w) { return w < 0.8 / 3.6 ? 1.0 - w * 3.6 / 1.2 : (1.0 - w) * 3.0 / 7.0; }
+double cornelissen(double w) {
+  return (1.0 + std::pow(3.0 * w, 3)) * std::exp(-6.93 * w) - w * 28.0 * std::exp(-6.93);
+}
+
+const std::vector<std::pair<OpeningCurve, double (*)(double)>> opening_curves{
+    {OpeningCurve::bilinear, petersson}, {OpeningCurve::cornelissen, cornelissen}};
+
+TEST(OpeningLaw, FollowsItsCurveOverTheOpening) {
+  for (const auto& [curve, published] : opening_curves) {
+    for (const double ratio : {1e-6, 0.01, 0.1, largest_onset_of(curve) * (1.0 - 1e-9)}) {
+      const OpeningLaw law{ratio * critical, critical, curve};
+      double last = 1.0;
+      for (int k = 1; k < 200; ++k) {
+        const double w = k / 200.0, force = law.onset() * published(w);
+        const double s = force + w * critical;
+        EXPECT_NEAR(law.stretch_at(w), s, 1e-16);
+        // 1e-6: at 1e-9 from the limit the stretch hardly grows with the opening.
+        EXPECT_NEAR(s * law.integrity(s), force, (ratio < 0.12 ? 1e-13 : 1e-6) * law.onset()) << w;
+        EXPECT_LT(law.integrity(s), last);
+        last = law.integrity(s);
+      }
+      for (const double s : {law.onset(), critical}) {
+        const double before = s * (1.0 - 1e-12), after = s * (1.0 + 1e-12);
+        // At 1e-9 from the limit the force falls with a slope of 1e9.
+        EXPECT_NEAR(before * law.integrity(before), after * law.integrity(after),
+                    (ratio < 0.12 ? 1e-10 : 1e-2) * law.onset());
+      }
+    }
+  }
+}
+
+/// The work of the whole bond is the area below the curve of the opening: G_F = f_t w_c / 3.6 and
+/// f_t w_c / 5.136.
+TEST(OpeningLaw, TakesTheAreaBelowItsCurve) {
+  for (const auto& [curve, area, digits] :
+       {std::tuple(OpeningCurve::bilinear, 1.0 / 3.6, 1e-14),
+        std::tuple(OpeningCurve::cornelissen, 1.0 / 5.136, 1e-4)}) {
+    for (const double share : {0.01, 0.5, 0.999}) {
+      const OpeningLaw law{share * largest_onset_of(curve) * critical, critical, curve};
+      const double work = law.work(Harmonic{1.0}, critical);
+      EXPECT_NEAR(work / (area * law.onset() * critical), 1.0, digits);
+      EXPECT_EQ(law.work(Harmonic{1.0}, 2.0 * critical), work);
+      const double elastic = 0.5 * law.onset() * law.onset();
+      if (share < 0.9) {
+        EXPECT_NEAR((elastic + work_between(law, law.onset(), critical)) / work, 1.0, 1e-9);
+      }
+    }
+  }
+  EXPECT_NEAR(largest_onset_of(OpeningCurve::bilinear), 1.0 / 3.0, 1e-16);
+  EXPECT_NEAR(largest_onset_of(OpeningCurve::cornelissen), 0.1437, 5e-5);
+}
+
+TEST(OpeningLaw, OfTwoLinesIsATableOfThreePairs) {
+  const double third = early / 3.0;
+  const OpeningLaw law{early, critical, OpeningCurve::bilinear};
+  const ForceTable table =
+      table_of({early, third + 2.0 / 9.0 * critical, critical}, {early, third, 0.0});
+  for (const double kappa : {0.0, 0.003, 0.011}) {
+    for (int k = 1; k < 200; ++k) {
+      const double s = 1.2 * critical * k / 200.0;
+      const auto a = Degraded<OpeningLaw>{2.0, law}(s, kappa);
+      const auto b = Degraded<ForceTable>{2.0, table}(s, kappa);
+      EXPECT_NEAR(a.value, b.value, 1e-15 * early);
+      EXPECT_NEAR(a.first, b.first, 1e-14 * early);
+      EXPECT_NEAR(a.second, b.second, 1e-12);
+    }
   }
 }
 

@@ -20,6 +20,8 @@ const Named laws[] = {
     {"linear", {ForceEnvelope{0.01, 0.04}}},
     {"exponential", {ForceEnvelope{0.01, 0.08, 5.0}}},
     {"blended", {ForceEnvelope{0.01, 0.05, 0.0, 0.3, 0.4}}},
+    {"bilinear", {OpeningLaw{0.01, 0.05, OpeningCurve::bilinear}}},
+    {"cornelissen", {OpeningLaw{0.01, 0.08, OpeningCurve::cornelissen}}},
     {"table",
      {ForceTable{std::make_shared<const ForceCurve>(std::vector{0.01, 0.015, 0.03, 0.05},
                                                     std::vector{0.01, 0.012, 0.004, 0.001}),
