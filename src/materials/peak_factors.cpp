@@ -25,7 +25,7 @@ double angle_of(double first, double second) {
 PeakFactors::PeakFactors(const BulkPull& bulk, const AnyLaw& law, const MaterialStrength& strength)
     : bulk_(bulk), law_(law), strength_(strength) {
   const double work = law.work(Harmonic{1.0}, law.critical());
-  strength_.factor[1] = std::min(strength.factor[1], std::sqrt(2.0 * work) / law.onset());
+  strength_.factor[1] = std::min(strength.factor[1], law.largest_onset(work) / law.onset());
   const std::array<double, 2> pull{1.0, 0.0};
   uniaxial_ = bulk.peak(pull, law) / bulk.onset(pull, law);
   const double step = step_in(strength.dimension);

@@ -13,8 +13,9 @@ namespace peristat {
 /// in a plane, in the mean over directions.
 ///
 /// The surface multiplies the onset of all bonds by chi. The work of the law stays, so that chi is
-/// at most sqrt(2 M) / s_m. From the first bond's onset to the peak the stress grows by a factor
-/// above 1, as other bonds start later, each at the onset that it has then.
+/// at most sqrt(2 M) / s_m, see OneLawOf::largest_onset. From the first bond's onset to the peak
+/// the stress grows by a factor above 1, as other bonds start later, each at the onset that it has
+/// then.
 class PeakFactors {
  public:
   /// @param law of the bonds under uniaxial tension

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <variant>
 
 #include "src/potentials/critical_stretch.hpp"
@@ -46,6 +47,16 @@ struct OneLawOf {
   }
   [[nodiscard]] double work(const Harmonic& whole, double s) const {
     return std::visit([&](const auto& one) { return one.work(whole, s); }, law);
+  }
+  /// Largest onset with which the law can take a work: that of a brittle bond, unless the law says
+  /// less.
+  [[nodiscard]] double largest_onset(double of_work) const {
+    return std::visit(
+        [&](const auto& one) {
+          if constexpr (requires { one.largest_onset(of_work); }) return one.largest_onset(of_work);
+          return std::sqrt(2.0 * of_work);
+        },
+        law);
   }
   /// The same law between other stretches.
   [[nodiscard]] OneLawOf between(double onset, double critical) const {

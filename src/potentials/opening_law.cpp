@@ -86,6 +86,11 @@ double OpeningLaw::work(const Harmonic&, double s) const {
   return onset_stretch * (critical_stretch * at.area + 0.5 * onset_stretch * at.force * at.force);
 }
 
+double OpeningLaw::largest_onset(double work) const {
+  constexpr double below = 1.0 - 1e-9;
+  return below * std::sqrt(largest_onset_of(curve) * work / curve_at(curve, 1.0).area);
+}
+
 double largest_onset_of(OpeningCurve curve) { return -1.0 / curve_at(curve, 0.0).slope; }
 
 }  // namespace peristat

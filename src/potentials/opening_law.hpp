@@ -48,6 +48,9 @@ struct OpeningLaw {
     return {onset, critical, curve};
   }
 
+  /// Largest onset with which it takes a work without a snap-back, see largest_onset_of.
+  [[nodiscard]] double largest_onset(double work) const;
+
   /// Stretch at a share x of the opening.
   [[nodiscard]] double stretch_at(double share) const;
 };

@@ -52,7 +52,7 @@ void BondFailure::renew_onsets(const Points& points,
             if (history[b] != 0.0) return;  // it has started, or never fails
             const AnyBondLaw own = law.laws->at(bond);
             const double onset = own.onset(), work = own.work(Harmonic{1.0}, own.critical());
-            const double most = std::sqrt(2.0 * work) / onset;
+            const double most = own.largest_onset(work) / onset;
             const auto of = [&](Index point) {
               return of_points[std::size_t(points.source(point))].of_bond(onset, most);
             };

@@ -189,9 +189,12 @@ TEST(CriticalOfWork, KeepsTheWork) {
        {AnyBondLaw{ForceEnvelope{s, 7 * s}}, AnyBondLaw{ForceEnvelope{s, 7 * s, 4.0}},
         AnyBondLaw{ForceEnvelope{s, 7 * s, 0.0, 0.3, 0.5}},
         AnyBondLaw{TanhDegradation{s, 7 * s, 3}},
-        AnyBondLaw{TanhDegradation::continuous(s, 7 * s, 3)}}) {
+        AnyBondLaw{TanhDegradation::continuous(s, 7 * s, 3)},
+        AnyBondLaw{OpeningLaw{s, 8 * s, OpeningCurve::bilinear}},
+        AnyBondLaw{OpeningLaw{s, 8 * s, OpeningCurve::cornelissen}}}) {
     const double work = law.work(Harmonic{1.0}, law.critical());
-    const double most = std::sqrt(2.0 * work) / s;
+    const double most = law.largest_onset(work) / s;
+    EXPECT_LE(most, std::sqrt(2.0 * work) / s * (1.0 + 1e-15));
     EXPECT_NEAR(critical_of_work(law, s, work, 3 * s), law.critical(), 1e-13 * law.critical());
     for (const double chi : {0.1, 0.5, 0.99, 1.01, 0.99 * most, most}) {
       const AnyBondLaw moved = law.between(chi * s, critical_of_work(law, chi * s, work, 7 * s));
