@@ -48,11 +48,6 @@ AdmissibleRange admissible_range(const BondStretch& stretch, double limit) {
   return range;
 }
 
-/// A line of states: the direction of the displacements, with the rate of the eigenstretches.
-struct Line {
-  std::span<const double> rate{}, eigenstretch_rate{};
-};
-
 /// Calls visit(thread, point, bond) for every bond with a finite borne stretch, on several threads;
 /// each thread visits consecutive bonds.
 template <class Visit>
@@ -84,19 +79,19 @@ void look_at_bonds(const Assembler& body, const StateView& at, const Visit& visi
   }
 }
 
-std::vector<BondDrive> drives(Assembler& body, const StateView& at, const Line& line) {
+std::vector<BondDrive> drives(Assembler& body, const StateView& at, const StateLine& line) {
   const Bonds& bonds = body.model().bonds();
   std::vector<BondDrive> all(std::size_t(bonds.count()));
   look_at_bonds(body, at, [&](const auto& look) {
 #pragma omp parallel for num_threads(body.threads())
     for (Index i = 0; i < bonds.points(); ++i) {
       for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-        const auto [value, rate] = look.along(i, bond, line.rate, line.eigenstretch_rate);
-        all[std::size_t(bond)] = {value, rate};
+        const auto [value, rate] = look.along(i, bond, line);
+        all[std::size_t(bond)] = BondDrive::by_stretch(value, rate);
       }
     }
   });
-  body.drive(at, line.rate, all);
+  body.add_drive(at, line, all);
   return all;
 }
 
@@ -104,7 +99,7 @@ std::vector<BondDrive> drives(Assembler& body, const StateView& at, const Line& 
 /// BondStretch or a BondDrive.
 template <class Visit>
 void for_each_driven(Assembler& body, const StateView& at, std::span<const double> borne,
-                     const Line& line, const Visit& visit) {
+                     const StateLine& line, const Visit& visit) {
   if (body.model().fails_by_release()) {
     const std::vector<BondDrive> all = drives(body, at, line);
     for_each_bearing(body, borne, [&](int thread, Index i, Offset bond) {
@@ -114,7 +109,7 @@ void for_each_driven(Assembler& body, const StateView& at, std::span<const doubl
   }
   look_at_bonds(body, at, [&](const auto& look) {
     for_each_bearing(body, borne, [&](int thread, Index i, Offset bond) {
-      visit(thread, i, bond, look.along(i, bond, line.rate, line.eigenstretch_rate));
+      visit(thread, i, bond, look.along(i, bond, line));
     });
   });
 }

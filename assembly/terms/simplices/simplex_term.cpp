@@ -96,8 +96,8 @@ class SimplexPasses : public TermPasses, BlockTangent {
 
   /// Slope and curvature along the line by central differences: they only predict where a bond
   /// reaches what it bears.
-  void add_drive(const StateView& at, std::span<const double> rate,
-                 std::span<BondDrive> drives) override {
+  void add_drive(const StateView& at, const StateLine& line, std::span<BondDrive> drives) override {
+    const std::span<const double> rate = line.rate;
     const Influences influences = influences_at(at);
     Kernels::releases(workspace_, at.displacement, influences, releases_);
     std::vector<double> ahead = releases_, behind = releases_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "assembly/energy/kept_state.hpp"
+#include "assembly/terms/bonds/bond_look.hpp"
 #include "assembly/terms/bonds/bond_passes.hpp"
 #include "assembly/terms/model.hpp"
 #include "assembly/terms/states/shared_bonds.hpp"
@@ -97,8 +98,8 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
     }
   }
 
-  void add_drive(const StateView& at, std::span<const double> /*rate*/,
-                 std::span<BondDrive> drives) override {
+  void add_drive(const StateView& at, const StateLine& line, std::span<BondDrive> drives) override {
+    if (term_.extension() == Extension::linear) take_stretches(at, line, drives);
     take_integrities(at);
     found_ = {};  // whose integrities the kernels had
     failure_.with_damage_law(
@@ -277,6 +278,19 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
         return law.of_bond(bond).integrity_after(stretch[std::size_t(bond)]);
       });
     });
+  }
+
+  /// Takes the stretches of the term's own measure.
+  void take_stretches(const StateView& at, const StateLine& line, std::span<BondDrive> drives) {
+    const Bonds& bonds = term_.bonds();
+    const BondLook<D, Measure> look(points_, bonds, at);
+#pragma omp parallel for num_threads(threads_)
+    for (Index i = 0; i < bonds.points(); ++i) {
+      for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+        const auto [value, rate] = look.along(i, bond, line);
+        drives[std::size_t(bond)] = BondDrive::by_stretch(value, rate);
+      }
+    }
   }
 
   /// Energy dissipated by the bonds that are counted here. Bonds that have overshot the stretch
