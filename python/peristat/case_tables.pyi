@@ -255,7 +255,7 @@ class MaterialDamage(Table):
     fracture_toughness: Quantity
     """$K_{Ic}$, can be given instead of `fracture_energy`: $G_c = K_{Ic}^2/E'$, with $E' = E$ in plane stress (and with `cpd` in 2D) and $E/(1 - \\nu^2)$ in plane strain and 3D, with the moduli of the model [Pa*sqrt(m)]. Default: none. Allowed: positive"""
     strength: Quantity
-    """$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the mean over directions (theory); `onset` follows from it, for `blended` the `peak`, for `critical_stretch` the value of `critical`. `cpd` accepts it with `drive = 'stretch'`, at the horizon ratios of `fracture_energy`, in 3D only at smaller ones, where the computation takes less than minutes [Pa]. Default: none. Allowed: positive"""
+    """$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the mean over directions (theory); `onset` follows from it, for `blended` the `peak`, for `critical_stretch` the value of `critical`. `cpd` accepts it at horizon ratios up to 12 in 2D, in 3D only at smaller ones than 3.2, where the computation takes less than minutes [Pa]. Default: none. Allowed: positive"""
     critical: Expression
     """stretch $s_c$ at which a bond breaks [1]. this, `fracture_energy` or `fracture_toughness` is required with a law. Allowed: 1e-9 to 1000, or an expression of `horizon` and `spacing`"""
     onset: Expression

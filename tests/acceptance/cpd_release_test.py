@@ -246,7 +246,6 @@ class CpdRelease(Folder):
         tables = self.body(0.2, BRITTLE)
         for change, words in (
             ('symmetry=[{axis="x", at=0}]', ("material.damage.drive", "planes of symmetry", 'drive = "stretch"')),
-            ('material.damage={law="linear", critical=0.01, strength=10.0, drive="release"}', ("material.damage.strength", "onset")),
             ('material.damage={law="critical_stretch", critical=0.01}', ("material.damage.law", "damage by stretch", 'drive = "release"')),
             ('material={model="cpd", youngs_modulus=1e3, poisson_ratio=-0.1, damage={law="linear", fracture_energy=0.02}}',
              ("material.poisson_ratio", "at least 0")),
