@@ -1,7 +1,8 @@
 """Strength of cpd by release, from the command line: what calibrate and check tell, compared with the reference of
-tests/reference/release_pull.py."""
+tests/reference/release_pull.py, and patches of the lattice that bear it."""
 
 from tests.acceptance.folder import Folder
+from tests.acceptance.motions import columns
 from tests.reference.laws import Law
 from tests.reference.release_pull import ReleasePull
 from tests.reference.tear import Tear
@@ -45,6 +46,26 @@ class CpdStrength(Folder):
                 told = self.told(*question(dimension, ratio, nu, "--law", "critical_stretch", "--strength", STRENGTH))
                 law = Law.of_table({"law": "critical_stretch", "critical": told["damage"]["critical"]})
                 self.assertAlmostEqual(self.pull(dimension, ratio, told).strength(law, step=2e-2) / STRENGTH, 1, delta=1e-6)
+
+    def test_a_patch_bears_the_strength_of_its_direction(self):
+        """A cell of an infinite body under uniaxial strain, free to contract across it, stays homogeneous up to the peak."""
+        for nu in (0.1, 0.45):
+            told = self.told(*question(2, 3.015, nu, *LINEAR))
+            law = Law.of_table({"law": "linear"} | {key: told["damage"][key] for key in ("onset", "critical")})
+            along = self.pull(2, 3.015, told).peak(law, [1, 0], step=2e-3)
+            edge, strain = 4e-3, 2.2 * STRENGTH / E
+            tables = {
+                "dimension": 2,
+                "lattice": {"spacing": 1e-3, "horizon_ratio": 3.015, "thickness": THICKNESS, "shape": [{"add": "box", "min": [0, 0], "max": [edge, edge]}]},
+                "material": {"model": "cpd", "youngs_modulus": E, "poisson_ratio": nu,
+                             "damage": {"law": "linear", "fracture_energy": ENERGY, "strength": STRENGTH}},
+                "period": [{"axis": "x", "from": 0, "to": edge, "gradient": [f"{strain!r}*load", 0]},
+                           {"axis": "y", "from": 0, "to": edge, "gradient": [0, "free"]}],
+                "loading": {"steps": 110}, "solver": {"mode": "newton"}, "output": {"every": 110},
+            }  # fmt: skip
+            rows = columns(self.run_case(tables, code=(0, 3), name="patch"))
+            stress = abs(rows["reaction_x:period_x"]).max() / (edge * THICKNESS)
+            self.assertAlmostEqual(stress / along, 1, delta=0.01)
 
     def test_one_stress_of_both_drives_where_no_triangle_stands_on_a_bond(self):
         words = ("--law", "linear", "--onset", 1e-4, "--critical", 4e-4, "--strengths", "--c1", 1e21)
