@@ -123,7 +123,7 @@ Evaluation Assembler::of_all(const Evaluation& mine, std::span<double> gradient)
 std::vector<BondDrive> Assembler::drives(const StateView& at) {
   std::vector<BondDrive> all =
       stretches_along(points_, model_.bonds(), at, {}, workspace_.threads());
-  drive(at, {}, all);
+  add_drive(at, {}, all);
   return all;
 }
 
@@ -210,12 +210,8 @@ DamageGrowth Assembler::growth(const StateView& at) {
   return of_all(found.growth);
 }
 
-void Assembler::drive(const StateView& at, std::span<const double> rate,
-                      std::span<BondDrive> drives) {
-  for (auto& [stretch, speed, squared] : drives) {
-    squared = {stretch * stretch, 2.0 * stretch * speed, speed * speed};
-  }
-  for_each_term([&](TermPasses& term, Write) { term.add_drive(at, rate, drives); });
+void Assembler::add_drive(const StateView& at, const StateLine& line, std::span<BondDrive> drives) {
+  for_each_term([&](TermPasses& term, Write) { term.add_drive(at, line, drives); });
 }
 
 DamageGrowth Assembler::of_all(const DamageGrowth& mine) const {

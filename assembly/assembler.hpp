@@ -74,10 +74,9 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   /// Damage that committing the state would cause.
   [[nodiscard]] DamageGrowth growth(const StateView& at);
 
-  /// Squared equivalent stretches of bonds that fail by release, see BondDrive.
-  /// @param rate of the displacement along a line of states; empty: there is no line
-  /// @param drives of all bonds; their stretches and rates are given
-  void drive(const StateView& at, std::span<const double> rate, std::span<BondDrive> drives);
+  /// What drives bonds that fail by release.
+  /// @param drives of all bonds; given are those by their stretches in the deformed configuration
+  void add_drive(const StateView& at, const StateLine& line, std::span<BondDrive> drives);
 
   /// Damage state of a history, see assess_damage; the damage of ghosts is meaningless.
   [[nodiscard]] DamageState assess(const History& history, std::span<const double> cut_weight,

@@ -80,10 +80,10 @@ void look_at_bonds(const Assembler& body, const StateView& at, const Visit& visi
   }
 }
 
-std::vector<BondDrive> drives(Assembler& body, const StateView& at, const Line& line) {
+std::vector<BondDrive> drives(Assembler& body, const StateView& at, const StateLine& line) {
   std::vector<BondDrive> all =
       stretches_along(body.points(), body.model().bonds(), at, line, body.threads());
-  body.drive(at, line.rate, all);
+  body.add_drive(at, line, all);
   return all;
 }
 
@@ -91,7 +91,7 @@ std::vector<BondDrive> drives(Assembler& body, const StateView& at, const Line& 
 /// BondStretch or a BondDrive.
 template <class Visit>
 void for_each_driven(Assembler& body, const StateView& at, std::span<const double> borne,
-                     const Line& line, const Visit& visit) {
+                     const StateLine& line, const Visit& visit) {
   if (body.model().fails_by_release()) {
     const std::vector<BondDrive> all = drives(body, at, line);
     for_each_bearing(body, borne, [&](int thread, Index i, Offset bond) {
@@ -101,7 +101,7 @@ void for_each_driven(Assembler& body, const StateView& at, std::span<const doubl
   }
   look_at_bonds(body, at, [&](const auto& look) {
     for_each_bearing(body, borne, [&](int thread, Index i, Offset bond) {
-      visit(thread, i, bond, look.along(i, bond, line.rate, line.eigenstretch_rate));
+      visit(thread, i, bond, look.along(i, bond, line));
     });
   });
 }

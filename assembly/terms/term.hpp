@@ -61,11 +61,10 @@ class TermPasses {
   virtual DamageGrowth growth(const StateView&) { return {}; }
 
   /// Adds to the squared equivalent stretches of bonds that fail by release, which have those of
-  /// their own stretches so far, what else drives them.
-  /// @param rate of the displacement along the line; empty: there is no line
+  /// their own stretches so far, what else drives them. A term with stretches of its own begins
+  /// with these.
   /// @param drives of all bonds
-  virtual void add_drive(const StateView&, std::span<const double> /*rate*/,
-                         std::span<BondDrive> /*drives*/) {}
+  virtual void add_drive(const StateView&, const StateLine&, std::span<BondDrive> /*drives*/) {}
 
   /// Its tangent, in the form of Term::tangent_kind; rows also as products. Blocks that can be
   /// visited can also be stored.

@@ -48,17 +48,17 @@ void refuse_modes_without_potential(const Body& body, const StudyOptions& option
 }
 
 /// Refuses mode path for bodies whose points have states and whose bonds break by their stretch: a
-/// bond's strength then does not say what the body loses with it.
+/// bond's strength then does not say what the body loses with it. By release it does.
 void refuse_events_of_states(const Body& body, const StudyOptions& options) {
   if (options.loading.mode != Mode::path) return;
   const OptionSet can = options_of(body.specification);
   const bool loses_more = can.has(Option::critical_stretch) && !can.has(Option::events);
-  if (!loses_more) return;
+  if (!loses_more || body.model.fails_by_release()) return;
   throw InputError(
       "loading.mode", std::string(options.loading.mode.name),
       is_for(Option::events) +
           ": a bond of this model breaks by its stretch, and its points lose dilatation "
-          "with it");
+          "with it; take damage.drive = \"release\"");
 }
 
 /// Points that fail one by one have no strength that a step could be led to, and what follows one

@@ -25,6 +25,8 @@ namespace {
 
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 8, 1>;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 8, 8>;
+using LargeVector = Eigen::VectorXd;
+using LargeMatrix = Eigen::MatrixXd;
 
 constexpr std::array<std::ptrdiff_t, 3> entries_of_tensor{1, 3, 6};
 
@@ -73,12 +75,12 @@ std::array<double, 3> principal_strains(const Vector& kelvin) {
   return values;
 }
 
-/// Numbers directions; opposite ones and those that differ by round-off have one number.
+/// Numbers vectors; opposite ones and those that differ by round-off have one number.
 class Numbers {
  public:
-  int of(const Coordinates& direction) {
+  int of(const Coordinates& vector) {
     std::array<long long, 3> rounded{};
-    for (std::size_t c = 0; c < 3; ++c) rounded[c] = std::llround(direction[c] * 1e9);
+    for (std::size_t c = 0; c < 3; ++c) rounded[c] = std::llround(vector[c] * 1e9);
     if (rounded < std::array<long long, 3>{}) {
       for (long long& part : rounded) part = -part;
     }
@@ -99,6 +101,7 @@ struct BulkPull::State {
   double theta = 0.0;             // of states
   std::vector<double> largest{};  // (equivalent) stretches of fibres so far
   std::vector<AnyLaw> laws{};     // of fibres, whose onsets move; empty: all have the given one
+  LargeVector driven{};  // with simplices: equivalent stretches of fibres as far as they grow
 };
 
 /// The equilibria of one law under one form of stress.
@@ -129,10 +132,7 @@ class BulkPull::Equilibrium {
     if (!(eigenvalues.front() > 1e-12 * eigenvalues.back())) return state;
     const Vector of_unit = strain_of_form(stiffness);
     const double theta = dilatation(of_unit);
-    double longest = 0.0;
-    for (const Fibre& fibre : bulk_.fibres_) {
-      longest = std::max(longest, driving(fibre, vector(fibre.dyad).dot(of_unit), theta).stretch);
-    }
+    const double longest = std::ranges::max(driving(of_unit, theta));
     const double rho = moving_ ? moving_->utilisation(principal(of_unit)) : 0.0;
     const double begin = moving_ ? onset_at(longest, rho) : law_.onset();
     state.stress = begin / longest;
@@ -149,6 +149,7 @@ class BulkPull::Equilibrium {
     State state = since;
     state.strain *= along / since.along;
     state.theta *= along / since.along;
+    state.driven *= along / since.along;
     state.along = along;
     constexpr int most_iterations = 30;
     for (int k = 0; k < most_iterations; ++k) {
@@ -228,13 +229,11 @@ class BulkPull::Equilibrium {
   }
 
   /// Moves the onsets of fibres that have not started.
-  void renew(State& state) const {
+  /// @param now (equivalent) stretches
+  void renew(State& state, const std::vector<double>& now) const {
     double longest = 0.0;
-    for (std::size_t k = 0; k < fibres_.size(); ++k) {
-      const Fibre& fibre = bulk_.fibres_[k];
-      if (state.largest[k] >= state.laws[k].critical()) continue;
-      const double stretch = vector(fibre.dyad).dot(state.strain);
-      longest = std::max(longest, driving(fibre, stretch, state.theta).stretch);
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      if (state.largest[k] < state.laws[k].critical()) longest = std::max(longest, now[k]);
     }
     const AnyLaw moved =
         moved_law(onset_at(longest, moving_->utilisation(principal(state.strain))));
@@ -253,13 +252,66 @@ class BulkPull::Equilibrium {
     return strain;
   }
 
-  void grow(State& state) const {
-    for (std::size_t k = 0; k < fibres_.size(); ++k) {
+  /// (Equivalent) stretches of the fibres, with their integrities.
+  [[nodiscard]] std::vector<double> driving(const Vector& strain, double theta) {
+    std::vector<double> all(fibres_.size());
+    if (bulk_.releases_simplices_) find_releases(strain);
+    for (std::size_t k = 0; k < all.size(); ++k) {
       const Fibre& fibre = bulk_.fibres_[k];
-      const double stretch = vector(fibre.dyad).dot(state.strain);
-      state.largest[k] = std::max(state.largest[k], driving(fibre, stretch, state.theta).stretch);
+      const double s = vector(fibre.dyad).dot(strain);
+      all[k] = bulk_.releases_simplices_ ? release(k, s) : driving(fibre, s, theta).stretch;
     }
-    if (moving_) renew(state);
+    return all;
+  }
+
+  void grow(State& state) {
+    const std::vector<double> now = driving(state.strain, state.theta);
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      state.largest[k] = std::max(state.largest[k], now[k]);
+    }
+    if (moving_) renew(state, now);
+  }
+
+  /// Finds the derivatives of twice the energy density W by the integrities T_b of fibres, and
+  /// those of W by T_b and the strain, and by T_b and another integrity, of fibres that soften.
+  void find_releases(const Vector& strain) {
+    const auto count = std::ptrdiff_t(fibres_.size());
+    released_.resize(count);
+    by_strain_.resize(count, size_);
+    by_integrity_.setZero(count, count);
+    for (std::ptrdiff_t k = 0; k < count; ++k) {
+      const auto& [dyad, stiffness, drop] = bulk_.fibres_[std::size_t(k)];
+      const double force = stiffness * vector(dyad).dot(strain);
+      by_strain_.row(k) = force * vector(dyad).transpose();
+      released_[k] = force * vector(dyad).dot(strain);
+    }
+    for (const auto& [sides, of_measure, all] : bulk_.simplices_) {
+      const Vector measure = vector(of_measure);
+      const double change = measure.dot(strain);
+      for (const Simplex& simplex : all) {
+        for (int k = 0; k < sides; ++k) {
+          const double others = simplex.stiffness * integrity(simplex, sides, k) * change;
+          by_strain_.row(simplex.side[k]) += others * measure.transpose();
+          released_[simplex.side[k]] += others * change;
+          for (int l = 0; l < k && softens(simplex.side[k]); ++l) {
+            if (!softens(simplex.side[l])) continue;
+            const double rest =
+                0.5 * simplex.stiffness * integrity(simplex, sides, k, l) * change * change;
+            by_integrity_(simplex.side[k], simplex.side[l]) += rest;
+            by_integrity_(simplex.side[l], simplex.side[k]) += rest;
+          }
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] bool softens(int fibre) const { return fibres_[std::size_t(fibre)].slope != 0.0; }
+
+  /// Equivalent stretch of a fibre of stretch s, after find_releases.
+  [[nodiscard]] double release(std::size_t k, double s) const {
+    const double released = released_[std::ptrdiff_t(k)];
+    const bool drives = s > 0.0 && released > 0.0;
+    return drives ? std::sqrt(released / bulk_.fibres_[k].stiffness) : 0.0;
   }
 
   void set_secants(const State& state) {
@@ -268,9 +320,12 @@ class BulkPull::Equilibrium {
     }
   }
 
-  [[nodiscard]] double integrity(const Simplex& of, int sides) const {
+  /// Product of the integrities of the sides, except two.
+  [[nodiscard]] double integrity(const Simplex& of, int sides, int one = -1, int other = -1) const {
     double product = 1.0;
-    for (int k = 0; k < sides; ++k) product *= fibres_[std::size_t(of.side[k])].integrity;
+    for (int k = 0; k < sides; ++k) {
+      if (k != one && k != other) product *= fibres_[std::size_t(of.side[k])].integrity;
+    }
     return product;
   }
 
@@ -296,6 +351,7 @@ class BulkPull::Equilibrium {
   /// One step of Newton's method for strain, stress and, of states, theta. Returns the change of
   /// the strain.
   double improve(State& state, const std::vector<double>& largest) {
+    if (bulk_.releases_simplices_) return improve_by_release(state, largest);
     const std::ptrdiff_t unknowns = size_ + (bulk_.zeta_ == 0.0 ? 1 : 2);
     Matrix tangent = Matrix::Zero(unknowns, unknowns);
     Vector residual = Vector::Zero(unknowns);
@@ -327,6 +383,69 @@ class BulkPull::Equilibrium {
     state.stress -= change[size_];
     if (bulk_.zeta_ != 0.0) state.theta -= change[size_ + 1];
     return change.head(size_).norm();
+  }
+
+  /// The same with simplices that are released: the equivalent stretches k_b of fibres that soften
+  /// are unknown, too, with the equations k_b^2 a_b / 2 = dW/dT_b.
+  double improve_by_release(State& state, const std::vector<double>& largest) {
+    bool is_new = false;  // a fibre begins or ceases to soften
+    const std::vector<std::ptrdiff_t> growing = find_growing(state, largest, is_new);
+    const auto count = std::ptrdiff_t(growing.size()), first = size_ + 1;
+    LargeMatrix tangent = LargeMatrix::Zero(first + count, first + count);
+    LargeVector residual = LargeVector::Zero(first + count);
+    const Matrix stiffness = secant_stiffness();
+    tangent.topLeftCorner(size_, size_) = stiffness;
+    tangent.block(0, size_, size_, 1) = -form_;
+    tangent.block(size_, 0, 1, size_) = form_.transpose();
+    residual.head(size_) = stiffness * state.strain - state.stress * form_;
+    residual[size_] = form_.dot(state.strain) - state.along;
+    for (std::ptrdiff_t row = 0; row < count; ++row) {
+      const std::ptrdiff_t k = growing[std::size_t(row)], here = first + row;
+      const double a = bulk_.fibres_[std::size_t(k)].stiffness, driven = state.driven[k];
+      residual[here] = 0.5 * (a * driven * driven - released_[k]);
+      tangent.block(here, 0, 1, size_) = -by_strain_.row(k);
+      for (std::ptrdiff_t column = 0; column < count; ++column) {
+        const std::ptrdiff_t l = growing[std::size_t(column)];
+        tangent(here, first + column) = -by_integrity_(k, l) * fibres_[std::size_t(l)].slope;
+      }
+      tangent(here, here) += a * driven;
+      tangent.block(0, here, size_, 1) =
+          by_strain_.row(k).transpose() * fibres_[std::size_t(k)].slope;
+    }
+    solve_square({tangent.data(), std::size_t(tangent.size())},
+                 {residual.data(), std::size_t(residual.size())});
+    state.strain -= residual.head(size_);
+    state.stress -= residual[size_];
+    for (std::ptrdiff_t row = 0; row < count; ++row) {
+      state.driven[growing[std::size_t(row)]] -= residual[first + row];
+    }
+    return is_new ? std::numeric_limits<double>::max() : residual.head(size_).norm();
+  }
+
+  /// Fibres that are driven beyond what they have been, and releases with the integrities of all.
+  std::vector<std::ptrdiff_t> find_growing(State& state, const std::vector<double>& largest,
+                                           bool& is_new) {
+    if (state.driven.size() == 0) state.driven = LargeVector::Zero(std::ptrdiff_t(fibres_.size()));
+    const auto set_integrity = [&](std::size_t k) {
+      const double driven = state.driven[std::ptrdiff_t(k)];
+      const AnyLaw& law = law_of(state, k);
+      fibres_[k].integrity = law.integrity(std::max(driven, largest[k]));
+      fibres_[k].slope = driven > 0.0 ? law.slope(driven) : 0.0;
+    };
+    for (std::size_t k = 0; k < fibres_.size(); ++k) set_integrity(k);
+    const std::vector<double> now = driving(state.strain, 0.0);
+    std::vector<std::ptrdiff_t> growing;
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      double& driven = state.driven[std::ptrdiff_t(k)];
+      const bool grew = driven > 0.0, grows = now[k] > largest[k];
+      if (grows) growing.push_back(std::ptrdiff_t(k));
+      if (grows == grew) continue;
+      is_new = true;
+      driven = grows ? now[k] : 0.0;
+      set_integrity(k);
+    }
+    if (is_new) find_releases(state.strain);
+    return growing;
   }
 
   /// The equation of theta, times sum a / d, and the derivatives by it.
@@ -410,6 +529,8 @@ class BulkPull::Equilibrium {
   double total_ = 0.0;  // sum a
   std::vector<Strained> fibres_;
   std::vector<double> slopes_;
+  LargeVector released_;  // see find_releases
+  LargeMatrix by_strain_, by_integrity_;
 };
 
 BulkPull::BulkPull(const BondSetting& setting, double micromodulus, double lame_ratio)
@@ -448,16 +569,20 @@ BulkPull::BulkPull(const BondSetting& setting, double micromodulus, double lame_
   for (WeightedDirection& of : directions_) of.normal = bulk.turned(of.normal);
 }
 
-BulkPull::BulkPull(const Kernel& kernel, double spacing, const CpdConstants& constants)
-    : dimension_(kernel.dimension), directions_(sector_directions(kernel.dimension)) {
+BulkPull::BulkPull(const Kernel& kernel, double spacing, const CpdConstants& constants,
+                   bool by_release)
+    : dimension_(kernel.dimension),
+      releases_simplices_(by_release && (constants.c2 != 0.0 || constants.c3 != 0.0)),
+      directions_(sector_directions(kernel.dimension)) {
   for (const Coordinates& corner : sector_corners(dimension_)) directions_.push_back({corner, 0});
   const BulkNeighbourhood bulk =
       bulk_neighbourhood(dimension_, spacing, kernel.horizon, kernel.cross_section);
   const LatticeBall ball(dimension_, spacing, kernel.horizon);
   Numbers numbers;
   const auto number_of = [&](const Coordinates& arm) {
-    const Coordinates n = unit(arm);
-    const int number = numbers.of(n);
+    const Coordinates n = unit(arm),
+                      in_spacings{arm[0] / spacing, arm[1] / spacing, arm[2] / spacing};
+    const int number = numbers.of(releases_simplices_ ? in_spacings : n);
     if (std::size_t(number) == fibres_.size()) fibres_.push_back({projector(n, dimension_), 0.0});
     return number;
   };

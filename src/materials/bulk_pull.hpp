@@ -47,6 +47,13 @@ struct MovingOnsets {
 /// s_b > 0. Of brittle bonds the whole drop counts, so that zeta d kappa r^2 s_b^2 / (2 M) is
 /// subtracted. With zeta = 0, as of bonds, s_eq is s_b.
 ///
+/// Bonds of cpd by release (see SimplexTerm) have
+///
+///   s_eq^2 = s_b^2 + sum over t on b of (a_t / a_b) (M : eps)^2 (product of the T of the other
+///            sides)  where s_b > 0,
+///
+/// so that each bond counts by itself, not only its direction.
+///
 /// Directions n are those of sector_directions for square and cubic lattices, otherwise 24 (2D) or
 /// 60 (3D) that are spread evenly. Without a lattice, or with more than most_directions of bonds
 /// (of bonds of states: more bonds), the bonds' directions are spread evenly, too, with the
@@ -55,7 +62,9 @@ class BulkPull {
  public:
   /// @param lame_ratio lambda/mu of states; 1: bonds
   BulkPull(const BondSetting& setting, double micromodulus, double lame_ratio = 1.0);
-  BulkPull(const Kernel& kernel, double spacing, const CpdConstants& constants);
+  /// @param by_release what drives the bonds of cpd; otherwise their stretch
+  BulkPull(const Kernel& kernel, double spacing, const CpdConstants& constants,
+           bool by_release = false);
 
   /// Largest stress [Pa]; not for compression, under which bonds along it never fail. Infinite if
   /// the stress drives no bond, as equal tension does with lambda = 0, or any with bonds of states
@@ -83,7 +92,7 @@ class BulkPull {
   /// Symmetric, in Kelvin's notation: off-diagonal entries times sqrt(2).
   using Tensor = std::array<double, 6>;
 
-  /// All bonds of a direction; of states two opposite ones.
+  /// All bonds of a direction; by release two opposite ones.
   struct Fibre {
     Tensor dyad;
     double stiffness;   // [Pa]
@@ -119,6 +128,7 @@ class BulkPull {
 
   int dimension_;
   double zeta_ = 0.0;
+  bool releases_simplices_ = false;  // bonds are driven by triangles and tetrahedra, too
   std::vector<Fibre> fibres_;
   std::vector<Simplices> simplices_;  // grouped by measure
   std::vector<WeightedDirection> directions_;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,6 +28,16 @@ struct Bonds {
   [[nodiscard]] double weight(Offset bond) const { return kind[bond].weight; }
   [[nodiscard]] Offset count() const { return static_cast<Offset>(partner.size()); }
   [[nodiscard]] Index points() const { return static_cast<Index>(offset.size()) - 1; }
+
+  /// The bond between two points.
+  [[nodiscard]] std::optional<Offset> find(Index one, Index other) const {
+    const auto [lower, upper] = std::minmax(one, other);
+    const auto first = partner.begin() + offset[std::size_t(lower)];
+    const auto last = partner.begin() + offset[std::size_t(lower) + 1];
+    const auto found = std::lower_bound(first, last, upper);
+    if (found == last || *found != upper) return std::nullopt;
+    return Offset(found - partner.begin());
+  }
 
   /// Removes every bond with drop(i, bond), i its lower point; the others keep their order. Calls
   /// drop once per bond, in order, before the bond moves: it may read the bond's partner, length

@@ -161,11 +161,26 @@ class Symmetry(Constrained):
             self.compare_cracks(STATE.format(ratio) + damage.format("critical_stretch"), "2e-4", 50)
             self.compare_cracks(STATE.format(ratio) + damage.format("linear") + "onset = 0.005\n", pull, 8)
 
-    def compare_cracks(self, material, pull, least):
+    def test_a_crack_of_cpd_by_release_runs_as_in_the_whole_plate(self):
+        damage = '[material.damage]\ndrive = "release"\nlaw = "{}"\ncritical = 0.01\nno_fail = ["top"]\n'
+        for ratio in (0.1, 0.45):
+            material = f'model = "cpd"\nyoungs_modulus = 200e9\npoisson_ratio = {ratio}\n'
+            self.compare_cracks(material + damage.format("critical_stretch"), "2e-4", 50)
+            if ratio == 0.1:
+                self.compare_cracks(material + damage.format("linear") + "onset = 0.005\n", "4e-5", 8)
+
+    def test_a_path_of_cpd_through_the_plane_is_that_of_the_whole_plate(self):
+        """From notches at both sides, so that triangles with sides between images fail; also by stretch."""
+        damage = '[material.damage]\ndrive = "{}"\nlaw = "critical_stretch"\ncritical = 0.01\nno_fail = ["top"]\n'
+        for drive, ratio in (("release", 0.1), ("release", 0.45), ("stretch", 0.4)):
+            material = f'model = "cpd"\nyoungs_modulus = 200e9\npoisson_ratio = {ratio}\n' + damage.format(drive)
+            self.compare_cracks(material, "1e-4", 20, mode="path", notches=((-0.013, -0.004), (0.004, 0.013)))
+
+    def compare_cracks(self, material, pull, least, mode="adaptive", notches=((-0.004, 0.004),)):
         crack = "[[crack]]\nfrom = [{}, 0.0]\nto = [{}, 0.0]\n"
         text = dict(material=material, pull=pull)
-        settings = ("loading.steps=4", "solver.mode='adaptive'", "solver.relative_tolerance=1e-10")
-        notch = crack.format(-0.004, 0.004)
+        settings = ("loading.steps=4", f"solver.mode='{mode}'", "solver.relative_tolerance=1e-10")
+        notch = "".join(crack.format(*ends) for ends in notches)
         whole = self.rows(plate("", **text, more=notch), *settings, name="whole")
         part = self.rows(plate("x", **text, more=notch), *settings, name="part")
         self.assertGreater(whole[-1]["broken_bonds"], least)
@@ -267,6 +282,7 @@ class Periodic(Constrained):
     def torn(self, crack, material, strain):
         """A cell of 24 x 12 points, longer than 20, in which a crack begins to run."""
         softening = 'law = "tanh_continuous"\nonset = 0.003\ncritical = 0.008\n'
+        softening += 'drive = "release"\n' if "cpd" in material else ""
         text = CELL.format(material=material + "[material.damage]\n" + softening, x=[0, 0], y=[0, f"{strain}*load"])
         text = text.replace("0.008, 0.006]", "0.024, 0.012]").replace("to = 0.008", "to = 0.024").replace("to = 0.006", "to = 0.012")
         text += f"[[crack]]\nfrom = [-0.004, {crack}]\nto = [0.004, {crack}]\n"
@@ -275,7 +291,7 @@ class Periodic(Constrained):
 
     def test_a_crack_on_the_side_of_a_cell_is_that_within_it(self):
         """The choice of the cell within the same lattice changes nothing, to the round-off of softening bonds."""
-        for material, strain in ((BONDS, 3e-3), (STATE.format(0.1), 3.4e-3), (STATE.format(0.45), 2.7e-3)):
+        for material, strain in ((BONDS, 3e-3), (STATE.format(0.1), 3.4e-3), (STATE.format(0.45), 2.7e-3), (CPD_2D, 2.9e-3)):
             with self.subTest(material):
                 self.compare_cells(material, strain)
 

@@ -245,8 +245,6 @@ class CpdRelease(Folder):
     def test_what_it_does_not_do_is_refused(self):
         tables = self.body(0.2, BRITTLE)
         for change, words in (
-            ('symmetry=[{axis="x", at=0}]', ("material.damage.drive", "planes of symmetry", 'drive = "stretch"')),
-            ('material.damage={law="linear", critical=0.01, strength=10.0, drive="release"}', ("material.damage.strength", "onset")),
             ('material.damage={law="critical_stretch", critical=0.01}', ("material.damage.law", "damage by stretch", 'drive = "release"')),
             ('material={model="cpd", youngs_modulus=1e3, poisson_ratio=-0.1, damage={law="linear", fracture_energy=0.02}}',
              ("material.poisson_ratio", "at least 0")),
@@ -263,6 +261,18 @@ class CpdRelease(Folder):
             with self.subTest(change):
                 self.refusal(tables, change)
                 self.assert_refused(self.ended, *words)
+
+    def test_planes_that_give_an_interaction_a_bond_twice_are_refused(self):
+        block = BLOCK | {"material": {"model": "cpd"} | self.constants(0.05, 3) | {"damage": BRITTLE}}
+        strip = self.body(0.2, BRITTLE, crack=False) | {"symmetry": [{"axis": "y"}]}
+        strip |= {"period": [{"axis": "x", "from": 0, "to": 0.1, "gradient": ["free", 0]}]}
+        strip["lattice"] = strip["lattice"] | {"shape": [{"add": "box", "min": [0, 0], "max": [0.1, 1.2]}], "layer": PLATE["lattice"]["layer"][1:]}
+        strip["support"], strip["material"]["damage"] = PLATE["support"][1:], BRITTLE | {"no_fail": ["high"]}
+        for tables, planes in ((block, ["x", "y"]), (strip, ["y"])):
+            refusal = self.refusal(tables | {"symmetry": [{"axis": axis} for axis in planes]})
+            self.assertIn("material.damage.drive", refusal)
+            self.assertIn("plane", refusal)
+        self.assert_completed(self.command("check", block | {"symmetry": [{"axis": "x"}]}))
 
     def test_the_record_names_bonds_that_are_driven(self):
         """A step far beyond the onset: all that is driven breaks in one avalanche, and no more energy than there is."""

@@ -228,6 +228,51 @@ class Fracture(Comparison):
             self.expect_same(whole, output)
 
 
+    CPD = TORN.replace('model = "bond"\n', 'model = "cpd"\npoisson_ratio = 0.45\n') + STORED
+    # Tetrahedra: bonds that share no point depend on each other.
+    BLOCK = """
+    dimension = 3
+    [lattice]
+    spacing = 0.1
+    horizon_ratio = 1.8
+    shape = [{ add = "box", min = [0, 0, 0], max = [0.5, 0.7, 0.4] }]
+    layer = [{ name = "bottom", side = "y-" }, { name = "top", side = "y+" }]
+    [[crack]]
+    vertices = [[-0.1, 0.38, -0.1], [0.22, 0.38, -0.1], [0.22, 0.38, 0.5], [-0.1, 0.38, 0.5]]
+    [material]
+    model = "cpd"
+    youngs_modulus = 1e9
+    poisson_ratio = 0.35
+    [[support]]
+    set = "bottom"
+    displacement = [0, 0, 0]
+    [[support]]
+    set = "top"
+    displacement = ["0.01*load", "0.08*load", 0]
+    """ + STORED
+
+    def of_release(self, law, *more):
+        return self.of_states(law.replace("{", '{drive="release", '), *more)
+
+    def test_triangles_that_are_torn_by_what_their_bonds_release(self):
+        brittle, _, softening = self.TORN_STATES
+        for *case, broken in (brittle, softening, (*softening[:2], 0.1, *softening[3:])):
+            one = self.compare_torn((2, 3), *self.of_release(*case), "loading.steps=2", text=self.CPD)
+            with h5py.File(one / "results.h5") as file:
+                self.assertGreater(file["history/dissipated_energy"][-1], 0.0)
+            self.assertGreaterEqual(len(self.broken(one)), broken)
+
+    def test_tetrahedra_that_are_torn_by_what_their_bonds_release(self):
+        for law, ratio in (('{law="linear", onset=0.02, critical=0.6}', 0.35), ('{law="linear", onset=0.02, critical=0.6}', 0.1)):
+            one = self.compare_torn((2, 3), *self.of_release(law, "newton", ratio, 0.5), "loading.steps=2", text=self.BLOCK)
+            with h5py.File(one / "results.h5") as file:
+                self.assertGreater(file["history/dissipated_energy"][-1], 0.0)
+
+    def test_triangles_beside_planes_are_refused(self):
+        settings = self.of_release(*self.TORN_STATES[0][:-1])
+        self.assertIn("is for one rank with planes", self.refusal(self.CPD, *settings, self.HALF))
+
+
 # The ring around a tip extends over several parts; the load is of mixed mode.
 TIP = """
 dimension = 2

@@ -5,7 +5,7 @@ import numpy
 
 from tests.acceptance.folder import Folder
 from tests.acceptance.motions import columns
-from tests.acceptance.state_solid_test import DAMAGE, SOLID
+from tests.acceptance.state_solid_test import SOLID
 from tests.acceptance.states_test import CRACK, PULL, REGION, cut, solid
 from tests.reference.events import AT_STRENGTH, TIE
 from tests.reference.results import Results
@@ -27,6 +27,12 @@ def damage(law):
 def plate(law=BRITTLE, nu=0.2, more=""):
     head, crack, tail = cut(PLATE, poisson_ratio=nu).partition("[[crack]]")
     return head + damage(law) + crack + tail + more + '[solver]\nmode = "path"\n'
+
+
+def linear(text):
+    """The same of the linear solid, model lps as an energy."""
+    text = text.replace('"state"', '"lps"').replace("[material]", '[quadrature]\nform = "energy"\n[material]', 1)
+    return text.replace("[material.damage]\n", '[material.damage]\ndrive = "release"\n')
 
 
 class Paths(Folder):
@@ -95,6 +101,17 @@ class Judged(Paths):
                 self.assertTrue((rows["on_response"] == 0).any())
                 steps = self.run_case(plate(nu=nu), 'solver.mode="adaptive"', "loading.steps=60", name="adaptive")
                 self.judge_against_steps(rows, columns(steps))
+
+    def test_of_the_linear_solid(self):
+        for nu, law, teeth in ((0.2, BRITTLE, 10), (0.45, BRITTLE, 10), (0.2, LINEAR, 2)):
+            with self.subTest(nu=nu, law=law["law"]):
+                text = linear(plate(law, nu, f"teeth = {teeth}\n"))
+                rows = self.followed(text, law, teeth=teeth)
+                self.assertGreater(rows["broken_bonds"][-1], 10)
+                self.assertTrue((rows["on_response"] == 0).any())
+                if law is BRITTLE:
+                    steps = self.run_case(text.replace(f"teeth = {teeth}\n", ""), 'solver.mode="adaptive"', "loading.steps=60", name="adaptive")
+                    self.judge_against_steps(rows, columns(steps))
 
     def judge_against_steps(self, rows, steps):
         """The peak is that of mode adaptive, but for a step of its load."""
@@ -183,11 +200,28 @@ class OnePath(Paths):
         self.judge_ledger(rows)
 
 
+    def test_of_small_stretches_the_linear_solid_has_that_of_finite_strain(self):
+        text = plate(BRITTLE | {"critical": 1e-8}, 0.45).replace("0.012*load", "1.2e-8*load").replace("[0.4, 0.6]", "[0.42, 0.6]")
+        expected, rows = self.broken(self.run_case(text)), columns(self.folder / "out")
+        self.assertGreater(len(expected), 50)
+        for changes in ((), ("loading.steps=37",), ("loading.table=[0, 0.7, -0.7, 1]",), ('solver.linear="pcg"',)):
+            with self.subTest(changes):
+                folder = self.run_case(linear(text), *changes, name="linear", threads=1 if changes else 2)
+                self.assertEqual(self.broken(folder), expected)
+                others = columns(folder)
+                self.judge_ledger(others)
+                for key in ("dissipated_energy", "drained_energy"):
+                    self.assertAlmostEqual(others[key][-1] / rows[key][-1], 1, delta=1e-6)
+                peaks = [numpy.abs(of["reaction_y:high"]).max() for of in (rows, others)]
+                self.assertAlmostEqual(peaks[1] / peaks[0], 1, delta=1e-7)
+
+
 class Limits(Paths):
     def test_bonds_that_are_only_compressed_never_fail(self):
         rows = columns(self.run_case(plate(nu=0.45).replace("0.012*load", "-0.006*load")))
         self.assertEqual(rows["broken_bonds"][-1], 0)
 
     def test_by_stretch_it_is_refused(self):
-        text = PLATE.replace('"state"', '"lps"').replace("[material]", '[quadrature]\nform = "energy"\n[material]', 1)
-        self.assertIn('and "state"', self.refusal(text.replace("[[crack]]", DAMAGE + "[[crack]]", 1), 'solver.mode="path"'))
+        refusal = self.refusal(linear(plate()), 'material.damage.drive="stretch"')
+        self.assertIn('and "state"', refusal)
+        self.assertIn('drive = "release"', refusal)

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "assembly/energy/state.hpp"
+#include "assembly/terms/bond_drive.hpp"
 #include "src/geometry/points.hpp"
 #include "src/measures/length.hpp"
 #include "src/neighbourhood/bonds.hpp"
@@ -15,27 +16,25 @@ struct BondStretch {
 };
 
 /// Kinematics of single bonds of a body at a state, which must outlive it.
-template <int D>
+template <int D, class Measure = Length>
 class BondLook {
  public:
   BondLook(const Points& points, const Bonds& bonds, const StateView& at)
       : points_(points), bonds_(bonds), displacement_(at.displacement), free_(at.eigenstretch()) {}
 
-  /// @param direction rate of the displacement, or empty
-  [[nodiscard]] BondStretch along(Index i, Offset bond, std::span<const double> direction,
-                                  std::span<const double> free_rate) const {
+  [[nodiscard]] BondStretch along(Index i, Offset bond, const StateLine& line) const {
     const Index j = bonds_.partner[bond];
-    const auto found =
-        Length::at<D, double>(bonds_.inverse_length(bond), {difference(points_.reference, i, j)},
-                              {difference(displacement_, i, j)});
+    const auto found = Measure::template at<D, double>(bonds_.inverse_length(bond),
+                                                       {difference(points_.reference, i, j)},
+                                                       {difference(displacement_, i, j)});
     BondStretch stretch{found.relative_change - mean(free_, i, bond)};
-    if (direction.empty()) return stretch;
+    if (line.rate.empty()) return stretch;
     stretch.rate =
-        dot<D>(found.gradient[0], difference(direction, i, j)) * found.inverse_reference -
-        mean(free_rate, i, bond);
+        dot<D>(found.gradient[0], difference(line.rate, i, j)) * found.inverse_reference -
+        mean(line.eigenstretch_rate, i, bond);
     return stretch;
   }
-  [[nodiscard]] double stretch(Index i, Offset bond) const { return along(i, bond, {}, {}).value; }
+  [[nodiscard]] double stretch(Index i, Offset bond) const { return along(i, bond, {}).value; }
 
  private:
   [[nodiscard]] Vector<D, double> difference(std::span<const double> field, Index i,

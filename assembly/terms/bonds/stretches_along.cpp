@@ -7,14 +7,14 @@ namespace {
 
 template <int D>
 std::vector<BondDrive> along(const Points& points, const Bonds& bonds, const StateView& at,
-                             const Line& line, int threads) {
+                             const StateLine& line, int threads) {
   const BondLook<D> look(points, bonds, at);
   std::vector<BondDrive> all(std::size_t(bonds.count()));
 #pragma omp parallel for num_threads(threads)
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const auto [value, rate] = look.along(i, bond, line.rate, line.eigenstretch_rate);
-      all[std::size_t(bond)] = {value, rate};
+      const auto [value, rate] = look.along(i, bond, line);
+      all[std::size_t(bond)] = BondDrive::by_stretch(value, rate);
     }
   }
   return all;
@@ -23,7 +23,7 @@ std::vector<BondDrive> along(const Points& points, const Bonds& bonds, const Sta
 }  // namespace
 
 std::vector<BondDrive> stretches_along(const Points& points, const Bonds& bonds,
-                                       const StateView& at, const Line& line, int threads) {
+                                       const StateView& at, const StateLine& line, int threads) {
   switch (points.dimension) {
     case 1:
       return along<1>(points, bonds, at, line, threads);

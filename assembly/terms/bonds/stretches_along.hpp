@@ -10,14 +10,9 @@
 
 namespace peristat {
 
-/// A line of states: the direction of the displacements, with the rate of the eigenstretches.
-struct Line {
-  std::span<const double> rate{}, eigenstretch_rate{};
-};
-
-/// Stretches of all bonds and their rates along a line, without what drives them.
+/// What their own stretches drive of all bonds, along a line.
 [[nodiscard]] std::vector<BondDrive> stretches_along(const Points& points, const Bonds& bonds,
-                                                     const StateView& at, const Line& line,
+                                                     const StateView& at, const StateLine& line,
                                                      int threads);
 
 }  // namespace peristat

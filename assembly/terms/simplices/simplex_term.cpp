@@ -11,10 +11,12 @@
 
 #include "assembly/terms/bonds/bond_look.hpp"
 #include "assembly/terms/failure/one_by_one.hpp"
+#include "assembly/terms/failure/shared_bonds.hpp"
 #include "assembly/terms/model.hpp"
 #include "assembly/terms/simplices/bond_simplices.hpp"
 #include "assembly/terms/simplices/simplex_kernels.hpp"
 #include "src/core/vector_verbs.hpp"
+#include "src/geometry/counts_bond.hpp"
 
 namespace peristat {
 namespace {
@@ -66,41 +68,49 @@ class SimplexPasses : public TermPasses, BlockTangent {
 
   std::optional<DamageGrowth> release(const StateView& at, History& history) override {
     if (!failure_.fails_by_release()) return std::nullopt;
-    std::vector<double> left;  // integrities of bonds and points
-    const auto influences = [&] { return influences_of(left, at); };
-    const auto find = [&](const auto& visit) { visit_driven(at, influences(), visit); };
-    const auto damage = [&](const DrivenBond& one, DamageGrowth& growth) {
-      if (left.empty()) left = integrities(at.history);
+    std::vector<double> left = integrities(at.history);
+    DamageGrowth growth;
+    bool is_changed = false;
+    const auto find = [&](const auto& visit) { visit_driven(at, influences_of(left, at), visit); };
+    const auto decide = [&](const DrivenBond& one, DamageGrowth& counted) {
+      return decide_on(one, at, influences_of(left, at), counted);
+    };
+    const auto take = [&](Offset bond, const Loss& loss) {
+      is_changed = true;
       const std::span<double> stretches = history.change(slot_of_bonds_);
       failure_.with_damage_law(stretches, [&](const auto& law) {
-        const auto bond = std::size_t(one.bond);
-        const Index j = term_.bonds().partner[one.bond];
-        const double release =
-            simplices_of_bond().release(one.point, j, at.displacement, influences());
-        const auto& of_bond = law.of_bond(one.bond);
-        double& stretch = stretches[bond];
-        const double driving = equivalent_stretch(of_bond, one.bond, one.stretch, release);
-        if (!damage_driven(of_bond, driving, stretch)) return;
-        left[bond] = of_bond.integrity_after(stretch);
-        for (const Index point : {one.point, j}) {
-          double& least = left[std::size_t(term_.bonds().count()) + std::size_t(point)];
-          least = std::min(least, left[bond]);
-        }
-        ++growth.degrading;
-        growth.breaking += of_bond.is_broken(stretch);
+        term_.alike().for_each(bond, [&](Offset one) {
+          stretches[std::size_t(one)] = loss[0];
+          leave(law.of_bond(one).integrity_after(loss[0]), one, left);
+        });
       });
     };
-    const DamageGrowth growth = damage_one_by_one(workspace_.threads.threads(), find, damage);
-    if (growth.degrading > 0) history.replace(slot_, std::move(left));
+    const int threads = workspace_.threads.threads();
+    if (setting_.index_map.is_whole()) {
+      growth = damage_one_by_one(threads, find, [&](const DrivenBond& one, DamageGrowth& counted) {
+        const Loss loss = decide(one, counted);
+        if (loss[0] > 0.0) take(one.bond, loss);
+      });
+    } else {
+      // Bonds of a tetrahedron need not share a point.
+      damage_on_ranks(
+          setting_.index_map, term_.bonds(),
+          term_.tetrahedra() ? LossReaches::any_bond : LossReaches::bonds_of_points, threads, find,
+          [&](const DrivenBond& one) { return decide(one, growth); },
+          [&](const auto&, const auto& bond, const Loss& loss) {
+            if (bond) take(*bond, loss);
+          });
+    }
+    if (is_changed) history.replace(slot_, std::move(left));
     return growth;
   }
 
   /// Slope and curvature along the line by central differences: they only predict where a bond
   /// reaches what it bears.
-  void add_drive(const StateView& at, std::span<const double> rate,
-                 std::span<BondDrive> drives) override {
+  void add_drive(const StateView& at, const StateLine& line, std::span<BondDrive> drives) override {
+    const std::span<const double> rate = line.rate;
     const Influences influences = influences_at(at);
-    Kernels::releases(workspace_, at.displacement, influences, releases_);
+    find_releases(at.displacement, influences, releases_);
     std::vector<double> ahead = releases_, behind = releases_;
     const double fastest = std::transform_reduce(
         rate.begin(), rate.end(), 0.0, [](double a, double b) { return std::max(a, b); },
@@ -108,8 +118,8 @@ class SimplexPasses : public TermPasses, BlockTangent {
     const double step =
         fastest > 0.0 ? difference_step * double(setting_.points.spacing) / fastest : 1.0;
     if (fastest > 0.0) {
-      Kernels::releases(workspace_, moved(at.displacement, step, rate), influences, ahead);
-      Kernels::releases(workspace_, moved(at.displacement, -step, rate), influences, behind);
+      find_releases(moved(at.displacement, step, rate), influences, ahead);
+      find_releases(moved(at.displacement, -step, rate), influences, behind);
     }
     const Bonds& bonds = term_.bonds();
     failure_.with_damage_law(at.history.of(slot_of_bonds_), [&](const auto& law) {
@@ -180,6 +190,62 @@ class SimplexPasses : public TermPasses, BlockTangent {
     return std::vector<double>(std::size_t(bonds.count()) + std::size_t(bonds.points()), 1.0);
   }
 
+  /// The history that a bond gets; 0: what the ones before it have left does not drive it.
+  using Loss = std::array<double, 1>;
+
+  /// What a bond loses; counts it.
+  Loss decide_on(const DrivenBond& one, const StateView& at, const Influences& influences,
+                 DamageGrowth& growth) {
+    double release = 0.0;
+    term_.alike().for_each(one.bond, [&](Offset bond) {
+      const auto [i, j] = ends_of(bond);
+      release += simplices_of_bond().release(i, j, at.displacement, influences);
+    });
+    Loss loss{};
+    const std::span<const double> history = at.history.of(slot_of_bonds_);
+    failure_.with_damage_law(history, [&](const auto& law) {
+      const auto& of_bond = law.of_bond(one.bond);
+      double stretch = history[std::size_t(one.bond)];
+      const double driving = equivalent_stretch(of_bond, one.bond, one.stretch, release);
+      if (!damage_driven(of_bond, driving, stretch)) return;
+      loss = {stretch};
+      growth.degrading += one.bonds();
+      growth.breaking += of_bond.is_broken(stretch) ? one.bonds() : 0;
+    });
+    return loss;
+  }
+
+  /// Points of a bond.
+  [[nodiscard]] BondEnds ends_of(Offset bond) const {
+    const std::vector<Offset>& offset = term_.bonds().offset;
+    const auto above = std::upper_bound(offset.begin(), offset.end(), bond);
+    return {Index(above - offset.begin()) - 1, term_.bonds().partner[std::size_t(bond)]};
+  }
+
+  /// Leaves this integrity to a bond, in those of bonds and points.
+  void leave(double integrity, Offset bond, std::vector<double>& left) const {
+    left[std::size_t(bond)] = integrity;
+    for (const Index point : ends_of(bond)) {
+      double& least = left[std::size_t(term_.bonds().count()) + std::size_t(point)];
+      least = std::min(least, integrity);
+    }
+  }
+
+  /// What bonds would set free by their triangles and tetrahedra, with the bonds that are one.
+  void find_releases(std::span<const double> displacement, const Influences& influences,
+                     std::vector<double>& of_bond) {
+    Kernels::releases(workspace_, displacement, influences, of_bond);
+    if (term_.alike().none()) return;
+    const auto count = Offset(of_bond.size());
+    for (Offset bond = 0; bond < count; ++bond) {
+      const Offset first = term_.alike().first(bond);
+      if (first < bond) of_bond[std::size_t(first)] += of_bond[std::size_t(bond)];
+    }
+    for (Offset bond = 0; bond < count; ++bond) {
+      of_bond[std::size_t(bond)] = of_bond[std::size_t(term_.alike().first(bond))];
+    }
+  }
+
   BondSimplices<D>& simplices_of_bond() {
     if (!simplices_of_bond_) simplices_of_bond_.emplace(term_, setting_.points);
     return *simplices_of_bond_;
@@ -194,11 +260,13 @@ class SimplexPasses : public TermPasses, BlockTangent {
     return std::sqrt(std::max(stretch * stretch + per_energy * release, 0.0));
   }
 
-  /// w L C1 of a bond.
+  /// w L C1 of a bond, with the bonds that are one.
   template <class OfBond>
   [[nodiscard]] double stiffness_of(const OfBond& of_bond, Offset bond) const {
     static_assert(std::is_same_v<decltype(OfBond::shape), Harmonic>);
-    return term_.bonds().weight(bond) * term_.bonds().length(bond) * of_bond.modulus;
+    double weight = 0.0;
+    term_.alike().for_each(bond, [&](Offset one) { weight += term_.bonds().weight(one); });
+    return weight * term_.bonds().length(bond) * of_bond.modulus;
   }
 
   [[nodiscard]] static std::vector<double> moved(std::span<const double> displacement, double step,
@@ -208,11 +276,20 @@ class SimplexPasses : public TermPasses, BlockTangent {
     return there;
   }
 
+  /// The other half of a bond with an image; -1: it has none.
+  [[nodiscard]] Offset other_half(Offset bond) const {
+    Offset other = -1;
+    term_.alike().for_each(bond, [&](Offset one) {
+      if (one != bond && term_.bonds().weight(one) != 0.0) other = one;
+    });
+    return other;
+  }
+
   /// Damage that committing the state would do by release.
   /// @param visit(thread, DrivenBond) called for each bond whose damage would grow
   template <class Visit>
   DamageGrowth visit_driven(const StateView& at, const Influences& influences, const Visit& visit) {
-    Kernels::releases(workspace_, at.displacement, influences, releases_);
+    find_releases(at.displacement, influences, releases_);
     const Bonds& bonds = term_.bonds();
     const BondLook<D> look(setting_.points, bonds, at);
     const std::span<const double> history = at.history.of(slot_of_bonds_);
@@ -223,12 +300,14 @@ class SimplexPasses : public TermPasses, BlockTangent {
         DamageGrowth growth;
         for (Index i = range.first; i < range.last; ++i) {
           for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-            if (bonds.weight(bond) == 0.0) continue;
+            if (bonds.weight(bond) == 0.0 || term_.alike().first(bond) < bond) continue;
+            if (!counts_bond(setting_.points, i, bonds.partner[std::size_t(bond)])) continue;
             const auto& of_bond = law.of_bond(bond);
             const double s = look.stretch(i, bond);
             const double driving =
                 equivalent_stretch(of_bond, bond, s, releases_[std::size_t(bond)]);
-            judge_driven(of_bond, {0.0, i, bond, s}, driving, history[std::size_t(bond)], growth,
+            judge_driven(of_bond, {0.0, i, bond, s, other_half(bond)}, driving,
+                         history[std::size_t(bond)], growth,
                          [&](const DrivenBond& one) { visit(thread, one); });
           }
         }
@@ -295,11 +374,13 @@ InteractionCount count_of(const Simplices<Measure>& kind) {
 
 SimplexTerm::SimplexTerm(std::shared_ptr<const BondFailure> bonds,
                          std::optional<Simplices<Area>> triangles,
-                         std::optional<Simplices<Volume>> tetrahedra, PointNumbers numbers)
+                         std::optional<Simplices<Volume>> tetrahedra, PointNumbers numbers,
+                         AlikeBonds alike)
     : bonds_(std::move(bonds)),
       triangles_(std::move(triangles)),
       tetrahedra_(std::move(tetrahedra)),
-      numbers_(std::move(numbers)) {
+      numbers_(std::move(numbers)),
+      alike_(std::move(alike)) {
   if (bonds_->can_fail() && !bonds_->fails_in_avalanches() &&
       (is_negative(triangles_) || is_negative(tetrahedra_))) {
     throw std::logic_error("what is lost with a bond must not hold negative energy");
@@ -314,10 +395,22 @@ Balances SimplexTerm::balances() const {
   return balances;
 }
 
+/// Gives bonds between images, which have no weight, the history of the bond that they show.
+void SimplexTerm::show(std::size_t slot_of_bonds, History& history) const {
+  if (alike_.none()) return;
+  for (Offset bond = 0; bond < bonds().count(); ++bond) {
+    const auto here = std::size_t(bond), first = std::size_t(alike_.first(bond));
+    const std::span<const double> stretches = history.of(slot_of_bonds);
+    if (bonds().weight(bond) != 0.0 || stretches[here] == stretches[first]) continue;
+    history.change(slot_of_bonds)[here] = stretches[first];
+  }
+}
+
 /// Takes the integrity of bonds and points from the histories of the bonds.
 void SimplexTerm::follow(const Model& model, History& history) const {
   const auto count = std::size_t(bonds().count());
   if (!bonds_->can_fail()) return;
+  show(model.slot_of(*bonds_), history);
   const std::span<const double> largest_stretch = history.of(model.slot_of(*bonds_));
   bonds_->with_damage_law(largest_stretch, [&](const auto& law) {
     std::vector<double> integrity(count + std::size_t(bonds().points()), 1.0);

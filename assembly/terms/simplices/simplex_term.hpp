@@ -6,6 +6,7 @@
 
 #include "assembly/terms/failure/bond_failure.hpp"
 #include "assembly/terms/term.hpp"
+#include "src/neighbourhood/alike_bonds.hpp"
 #include "src/neighbourhood/interactions.hpp"
 #include "src/potentials/potential.hpp"
 
@@ -37,15 +38,18 @@ using PointNumbers = std::vector<GlobalIndex>;
 ///   Y_b = w_b psi_1(e_b) + sum over I on b of w_I psi_I times the integrities of I's other bonds,
 ///
 /// so that constants may be negative: see BondFailure. The drop of energy is exactly Y_b times the
-/// loss of integrity, as the energy is linear in each of them.
+/// loss of integrity, as the energy is linear in each of them. Beyond planes of symmetry and
+/// periods Y_b is the sum over the bonds that are one, which are damaged together.
 class SimplexTerm : public Term {
  public:
   /// @param bonds that are their edges
   /// @param numbers from which projected tangents choose the same origin of arms on all ranks
+  /// @param alike bonds that are one
   /// @throws std::logic_error for a negative constant if the bonds can be damaged by stretch: their
   ///         loss would then raise the energy without any supply
   SimplexTerm(std::shared_ptr<const BondFailure> bonds, std::optional<Simplices<Area>> triangles,
-              std::optional<Simplices<Volume>> tetrahedra, PointNumbers numbers = {});
+              std::optional<Simplices<Volume>> tetrahedra, PointNumbers numbers = {},
+              AlikeBonds alike = {});
 
   [[nodiscard]] const Bonds& bonds() const { return bonds_->bonds(); }
   [[nodiscard]] const std::optional<Simplices<Area>>& triangles() const { return triangles_; }
@@ -53,6 +57,7 @@ class SimplexTerm : public Term {
 
   [[nodiscard]] const BondFailure& bond_failure() const { return *bonds_; }
   [[nodiscard]] const PointNumbers& numbers() const { return numbers_; }
+  [[nodiscard]] const AlikeBonds& alike() const { return alike_; }
 
   /// Calls visit(simplices) for the triangles and for the tetrahedra, if there are any.
   template <class Visit>
@@ -72,10 +77,13 @@ class SimplexTerm : public Term {
   [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
 
  private:
+  void show(std::size_t slot_of_bonds, History& history) const;
+
   std::shared_ptr<const BondFailure> bonds_;
   std::optional<Simplices<Area>> triangles_;
   std::optional<Simplices<Volume>> tetrahedra_;
   PointNumbers numbers_;
+  AlikeBonds alike_;
 };
 
 }  // namespace peristat

@@ -330,11 +330,9 @@ class StateKernels {
     }
   }
 
-  /// What a bond and its twin lose, and what their points lose of sum g r s; nothing where driving
-  /// is 0.
-  struct Loss {
-    double driving = 0.0, of_ends = 0.0;
-  };
+  /// The history that a bond and its twin get, 0 for no loss, and what their points lose of
+  /// sum g r s.
+  using Loss = std::array<double, 2>;
 
   /// What a bond and its twin lose, if what the ones before have left of the dilatations still
   /// drives them. The states are those of the present displacements and histories.
@@ -361,7 +359,7 @@ class StateKernels {
   }
   void lose_at(Index point, const Loss& loss) {
     const auto i = std::size_t(point);
-    ends_[2 * i + 1] -= stiffness_[i] * loss.of_ends;
+    ends_[2 * i + 1] -= stiffness_[i] * loss[1];
   }
 
   /// State before bonds fail, which their losses depend on.

@@ -1,12 +1,10 @@
 #include "assembly/terms/states/state_network.hpp"
 
 #include <algorithm>
-#include <map>
-#include <stdexcept>
-#include <utility>
 
 #include "src/core/threads.hpp"
 #include "src/geometry/gather_images.hpp"
+#include "src/neighbourhood/alike_bonds.hpp"
 
 namespace peristat {
 namespace {
@@ -56,34 +54,16 @@ std::vector<double> moments_of(const Points& points, const Bonds& bonds) {
 
 std::vector<BondTwin> twins_of(const Points& points, const Bonds& bonds) {
   if (points.own() == points.count()) return {};
-  const std::vector<ImageKind>& kinds = points.images.kinds;
-  std::vector<std::size_t> opposite;  // kind of the image i' if j' is of this kind
-  for (const ImageKind& kind : kinds) {
-    const ImageKind wanted = relative(kind, {});
-    const auto found = std::ranges::find_if(kinds, [&](const ImageKind& one) {
-      return is_same(one, wanted, 1e-6 * double(points.spacing));
-    });
-    opposite.push_back(std::size_t(found - kinds.begin()));
-  }
-  std::map<std::pair<Index, std::size_t>, Index> image_of;
-  for (Index image = points.own(); image < points.count(); ++image) {
-    const std::size_t kind = points.images.kind[std::size_t(image - points.own())];
-    image_of[{points.source(image), kind}] = image;
-  }
+  const AlikeBonds alike(points, bonds);
   std::vector<BondTwin> twins(std::size_t(bonds.count()));
   for (Index i = 0; i < points.own(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       const Index j = bonds.partner[bond];
       if (!points.is_image(j)) continue;
-      const Index source = points.source(j);
-      const auto other =
-          image_of.find({i, opposite[points.images.kind[std::size_t(j - points.own())]]});
-      const auto first = bonds.partner.begin() + bonds.offset[source];
-      const auto last = bonds.partner.begin() + bonds.offset[source + 1];
-      const auto twin =
-          other == image_of.end() ? last : std::lower_bound(first, last, other->second);
-      if (twin == last || *twin != other->second) throw std::logic_error("a bond without a twin");
-      twins[std::size_t(bond)] = {source, Offset(twin - bonds.partner.begin())};
+      twins[std::size_t(bond)] = {points.source(j), bond};
+      alike.for_each(bond, [&](Offset other) {
+        if (other != bond) twins[std::size_t(bond)].bond = other;
+      });
     }
   }
   return twins;

@@ -7,9 +7,10 @@
 #include <utility>
 
 #include "assembly/energy/kept_state.hpp"
+#include "assembly/terms/bonds/bond_look.hpp"
 #include "assembly/terms/bonds/bond_passes.hpp"
+#include "assembly/terms/failure/shared_bonds.hpp"
 #include "assembly/terms/model.hpp"
-#include "assembly/terms/states/shared_bonds.hpp"
 #include "assembly/terms/states/state_kernels.hpp"
 #include "assembly/terms/workspace.hpp"
 #include "src/geometry/counts_bond.hpp"
@@ -84,21 +85,28 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
     const auto find = [&](const auto& visit) { visit_driven(now(), visit); };
     if (index_map_.is_whole()) {
       return damage_one_by_one(threads_, find, [&](const DrivenBond& one, DamageGrowth& growth) {
-        damage(one, history.change(slot_), growth);
+        const Loss loss = decide(one, history.of(slot_), growth);
+        if (!(loss[0] > 0.0)) return;
+        kernels_.lose(one, loss);
+        history.change(slot_)[std::size_t(one.bond)] = loss[0];
+        if (one.twin >= 0) history.change(slot_)[std::size_t(one.twin)] = loss[0];
       });
     }
     DamageGrowth growth;
-    for (;;) {
-      const std::vector<DrivenBond> mine = driven_in_order(threads_, find);
-      if (!any_of_all(index_map_.ranks(), !mine.empty()) ||
-          !damage_on_ranks(mine, history.change(slot_), growth)) {
-        return growth;
-      }
-    }
+    damage_on_ranks(
+        index_map_, term_.bonds(), LossReaches::bonds_of_points, threads_, find,
+        [&](const DrivenBond& one) { return decide(one, history.of(slot_), growth); },
+        [&](const auto& ends, const auto& bond, const Loss& loss) {
+          for (const auto& end : ends) {
+            if (end) kernels_.lose_at(*end, loss);
+          }
+          if (bond) history.change(slot_)[std::size_t(*bond)] = loss[0];
+        });
+    return growth;
   }
 
-  void add_drive(const StateView& at, std::span<const double> /*rate*/,
-                 std::span<BondDrive> drives) override {
+  void add_drive(const StateView& at, const StateLine& line, std::span<BondDrive> drives) override {
+    if (term_.extension() == Extension::linear) take_stretches(at, line, drives);
     take_integrities(at);
     found_ = {};  // whose integrities the kernels had
     const std::span<const double> history = at.history.of(slot_);
@@ -188,74 +196,19 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
     return found;
   }
 
-  /// Damages a bond, if what the ones before it have left still drives it.
-  void damage(const DrivenBond& one, std::span<double> stretches, DamageGrowth& growth) {
+  using Loss = typename StateKernels<D, Measure>::Loss;
+
+  /// What a bond loses, if what the ones before it have left still drives it; counts it.
+  Loss decide(const DrivenBond& one, std::span<const double> stretches, DamageGrowth& growth) {
+    Loss loss{};
     failure_.with_damage_law(stretches, [&](const auto& law) {
       const auto& of_bond = law.of_bond(one.bond);
-      const auto loss = kernels_.loss_by_release(one, of_bond, stretches[std::size_t(one.bond)]);
-      if (!(loss.driving > 0.0)) return;
-      kernels_.lose(one, loss);
-      stretches[std::size_t(one.bond)] = loss.driving;
-      if (one.twin >= 0) stretches[std::size_t(one.twin)] = loss.driving;
+      loss = kernels_.loss_by_release(one, of_bond, stretches[std::size_t(one.bond)]);
+      if (!(loss[0] > 0.0)) return;
       growth.degrading += one.bonds();
-      growth.breaking += of_bond.is_broken(loss.driving) ? one.bonds() : 0;
+      growth.breaking += of_bond.is_broken(loss[0]) ? one.bonds() : 0;
     });
-  }
-
-  /// Damages the driven bonds of all ranks as one by one: bonds that share no point go together.
-  /// Returns true if any is damaged. Collective.
-  bool damage_on_ranks(std::span<const DrivenBond> mine, std::span<double> stretches,
-                       DamageGrowth& growth) {
-    std::vector<SharedBond> all;
-    for (std::size_t k = 0; k < mine.size(); ++k) {
-      const Index j = term_.bonds().partner[mine[k].bond];
-      all.push_back({mine[k].utilisation,
-                     {index_map_.number_of(mine[k].point), index_map_.number_of(j)},
-                     index_map_.ranks().rank(),
-                     k});
-    }
-    all = in_order(index_map_.ranks(), std::move(all));
-    bool any = false;
-    for (const std::vector<std::size_t>& round : rounds_of(all)) {
-      std::vector<double> losses(2 * round.size());
-      failure_.with_damage_law(stretches, [&](const auto& law) {
-        for (std::size_t k = 0; k < round.size(); ++k) {
-          const SharedBond& one = all[round[k]];
-          if (one.rank != index_map_.ranks().rank()) continue;
-          const DrivenBond& driven = mine[one.number];
-          const auto& of_bond = law.of_bond(driven.bond);
-          const auto loss =
-              kernels_.loss_by_release(driven, of_bond, stretches[std::size_t(driven.bond)]);
-          losses[2 * k] = loss.driving;
-          losses[2 * k + 1] = loss.of_ends;
-          growth.degrading += loss.driving > 0.0;
-          growth.breaking += loss.driving > 0.0 && of_bond.is_broken(loss.driving);
-        }
-      });
-      add_up(index_map_.ranks(), losses);
-      for (std::size_t k = 0; k < round.size(); ++k) {
-        if (!(losses[2 * k] > 0.0)) continue;
-        any = true;
-        take_loss(all[round[k]], {losses[2 * k], losses[2 * k + 1]}, stretches);
-      }
-    }
-    return any;
-  }
-
-  /// Takes the loss of a bond of any rank, as far as its points and the bond itself are here.
-  void take_loss(const SharedBond& of, const typename StateKernels<D, Measure>::Loss& loss,
-                 std::span<double> stretches) {
-    const auto first = index_map_.find(of.ends[0]), second = index_map_.find(of.ends[1]);
-    if (first) kernels_.lose_at(*first, loss);
-    if (second) kernels_.lose_at(*second, loss);
-    if (!first || !second) return;
-    const Bonds& bonds = term_.bonds();
-    const auto [low, high] = std::minmax(*first, *second);
-    const auto begin = bonds.partner.begin() + bonds.offset[low];
-    const auto end = bonds.partner.begin() + bonds.offset[low + 1];
-    const auto found = std::lower_bound(begin, end, high);
-    if (found == end || *found != high) return;
-    stretches[std::size_t(found - bonds.partner.begin())] = loss.driving;
+    return loss;
   }
 
   /// True if the kernels have the states of `at`: solvers multiply many times at one state.
@@ -275,6 +228,19 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
         return law.of_bond(bond).integrity_after(stretch[std::size_t(bond)]);
       });
     });
+  }
+
+  /// Takes the stretches of the term's own measure.
+  void take_stretches(const StateView& at, const StateLine& line, std::span<BondDrive> drives) {
+    const Bonds& bonds = term_.bonds();
+    const BondLook<D, Measure> look(points_, bonds, at);
+#pragma omp parallel for num_threads(threads_)
+    for (Index i = 0; i < bonds.points(); ++i) {
+      for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+        const auto [value, rate] = look.along(i, bond, line);
+        drives[std::size_t(bond)] = BondDrive::by_stretch(value, rate);
+      }
+    }
   }
 
   /// Energy dissipated by the bonds that are counted here. Bonds that have overshot the stretch

@@ -387,8 +387,10 @@ Table<Case> quadrature_keys() {
          "model `lps`. `\"collocation\"`: forces at points by a quadrature that is exact for "
          "linear displacements up to the surface; they have no potential. `\"energy\"`: forces of "
          "an [energy](theory.md#the-solid-as-an-energy), with a symmetric tangent and all modes "
-         "and loads of the other models except mode `path`. `\"printed\"`: forces of [FCBM] (A-8), "
-         "for comparisons only; they have no potential where neighbourhoods differ, and need "
+         "and loads of the other models (mode `path`: with damage by release). `\"printed\"`: "
+         "forces "
+         "of [FCBM] (A-8), for comparisons only; they have no potential where neighbourhoods "
+         "differ, and need "
          "`solver.operator = \"fft\"` in mode `dynamics` with `scheme = \"verlet\"`")
            .written_if(with(Option::form))
            .on_ranks(),

@@ -115,8 +115,8 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the "
          "mean over directions ([theory](theory.md#strength)); `onset` follows from it, for "
          "`blended` the `peak`, for `critical_stretch` the value of `critical`. `cpd` accepts it "
-         "with `drive = \"stretch\"`, at the horizon ratios of `fracture_energy`, in 3D only at "
-         "smaller ones, where the computation takes less than minutes")
+         "at horizon ratios up to 12 in 2D, in 3D only at smaller ones than 3.2, where the "
+         "computation takes less than minutes")
            .unless(is_whole, "")
            .by_rules(damage_rules)
            .early(),

@@ -7,26 +7,16 @@
 #include <fmt/format.h>
 
 #include "solvers/formulations/cpd/cpd_model.hpp"
+#include "solvers/formulations/solid/strength_onsets_of.hpp"
 #include "solvers/formulations/specification/require.hpp"
 #include "src/neighbourhood/horizon.hpp"
 
 namespace peristat {
 namespace {
 
-/// By release G_c = c A times the work of the law, as with bonds alone: what a tear takes does not
-/// depend on its triangles and tetrahedra.
-FractureScale scale_by_release(FractureScale scale, const MaterialSpecification& material,
-                               const std::string& key, const BondSetting& setting) {
-  scale.tear =
-      std::make_shared<CpdTear>(setting, scale.spacing, CpdConstants{scale.micromodulus, 0.0, 0.0});
-  scale.crossing = scale.tear->mean_crossing();
-  if (!material.damage.strength) return scale;
-  throw InputError(key + ".damage.strength", number_text(*material.damage.strength),
-                   "is not known with drive = \"release\" of cpd; give onset, or drive = "
-                   "\"stretch\"");
-}
-
-/// The fracture scale; by stretch with a tear and a pull as far as they take no minutes.
+/// The fracture scale, with a tear and a pull as far as they take no minutes. By release G_c = c A
+/// times the work of the law, as with bonds alone: what a tear takes does not depend on its
+/// triangles and tetrahedra.
 FractureScale scale_of_cpd(const MaterialSpecification& material, const std::string& key,
                            const BondSetting& setting, double spacing) {
   FractureScale scale;
@@ -36,30 +26,28 @@ FractureScale scale_of_cpd(const MaterialSpecification& material, const std::str
   const DamageDrive drive = material.damage.drive.value_or(release_by_energy(material.damage));
   refuse_damage_of_negative_constants(material, key, constants, setting, spacing, drive);
   scale.micromodulus = constants.c1;
-  if (drive == DamageDrive::release) return scale_by_release(scale, material, key, setting);
+  const bool is_by_release = drive == DamageDrive::release;
   const double largest = largest_ratio_of_tear(setting.dimension);
-  if (setting.horizon <= largest * spacing * (1.0 + horizon_tolerance)) {
-    scale.tear = std::make_shared<CpdTear>(setting, spacing, constants);
-    scale.pull = std::make_shared<BulkPull>(setting, spacing, constants);
+  const bool is_short = setting.horizon <= largest * spacing * (1.0 + horizon_tolerance);
+  if (is_by_release || is_short) {
+    const CpdConstants torn = is_by_release ? CpdConstants{constants.c1, 0.0, 0.0} : constants;
+    scale.tear = std::make_shared<CpdTear>(setting, spacing, torn);
     scale.crossing = scale.tear->mean_crossing();
-    if (scale.pull->is_quick()) return scale;
-    scale.pull.reset();
-    if (!material.damage.strength) return scale;
-    throw InputError(key + ".damage.strength", number_text(*material.damage.strength),
-                     "would take minutes to convert into stretches of cpd at this horizon ratio in "
-                     "3D; give a shorter horizon, or onset");
-  } else if (material.damage.is_by_data()) {
-    const bool by_energy = material.damage.fracture_energy.has_value();
-    throw InputError(
-        key + (by_energy ? ".damage.fracture_energy" : ".damage.strength"),
-        number_text(by_energy ? *material.damage.fracture_energy : *material.damage.strength),
-        "is for horizon ratios up to " + number_text(largest) + " with cpd in " +
-            std::to_string(setting.dimension) +
-            "D and drive = \"stretch\": computing it for longer interactions takes minutes; give "
-            "stretches" +
-            (by_energy ? ", or drive = \"release\"" : ""));
+  } else if (material.damage.fracture_energy) {
+    throw InputError(key + ".damage.fracture_energy", number_text(*material.damage.fracture_energy),
+                     "is for horizon ratios up to " + number_text(largest) + " with cpd in " +
+                         std::to_string(setting.dimension) +
+                         "D and drive = \"stretch\": computing it for longer interactions takes "
+                         "minutes; give stretches, or drive = \"release\"");
   }
-  return scale;
+  if (is_short) {
+    scale.pull = std::make_shared<BulkPull>(setting, spacing, constants, is_by_release);
+    if (!scale.pull->is_quick()) scale.pull.reset();
+  }
+  if (!material.damage.strength || scale.pull) return scale;
+  throw InputError(key + ".damage.strength", number_text(*material.damage.strength),
+                   "would take minutes to convert into stretches of cpd at this horizon ratio in " +
+                       std::to_string(setting.dimension) + "D; give a shorter horizon, or onset");
 }
 
 std::string text_of_moduli(const char* where, const CpdStiffness& stiffness,
@@ -142,7 +130,8 @@ const Formulation& cpd_formulation() {
       .takes = {Option::potential, Option::poisson_ratio, Option::constants, Option::calibration,
                 Option::thermal_expansion, Option::strength, Option::softening,
                 Option::critical_stretch, Option::weights, Option::interfaces, Option::eigenstrains,
-                Option::pressures, Option::images, Option::events, Option::drive},
+                Option::pressures, Option::images, Option::events, Option::drive,
+                Option::strength_surface},
       .least_dimension = 2,
       .part_bonds = PartBonds::among_neighbours,
       .most_points = [](int dimension) { return dimension + 1; },
@@ -152,7 +141,11 @@ const Formulation& cpd_formulation() {
                        const Points& points) { require_whole_square_cells(points); },
       // Effective volumes count every neighbour.
       .setting_of_bonds = without_influence,
-      .make_model = make_cpd_model,
+      .make_model =
+          [](const ModelSetting& setting, Bonds bonds) {
+            return make_cpd_model(setting, std::move(bonds),
+                                  strength_onsets_of(setting, moduli_of_cpd));
+          },
       .moduli = moduli_of_cpd,
       .describe = describe_cpd,
       .fracture_scale = scale_of_cpd,

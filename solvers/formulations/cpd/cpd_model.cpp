@@ -11,6 +11,7 @@
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/image_number.hpp"
+#include "src/neighbourhood/horizon.hpp"
 #include "src/neighbourhood/neighbour_counts.hpp"
 #include "src/parallel/index_map.hpp"
 
@@ -214,20 +215,42 @@ CpdConstants cpd_constants_of(const MaterialSpecification& material, const std::
 
 namespace {
 
+/// True if a triangle or tetrahedron may have both a bond and its image: their energy is then not
+/// linear in the integrity that both have. Triangles may where a plane continues along a short
+/// period; tetrahedra also about the line in which two planes meet.
+bool may_have_bonds_twice(const ModelSetting& of, bool has_tetrahedra) {
+  return std::ranges::any_of(of.points.images.kinds, [&](const ImageKind& kind) {
+    int flips = 0;
+    double squared = 0.0;  // of the shift along what is not mirrored
+    for (std::size_t c = 0; c < 3; ++c) {
+      flips += kind.mirror[c] < 0.0;
+      if (kind.mirror[c] > 0.0) squared += kind.shift[c] * kind.shift[c];
+    }
+    const double shift = std::sqrt(squared), reach = inclusive_radius(of.bonds.horizon);
+    const bool glides = flips > 0 && shift > 1e-6 * of.points.spacing.largest();
+    if (glides && 2.0 * shift <= reach) return true;
+    return has_tetrahedra && shift <= reach && (flips == 2 || glides);
+  });
+}
+
 /// Refuses bodies in which damage by release is not known.
-void refuse_release(const ModelSetting& of, const std::string& key) {
+void refuse_release(const ModelSetting& of, const std::string& key, bool has_tetrahedra) {
   const auto refuse = [&](const std::string& why) {
     throw InputError(key + ".damage.drive", "release",
                      why + " with model \"cpd\"; give drive = \"stretch\"");
   };
-  if (!of.points.images.kinds.empty()) refuse("is not for planes of symmetry and periods");
-  // Damage goes from bond to bond in one order, which ranks do not have.
-  if (!of.index_map.is_whole()) refuse("is for one rank");
+  if (may_have_bonds_twice(of, has_tetrahedra))
+    refuse("is not for a plane of symmetry beside a period shorter than the horizon" +
+           std::string(has_tetrahedra ? ", nor for two planes that meet in 3D with c3," : ""));
+  // A part lacks some of the bonds that are one.
+  if (!of.index_map.is_whole() && !of.points.images.kinds.empty())
+    refuse("is for one rank with planes of symmetry and periods");
 }
 
 }  // namespace
 
-MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds) {
+MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds,
+                         const std::shared_ptr<const StrengthOnsets>& onsets) {
   const auto& [from, materials, factors, points, setting, index_map, threads] = of_model;
   // Tables have entries for the materials of four points.
   constexpr std::size_t most = 24;
@@ -259,7 +282,8 @@ MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds) {
 
   // Bonds alone set free what they hold: then both drives are one.
   if (of_triangles.constant == 0.0 && of_tetrahedra.constant == 0.0) drive = DamageDrive::stretch;
-  if (drive == DamageDrive::release) refuse_release(of_model, failing->key);
+  if (drive == DamageDrive::release)
+    refuse_release(of_model, failing->key, of_tetrahedra.constant != 0.0);
 
   const BulkNeighbourhood bulk =
       bulk_neighbourhood(points.dimension, points.spacing, setting.horizon, setting.cross_section);
@@ -280,7 +304,8 @@ MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds) {
   if (!index_map.is_whole()) agree_on_kinds(left, points, index_map.numbered(), index_map.ranks());
   CutBonds cut = cut_bonds(left, points, from.cracks);
   auto [potential, never_fails] = mixed.potential(left);
-  Model model(std::move(left), std::move(potential), std::move(never_fails), drive);
+  if (onsets) drive = DamageDrive::release;
+  Model model(std::move(left), std::move(potential), std::move(never_fails), drive, onsets);
   std::optional<Simplices<Area>> triangles;
   std::optional<Simplices<Volume>> tetrahedra;
   if (of_triangles.constant != 0.0) {
@@ -294,7 +319,8 @@ MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds) {
   if (triangles || tetrahedra) {
     model.add(std::make_shared<SimplexTerm>(
         model.bond_failure(), std::move(triangles), std::move(tetrahedra),
-        index_map.is_whole() ? PointNumbers() : numbers_of(index_map, points)));
+        index_map.is_whole() ? PointNumbers() : numbers_of(index_map, points),
+        index_map.is_whole() ? AlikeBonds(points, model.bonds()) : AlikeBonds()));
   }
   return {std::move(model), std::move(cut)};
 }

@@ -1,4 +1,4 @@
-#include "assembly/terms/states/shared_bonds.hpp"
+#include "assembly/terms/failure/shared_bonds.hpp"
 
 #include <vector>
 
@@ -21,11 +21,12 @@ TEST(SharedBonds, ComeInTheOrderOfTheirUtilisationAndThenOfTheirPoints) {
 
 /// A bond waits for those before it that share a point with it, and for no others.
 TEST(SharedBonds, AreDecidedOnInRounds) {
-  EXPECT_EQ(rounds_of({}), Rounds());
+  EXPECT_EQ(rounds_of({}, LossReaches::bonds_of_points), Rounds());
   std::vector<SharedBond> bonds(6);
   const int ends[6][2] = {{1, 2}, {3, 4}, {2, 3}, {5, 6}, {1, 2}, {4, 6}};
   for (std::size_t k = 0; k < 6; ++k) bonds[k].ends = {ends[k][0], ends[k][1]};
-  EXPECT_EQ(rounds_of(bonds), (Rounds{{0, 1, 3}, {2, 5}, {4}}));
+  EXPECT_EQ(rounds_of(bonds, LossReaches::bonds_of_points), (Rounds{{0, 1, 3}, {2, 5}, {4}}));
+  EXPECT_EQ(rounds_of(std::span(bonds).first(3), LossReaches::any_bond), (Rounds{{0}, {1}, {2}}));
 }
 
 }  // namespace

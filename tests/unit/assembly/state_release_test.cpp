@@ -281,10 +281,9 @@ TEST_P(ReleaseOfPoisson, DrivesAlongALine) {
   const auto drives = [&](OnTeeth& of, double step, bool moves) {
     std::vector<BondDrive> all(count);
     for (std::size_t b = 0; b < count; ++b) {
-      all[b].stretch = s[b] + step * rate[b];
-      all[b].rate = moves ? rate[b] : 0.0;
+      all[b] = BondDrive::by_stretch(s[b] + step * rate[b], moves ? rate[b] : 0.0);
     }
-    of.assembler.drive(of.at(), {}, all);
+    of.assembler.add_drive(of.at(), {}, all);
     return all;
   };
   const std::vector<BondDrive> line = drives(state, 0.0, true),

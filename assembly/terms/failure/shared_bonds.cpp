@@ -1,4 +1,4 @@
-#include "assembly/terms/states/shared_bonds.hpp"
+#include "assembly/terms/failure/shared_bonds.hpp"
 
 #include <algorithm>
 #include <unordered_map>
@@ -29,13 +29,15 @@ std::vector<SharedBond> in_order(const Communicator& ranks, std::vector<SharedBo
   return all;
 }
 
-std::vector<std::vector<std::size_t>> rounds_of(std::span<const SharedBond> bonds) {
+std::vector<std::vector<std::size_t>> rounds_of(std::span<const SharedBond> bonds,
+                                                LossReaches reaches) {
   std::unordered_map<GlobalIndex, std::size_t> rounds_before;  // per point
   std::vector<std::vector<std::size_t>> rounds;
   for (std::size_t k = 0; k < bonds.size(); ++k) {
     std::size_t& one = rounds_before[bonds[k].ends[0]];
     std::size_t& other = rounds_before[bonds[k].ends[1]];
-    const std::size_t round = std::max(one, other);
+    const std::size_t round =
+        reaches == LossReaches::any_bond ? rounds.size() : std::max(one, other);
     if (round == rounds.size()) rounds.emplace_back();
     rounds[round].push_back(k);
     one = other = round + 1;
