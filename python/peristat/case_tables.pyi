@@ -256,6 +256,14 @@ class MaterialDamage(Table):
     """$K_{Ic}$, can be given instead of `fracture_energy`: $G_c = K_{Ic}^2/E'$, with $E' = E$ in plane stress (and with `cpd` in 2D) and $E/(1 - \\nu^2)$ in plane strain and 3D, with the moduli of the model [Pa*sqrt(m)]. Default: none. Allowed: positive"""
     strength: Quantity
     """$f_t$ of the body: the largest stress that the lattice bears under uniaxial tension, the mean over directions (theory); `onset` follows from it, for `blended` the `peak`, for `critical_stretch` the value of `critical`. `cpd` accepts it at horizon ratios up to 12 in 2D, in 3D only at smaller ones than 3.2, where the computation takes less than minutes [Pa]. Default: none. Allowed: positive"""
+    strength_surface: Literal["none", "rankine", "drucker_prager", "mohr_coulomb"]
+    """stresses at which a body without flaws fails, through `strength` under uniaxial tension (theory). `'none'`: one stretch for all stresses; `'rankine'`: the largest principal stress; `'drucker_prager'` and `'mohr_coulomb'`: also through `compressive_strength`. Bonds then fail by what their loss would set free. Default: `'none'`. Allowed: `'none'`, `'rankine'`, `'drucker_prager'`, `'mohr_coulomb'`"""
+    compressive_strength: Quantity
+    """$f_c$, uniaxial, for `drucker_prager` and `mohr_coulomb` [Pa]. Default: none. Allowed: positive; above `strength`"""
+    biaxial_strength: Quantity
+    """$f_b$ under equal tension in two directions, in the place of `compressive_strength`, for `drucker_prager` [Pa]. Default: none. Allowed: positive; above half of `strength`"""
+    strength_factor: List
+    """least and largest factor by which the surface may change the `onset` of a bond; the largest is at most the one at which a bond of the same work is brittle. Default: `[0.2, 100.0]`. Allowed: two numbers, the second not below the first; 0.01 to 1, and 1 to 100"""
     critical: Expression
     """stretch $s_c$ at which a bond breaks [1]. this, `fracture_energy` or `fracture_toughness` is required with a law. Allowed: 1e-9 to 1000, or an expression of `horizon` and `spacing`"""
     onset: Expression

@@ -1,4 +1,5 @@
-"""The setting with other material constants, and with a groove; law, horizon, corrections and solver stay."""
+"""The setting with other material constants, another model, and with a groove; law, horizon, corrections and solver
+stay."""
 
 import setting
 
@@ -9,6 +10,11 @@ def of_material(text: str, modulus: float, fracture_energy: float, strength: flo
     text = _replaced(text, f"youngs_modulus = {setting.MODULUS}", f"youngs_modulus = {modulus}")
     damage = f"fracture_energy = {fracture_energy}" + (f"\nstrength = {strength}" if strength else "")
     return _replaced(text, f"fracture_energy = {setting.FRACTURE_ENERGY}", damage)
+
+
+def of_ratio(text: str, poisson_ratio: float, plane: str) -> str:
+    """The case with model `state`, of this Poisson's ratio, in plane stress or strain."""
+    return _replaced(text, 'model = "bond"\nplane = "stress"\n', f'model = "state"\nplane = "{plane}"\npoisson_ratio = {poisson_ratio}\n')
 
 
 def grooved(text: str, y: float) -> str:

@@ -9,7 +9,7 @@ from other_setting import of_material
 from setting import setting
 from specimen import Lattice, Measure, Specimen, rows
 
-MODULUS, FRACTURE_ENERGY, TENSILE, BIAXIAL, SHEAR = 70e9, 10.0, 40e6, 27e6, 44.4e6
+MODULUS, FRACTURE_ENERGY, TENSILE, BIAXIAL, SHEAR, COMPRESSIVE = 70e9, 10.0, 40e6, 27e6, 44.4e6, 1000e6
 POISSON_RATIO = 1 / 3  # of bond-based models in plane stress
 CELLS, COARSEST, THICKNESS = 12, 5e-5, 1e-3  # cells per side of the periodic cell
 
@@ -44,16 +44,43 @@ steps = {math.ceil(30 * largest)}
     return text
 
 
+def on_surface(second: float, most: float):
+    """The same with a strength surface."""
+    plain = case(second, most)
+
+    def text(lattice: Lattice, h: float) -> str:
+        surface = f'strength = {TENSILE}\nstrength_surface = "drucker_prager"\ncompressive_strength = {COMPRESSIVE}'
+        return plain(lattice, h).replace(f"strength = {TENSILE}", surface)
+
+    return text
+
+
 def largest_stress(folder: Path) -> float:
     """Peak of the largest principal stress [Pa]."""
-    spacing = tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]["spacing"]
-    return max(_principal_force(row) for row in rows(folder)) / (CELLS * spacing * THICKNESS)
+    return max(largest for largest, _ in _principal_stresses(folder))
 
 
-def _principal_force(row: dict) -> float:
-    xx, xy, yx, yy = (row[f"reaction_{of}"] for of in ("x:period_x", "y:period_x", "x:period_y", "y:period_y"))
-    shear = 0.5 * (xy + yx)
-    return 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), shear)
+def utilisation(folder: Path) -> float:
+    """Largest utilisation of Drucker and Prager's surface on the way: the ratio of the stresses changes once bonds
+    soften."""
+    share = TENSILE / COMPRESSIVE
+
+    def rho(one: float, two: float) -> float:
+        deviator = math.sqrt((one**2 - one * two + two**2) / 3)
+        return (math.sqrt(3) * (1 + share) * deviator + (1 - share) * (one + two)) / (2 * TENSILE)
+
+    return max(rho(one, two) for one, two in _principal_stresses(folder))
+
+
+def _principal_stresses(folder: Path) -> list[tuple[float, float]]:
+    """The larger and the smaller one of each step [Pa]."""
+    area = CELLS * tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]["spacing"] * THICKNESS
+    found = []
+    for row in rows(folder):
+        xx, xy, yx, yy = (row[f"reaction_{of}"] / area for of in ("x:period_x", "y:period_x", "x:period_y", "y:period_y"))
+        mean, half = 0.5 * (xx + yy), math.hypot(0.5 * (xx - yy), 0.5 * (xy + yx))
+        found.append((mean + half, mean - half))
+    return found
 
 
 def specimen(name: str, title: str, second: float, largest: float, known: float) -> Specimen:
@@ -61,9 +88,17 @@ def specimen(name: str, title: str, second: float, largest: float, known: float)
     return Specimen(name, title, "glass, second-hand", COARSEST, case(second, largest), (strength,))
 
 
+def specimen_on_surface(name: str, title: str, second: float, largest: float) -> Specimen:
+    reached = Measure("utilisation of the surface", utilisation, allowed=0.05)
+    return Specimen(name, title, "Drucker and Prager, glass", COARSEST, on_surface(second, largest), (reached,))
+
+
 # Uniaxial: the lateral strain is the elastic one, so the lateral stress is not quite zero when bonds soften.
 SPECIMENS = [
     specimen("strength_uniaxial", "Glass under tension", -POISSON_RATIO, 4.0, TENSILE),
     specimen("strength_biaxial", "Glass under equal biaxial tension", 1.0, 1.5, BIAXIAL),
     specimen("strength_shear", "Glass in pure shear", -1.0, 2.5, SHEAR),
+    specimen_on_surface("surface_uniaxial", "Strength surface under tension", -POISSON_RATIO, 4.0),
+    specimen_on_surface("surface_biaxial", "Strength surface under equal biaxial tension", 1.0, 1.5),
+    specimen_on_surface("surface_shear", "Strength surface in pure shear", -1.0, 2.5),
 ]

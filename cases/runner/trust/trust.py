@@ -20,6 +20,7 @@ import double_cantilever
 import inclined_notch
 import l_panel
 import notched_beam
+import phase_field
 import size_effect
 import strength
 import surfing
@@ -35,7 +36,7 @@ from strip import Strip
 from verdict import CALIBRATION, HEADING, Verdict, extension_of, row
 
 MODULES = (surfing, notched_beam, compact_tension, centre_crack, double_cantilever, brazilian_disk, size_effect, l_panel,
-           inclined_notch, attracted_crack, strength)  # fmt: skip
+           inclined_notch, attracted_crack, strength, phase_field)  # fmt: skip
 ENTRIES: dict[str, Specimen] = {s.name: s for module in MODULES for s in module.SPECIMENS}
 STEADY = "surfing"
 TABLE = HEADING[0].encode()  # the signature of the table
