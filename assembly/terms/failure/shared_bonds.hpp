@@ -44,15 +44,15 @@ enum class LossReaches {
 /// @param find see driven_in_order
 /// @param decide(bond) returns an array of what the bond of this rank loses, the first positive if
 ///        it is damaged
-/// @param take(ends, bond, loss) takes a loss, on all ranks: of the ends of the bond, as far as
-/// they
-///        are here, and of the bond, if it is
+/// @param take(ends, bond, loss) called on all ranks, with the ends and the bond as far as they are
+///        here
 template <class Find, class Decide, class Take>
 void damage_on_ranks(const IndexMap& index_map, const Bonds& bonds, LossReaches reaches,
                      int threads, const Find& find, const Decide& decide, const Take& take) {
   const Communicator& ranks = index_map.ranks();
   for (bool any = true; any;) {
     const std::vector<DrivenBond> mine = driven_in_order(threads, find);
+    if (!any_of_all(ranks, !mine.empty())) return;
     std::vector<SharedBond> all;
     for (std::size_t k = 0; k < mine.size(); ++k) {
       const Index j = bonds.partner[std::size_t(mine[k].bond)];

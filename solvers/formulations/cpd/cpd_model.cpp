@@ -301,7 +301,8 @@ MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds,
     left.remove_if(
         [&](Index, Offset bond) { return setting.influence_at(left.length(bond)) == 0.0; });
   }
-  if (!index_map.is_whole()) agree_on_kinds(left, points, index_map.numbered(), index_map.ranks());
+  const bool is_whole = index_map.is_whole();
+  if (!is_whole) agree_on_kinds(left, points, index_map.numbered(), index_map.ranks());
   CutBonds cut = cut_bonds(left, points, from.cracks);
   auto [potential, never_fails] = mixed.potential(left);
   if (onsets) drive = DamageDrive::release;
@@ -319,8 +320,8 @@ MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds,
   if (triangles || tetrahedra) {
     model.add(std::make_shared<SimplexTerm>(
         model.bond_failure(), std::move(triangles), std::move(tetrahedra),
-        index_map.is_whole() ? PointNumbers() : numbers_of(index_map, points),
-        index_map.is_whole() ? AlikeBonds(points, model.bonds()) : AlikeBonds()));
+        is_whole ? PointNumbers() : numbers_of(index_map, points),
+        is_whole ? AlikeBonds(points, model.bonds()) : AlikeBonds()));
   }
   return {std::move(model), std::move(cut)};
 }
