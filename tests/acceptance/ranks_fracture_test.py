@@ -318,7 +318,7 @@ class CrackTips(Comparison):
             self.assertGreater(abs(float(last[f"tip_{name}"])), 0.0)
 
     def test_of_a_plate(self):
-        self.compare_tip(TIP, (2,), ("J", "J_spread", "K1", "K2", "T"))
+        self.compare_tip(TIP, (2,), ("J", "J_spread", "K1", "K2", "T", "T_star"))
 
     def test_beside_a_rigid_set(self):
         pulled = TIP.replace('[[support]]\nset = "top"', '[[rigid]]\nset = "top"\nrotation = ["0.001*load"]')
