@@ -43,6 +43,20 @@ Evaluation sum_of(const Communicator& ranks, const Evaluation& mine) {
   return all;
 }
 
+/// Lets no onset grow at points at which a bond has started: cracks would need more energy to run.
+void keep_toughness(const Points& points, const Bonds& bonds, std::span<const double> stretches,
+                    std::span<StrengthOnsets::PointOnset> of_points) {
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      if (!(stretches[std::size_t(bond)] > 0.0)) continue;
+      for (const Index point : {i, bonds.partner[bond]}) {
+        auto& range = of_points[std::size_t(points.source(point))].factor;
+        if (range) (*range)[1] = 1.0;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Assembler::Assembler(const Points& points, const Model& model, int threads,
@@ -143,6 +157,7 @@ History Assembler::with_onsets(const StateView& at) {
         bonds->onsets()->of_point(i, points_.dimension, &gradients.displacement[i * entries],
                                   free.empty() ? 0.0 : free[i], largest[i]);
   }
+  keep_toughness(points_, bonds->bonds(), bond_stretches(model_, at.history), of_points);
   bonds->renew_onsets(points_, of_points, renewed.change(model_.slot_of(*bonds)));
   return renewed;
 }

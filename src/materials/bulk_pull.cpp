@@ -232,11 +232,13 @@ class BulkPull::Equilibrium {
   /// @param now (equivalent) stretches
   void renew(State& state, const std::vector<double>& now) const {
     double longest = 0.0;
+    bool has_started = false;
     for (std::size_t k = 0; k < now.size(); ++k) {
       if (state.largest[k] < state.laws[k].critical()) longest = std::max(longest, now[k]);
+      has_started |= state.largest[k] > state.laws[k].onset();
     }
-    const AnyLaw moved =
-        moved_law(onset_at(longest, moving_->utilisation(principal(state.strain))));
+    const double onset = onset_at(longest, moving_->utilisation(principal(state.strain)));
+    const AnyLaw moved = moved_law(has_started ? std::min(onset, law_.onset()) : onset);
     for (std::size_t k = 0; k < fibres_.size(); ++k) {
       if (state.largest[k] <= state.laws[k].onset()) state.laws[k] = moved;
     }

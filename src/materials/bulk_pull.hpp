@@ -21,8 +21,8 @@ enum class Loading {
 };
 
 /// Onsets that follow the strain until a bond starts, as a strength surface moves them. With the
-/// largest (equivalent) stretch m of unbroken bonds a bond starts at m / rho, and its law keeps its
-/// work.
+/// largest (equivalent) stretch m of unbroken bonds a bond starts at m / rho, once another one has
+/// started at no more than the onset of its law, and the law keeps its work.
 struct MovingOnsets {
   std::function<double(const std::array<double, 3>& strains)> utilisation;  ///< rho
   std::array<double, 2> range{};  ///< of the onset over that of the law

@@ -64,7 +64,8 @@ class SurfacePull:
                 driving = pull.driving(strain * stress, integrity, 0.0)
                 rho = self.rho(strain * stress)
                 new = driving[integrity > 0].max() / rho if rho > 0 else math.inf
-                onset = numpy.where(history > 0, onset, numpy.clip(new, self.least * self.onset, self.most * self.onset))
+                most = 1.0 if (history > 0).any() else self.most
+                onset = numpy.where(history > 0, onset, numpy.clip(new, self.least * self.onset, most * self.onset))
                 grown = numpy.where(driving > numpy.maximum(onset, history), driving, history)
                 done = abs(grown - history).max() < 1e-9 * self.onset
                 history = grown

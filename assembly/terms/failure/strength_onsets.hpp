@@ -33,6 +33,9 @@ struct PointStrength {
 /// rho_i <= 0. With chi s_m as the onset the law gets the critical stretch with which its work M is
 /// what it was: the fracture energy is that of the law. That needs M >= (chi s_m)^2 / 2.
 ///
+/// At points at which a bond has started chi_i is at most 1, so that cracks run at their fracture
+/// energy.
+///
 /// chi is found anew in accepted states until a bond starts, and is constant from then on. As it is
 /// homogeneous of degree 0 in the load, steps do not matter while the stress grows in proportion.
 class StrengthOnsets {

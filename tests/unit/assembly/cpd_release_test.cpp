@@ -408,13 +408,22 @@ void expect_stable(BoxSetting box) {
   }
 }
 
-TEST(CpdRelease, NeedsATermThatKnowsAll) {
-  BoxSetting box = release_box(2, 0.0);
-  const BoxBody body(box);
-  Assembler assembler(body.points, body.model, 1);
-  History history = assembler.initial_history();
-  const std::vector<double> u(body.dofs(), 0.0);
-  EXPECT_THROW(static_cast<void>(assembler.commit(u, history, {})), std::logic_error);
+/// Without triangles nothing but its stretch drives a bond: it fails as by stretch.
+TEST(CpdRelease, OfBondsAloneIsThatOfTheirStretches) {
+  BoxSetting by_stretch = release_box(2, 0.0);
+  by_stretch.drive = DamageDrive::stretch;
+  const BoxBody one(release_box(2, 0.0)), other(by_stretch);
+  Assembler release(one.points, one.model, 2), stretch(other.points, other.model, 2);
+  const std::vector<double> u = Random(7).vector(one.dofs(), 0.01);
+  History of_release = release.initial_history(), of_stretch = stretch.initial_history();
+  const DamageGrowth growth = release.growth({u, of_release});
+  EXPECT_GT(growth.breaking, 10);
+  EXPECT_EQ(growth.breaking, stretch.growth({u, of_stretch}).breaking);
+  EXPECT_NEAR(growth.utilisation, stretch.growth({u, of_stretch}).utilisation,
+              1e-13 * growth.utilisation);
+  EXPECT_EQ(release.commit(u, of_release, {}).growth.breaking, growth.breaking);
+  EXPECT_EQ(stretch.commit(u, of_stretch, {}).growth.breaking, growth.breaking);
+  EXPECT_EQ(broken_bonds(one.model, of_release), broken_bonds(other.model, of_stretch));
 }
 
 }  // namespace

@@ -22,10 +22,10 @@ using tests::BoxSetting;
 using tests::ReleaseBody;
 
 constexpr double modulus = 2.0, tension = 1e-4, compression = 16.7 * tension;  // of ReleaseBody
-const AnyBondLaw tough{ForceEnvelope{0.4 * tension / modulus, 400.0 * tension / modulus}};
+const AnyBondLaw tough{ForceEnvelope{0.4 * tension / modulus, 40000.0 * tension / modulus}};
 
 std::shared_ptr<const StrengthOnsets> onsets_of(StrengthCriterion criterion, double nu, int d,
-                                                std::array<double, 2> factor = {0.01, 100.0}) {
+                                                std::array<double, 2> factor = {0.01, 1e3}) {
   const MaterialStrength strength{{criterion, tension, compression},
                                   d,
                                   lame_constants(modulus, nu, d, PlaneState::stress),
