@@ -9,7 +9,8 @@ is the difference of two elastic strips of different lengths. G is the mean over
 process zone has developed; damage commits at the end of each step of the control, and what it sets free beyond the
 law is drained, so that G tends to `tear` with finer steps: G = tear (1 + drained / dissipated). A straight tear of the same strip, whose halves move apart as rigid bodies, takes
 `tear`, which differs from the fracture energy by the direction of the lattice and, in 3D, by the free faces.
-Names: stress_NU, strain_NU, space_NU, bond (plane stress). Finished runs in DIR are not repeated.
+Names: stress_NU, strain_NU, space_NU, bond (plane stress); strength_NU and surface_NU in plane stress with a strength,
+without and with a strength surface. Finished runs in DIR are not repeated.
 """
 
 import argparse
@@ -26,6 +27,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAM = os.environ.get("PERISTAT_PROGRAM", str(ROOT / "build/release/peristat"))
 MODULUS, FRACTURE_ENERGY, SPACING, THICKNESS = 70e9, 10.0, 1e-3, 1e-3  # Pa, J/m2, m, m
+STRENGTH, COMPRESSIVE = 10264785.785, 170e6  # of strength_NU and surface_NU [Pa]
 NAMES = ("stress_0", "stress_0.22", "stress_0.3333", "stress_0.45", "strain_0.25", "strain_0.35", "strain_0.4", "bond")
 # Mean opening over that of a severed strip: up to which few steps do, and by which it then grows.
 ELASTIC_PART, GROWING_PART = 0.27, 0.23
@@ -61,12 +63,12 @@ class Strip:
     def displacement(self) -> float:
         """Of the clamps at load 1, at which G of a strip in the continuum is about the fracture energy [m]."""
         nu = self.poisson_ratio
-        clamped = MODULUS / (1 - nu**2) if self.kind in ("stress", "bond") else MODULUS * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+        clamped = MODULUS / (1 - nu**2) if self.kind not in ("strain", "space") else MODULUS * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
         return math.sqrt(FRACTURE_ENERGY * self.height * SPACING / clamped / 2)
 
     def material(self) -> str:
         model = "bond" if self.kind == "bond" else "state"
-        plane = f'plane = "{self.kind}"\n' if self.kind in ("stress", "strain") else ""
+        plane = "" if self.kind in ("space", "bond") else f'plane = "{"strain" if self.kind == "strain" else "stress"}"\n'
         ratio = f"poisson_ratio = {self.poisson_ratio}\n" if model == "state" else ""
         return f'[material]\nmodel = "{model}"\n{plane}youngs_modulus = {MODULUS}\n{ratio}'
 
@@ -104,7 +106,9 @@ thickness = 3
         return self.body(length) + self.material() + self.clamps()
 
     def damage(self) -> str:
-        return f'[material.damage]\nlaw = "linear"\nfracture_energy = {FRACTURE_ENERGY}\nno_fail = ["low", "high"]\n'
+        more = f"strength = {STRENGTH}\n" if self.kind in ("strength", "surface") else ""
+        more += f'strength_surface = "drucker_prager"\ncompressive_strength = {COMPRESSIVE}\n' if self.kind == "surface" else ""
+        return f'[material.damage]\nlaw = "linear"\nfracture_energy = {FRACTURE_ENERGY}\n{more}no_fail = ["low", "high"]\n'
 
     def torn(self, length: int) -> str:
         """Halves that move apart until no bond joins them; nothing is searched for."""
