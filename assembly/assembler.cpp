@@ -230,7 +230,6 @@ void Assembler::add_drive(const StateView& at, const StateLine& line, std::span<
 }
 
 DamageGrowth Assembler::of_all(const DamageGrowth& mine) const {
-  if (index_map_.is_whole()) return mine;
   const Communicator& ranks = index_map_.ranks();
   const std::vector<double> counts = ranks.sum({double(mine.degrading), double(mine.breaking)});
   return {Index(counts[0]), Index(counts[1]), ranks.max(mine.utilisation)};
