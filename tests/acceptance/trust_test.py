@@ -1,5 +1,6 @@
 """The suite of known answers, on the coarsest lattice of some of its entries."""
 
+import csv
 import re
 import unittest
 
@@ -80,17 +81,36 @@ class Trust(Folder):
         again = self.trust("senb_05", "--quick", "--set", "loading.steps=2", "--set", "loading.table=[0, 1e-6]")
         self.assertRegex(again.output, r"senb_05/h1_m3.015_0: \d+ s")  # other settings are other runs
 
+    def test_a_crack_kinks_without_t_stress_and_keeps_to_its_row_with_it(self):
+        """On a lattice along the crack: without T it turns as in fracture mechanics, within 5 degrees; with negative T a
+        row holds it, 24 degrees off, and the table says so, with exit code 3. Nothing is run twice."""
+        ended = self.trust("kink", "--quick", "--jobs", 1)
+        self.assert_code(ended, 3)
+        free, held = (self.folder / "kink.md").read_text().splitlines()[2:4]
+        self.assertRegex(free, r"^\| 0.577 \| 0 \|.*\| pass \|$")
+        self.assertRegex(held, r"^\| 0.364 \| -0.2 \|.*\| \*\*red\*\*: 0° by \+2\d\.\d° \|$")
+        # The elastic body bears the factors that its rim is given.
+        with open(self.folder / "kink.csv", newline="") as table:
+            for row, stress in zip(csv.DictReader(table), (0.0, -0.2), strict=True):
+                self.assertAlmostEqual(float(row["K1_over_given"]), 1, delta=0.02)
+                self.assertAlmostEqual(float(row["K2_over_given"]), 1, delta=0.07)
+                self.assertAlmostEqual(float(row["elastic_T_star"]), stress, delta=0.02)
+        again = self.trust("kink", "--quick", "--jobs", 1)
+        self.assertNotRegex(again.output, r"kink/\S+: \d+ s")
+
     def test_bad_input(self):
         self.assert_refused(self.trust("surfing", "--threads", 0), "argument --threads")
         self.assert_refused(self.trust("surfing", "--set", "material.model"), "must be KEY=VALUE")
-        self.assert_refused(self.trust("trapping", "--set", "material.model=state"), "trapping takes no --set")
+        for study in ("trapping", "kink"):
+            self.assert_refused(self.trust(study, "--set", "material.model=state"), f"{study} takes no --set")
         ended = self.trust("surfing", "--quick", output=self.write("a file", ""))
         self.assert_code(ended, 5)
         self.assertIn("a file", ended.errors)
         self.assertNotIn("Traceback", ended.errors)
 
     def test_files_of_others_are_not_replaced(self):
-        for name in ("table.md", "entries.svg", "trapping.csv", "trapping.svg", "strength_shear/h1_m3.015_0/case.toml"):
+        for name in ("table.md", "entries.svg", "trapping.csv", "trapping.svg", "kink.md", "kink.csv", "kink.svg",
+                     "strength_shear/h1_m3.015_0/case.toml"):  # fmt: skip
             mine = self.write(name, "mine")
             self.assert_refused(self.trust("strength_shear", "--quick", "--jobs", 1), name)
             self.assertEqual([path for path in self.folder.rglob("*") if path.is_file()], [mine])

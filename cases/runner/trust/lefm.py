@@ -62,8 +62,31 @@ def williams_opening(toughness: float, modulus: float, poisson_ratio: float, x: 
                      is_plane_strain: bool = False) -> tuple[str, str]:  # fmt: skip
     """Displacements of mode I around a tip at the origin in plane stress or strain, as expressions in x and y, which
     are given as texts: K / (2 mu) sqrt(r / 2 pi) (kappa - cos t) (cos t/2, sin t/2)."""
+    size, kappa, t = _williams(toughness, modulus, poisson_ratio, x, y, is_plane_strain)
+    size += f"*({kappa:.17g}-cos({t}))"
+    return f"{size}*cos(0.5*{t})", f"{size}*sin(0.5*{t})"
+
+
+def williams_sliding(toughness: float, modulus: float, poisson_ratio: float, x: str, y: str,
+                     is_plane_strain: bool = False) -> tuple[str, str]:  # fmt: skip
+    """Likewise of mode II: K / (2 mu) sqrt(r / 2 pi) ((kappa + 2 + cos t) sin t/2, (2 - kappa - cos t) cos t/2)."""
+    size, kappa, t = _williams(toughness, modulus, poisson_ratio, x, y, is_plane_strain)
+    return (f"{size}*({kappa + 2:.17g}+cos({t}))*sin(0.5*{t})",
+            f"{size}*({2 - kappa:.17g}-cos({t}))*cos(0.5*{t})")  # fmt: skip
+
+
+def _williams(toughness: float, modulus: float, poisson_ratio: float, x: str, y: str, is_plane_strain: bool) -> tuple[str, float, str]:
+    """K / (2 mu) sqrt(r / 2 pi) as a text, kappa, and t as a text."""
     shear = modulus / (2 * (1 + poisson_ratio))
     kappa = 3 - 4 * poisson_ratio if is_plane_strain else (3 - poisson_ratio) / (1 + poisson_ratio)
     r, t = f"sqrt(({x})^2+({y})^2)", f"atan2({y},{x})"
-    size = f"{toughness / (2 * shear * math.sqrt(2 * math.pi)):.17g}*sqrt({r})*({kappa:.17g}-cos({t}))"
-    return f"{size}*cos(0.5*{t})", f"{size}*sin(0.5*{t})"
+    return f"{toughness / (2 * shear * math.sqrt(2 * math.pi)):.17g}*sqrt({r})", kappa, t
+
+
+def hoop_direction(opening: float, sliding: float) -> float:
+    """Angle [rad] at which the hoop stress near a tip with K_I, K_II is largest, where a crack turns if there is no
+    T-stress: K_I sin t + K_II (3 cos t - 1) = 0 [Erdogan and Sih 1963]."""
+    if sliding == 0.0:
+        return 0.0
+    ratio = opening / sliding
+    return 2 * math.atan(0.25 * (ratio - math.copysign(math.sqrt(ratio**2 + 8), ratio)))

@@ -30,7 +30,7 @@ PATHS = {
     "like_3d": Strip(half_height=6.0, half_length=8.0, way=4.0, inner=2.5, outer=4.5),
 }
 COLUMNS = ["law", "strength", "path", "horizon_ratio", "angle", "perturbation", "least_K", "largest_K", "note"]
-SIGN = ",".join(COLUMNS).encode()  # signature of the table
+FILES = {"trapping.csv": ",".join(COLUMNS).encode(), "trapping.svg": PICTURE}  # and their signatures
 
 
 @dataclass(frozen=True)
@@ -96,8 +96,8 @@ def resistance_by_work(strip: Strip, folder: Path) -> tuple[float, float]:
     return min(found), max(found)
 
 
-def measure(runs: Runs, directory: Path, quick: bool, tell: Callable[[str], None]) -> None:
-    """Writes trapping.csv, and trapping.svg if several angles were run."""
+def measure(runs: Runs, directory: Path, quick: bool, tell: Callable[[str], None]) -> bool:
+    """Writes trapping.csv, and trapping.svg if several angles were run. Returns True: nothing is judged."""
     by_name = {f"trapping/{setting.name}": setting for setting in settings(quick)}
     found = []
     for ran in runs.run({name: text(setting) for name, setting in by_name.items()}):
@@ -110,13 +110,14 @@ def measure(runs: Runs, directory: Path, quick: bool, tell: Callable[[str], None
             tell(f"{ran.name}: {failure}")
         found.append([setting.law, setting.strength, setting.path, setting.ratio, setting.angle, setting.perturbation, least, largest, note])
     if runs.interrupted:
-        return
+        return True
     found.sort(key=lambda row: row[:6])
     table = io.StringIO(newline="")
     csv.writer(table).writerows([COLUMNS, *found])
-    write_own(directory / "trapping.csv", table.getvalue().encode(), SIGN)
+    write_own(directory / "trapping.csv", table.getvalue().encode(), FILES["trapping.csv"])
     if not quick:
         draw(found, directory / "trapping.svg")
+    return True
 
 
 def draw(found: list[list], path: Path) -> None:

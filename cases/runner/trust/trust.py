@@ -18,6 +18,7 @@ import centre_crack
 import compact_tension
 import double_cantilever
 import inclined_notch
+import kink
 import l_panel
 import notched_beam
 import phase_field
@@ -38,6 +39,7 @@ from verdict import CALIBRATION, HEADING, Verdict, extension_of, row
 MODULES = (surfing, notched_beam, compact_tension, centre_crack, double_cantilever, brazilian_disk, size_effect, l_panel,
            inclined_notch, attracted_crack, strength, phase_field)  # fmt: skip
 ENTRIES: dict[str, Specimen] = {s.name: s for module in MODULES for s in module.SPECIMENS}
+STUDIES = {"trapping": trapping, "kink": kink}  # with tables of their own
 STEADY = "surfing"
 TABLE = HEADING[0].encode()  # the signature of the table
 PASSED, RED, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 3, 2, 5, 130
@@ -106,7 +108,8 @@ def _parser() -> argparse.ArgumentParser:
         epilog=f"Entries: {', '.join(ENTRIES)}. Exit codes: 0 all pass, 3 some are red, 2 wrong input, 5 the machine failed, 130 interrupted.",
     )  # fmt: skip
     parser.add_argument("names", metavar="NAME", nargs="*", help="entries (default: all); trapping: how strongly "
-                        "lattices trap cracks, by law, horizon ratio and angle")  # fmt: skip
+                        "lattices trap cracks, by law, horizon ratio and angle; kink: where cracks turn under mixed mode, by "
+                        "T-stress and points")  # fmt: skip
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], dest="given",
                         help="another value of a key of the setting, in every run; models with a free Poisson's ratio have "
                         f"that of glass, {GLASS}, unless material.poisson_ratio is set. Entries whose keys the model does not "
@@ -131,13 +134,14 @@ def main(words: list[str]) -> int:
 
 
 def run(asked: argparse.Namespace) -> int:
-    unknown = [name for name in asked.names if name not in ENTRIES and name != "trapping"]
+    unknown = [name for name in asked.names if name not in ENTRIES | STUDIES]
     if unknown:
-        print(f"peristat trust: no entry {unknown[0]}; there are {', '.join(ENTRIES)} and trapping", file=sys.stderr)
+        print(f"peristat trust: no entry {unknown[0]}; there are {', '.join(ENTRIES)}, {' and '.join(STUDIES)}", file=sys.stderr)
         return WRONG_INPUT
     given = read_settings(asked.given)
-    if given and "trapping" in asked.names:
-        raise WrongSetting("trapping takes no --set: its settings are what it varies")
+    studies = [name for name in STUDIES if name in asked.names]
+    if given and studies:
+        raise WrongSetting(f"{studies[0]} takes no --set: its settings are what it varies")
     entries = ENTRIES | {STEADY: surfing.specimen(Strip(given_ratio=poisson_ratio(given)))}
     program = os.environ.get("PERISTAT_PROGRAM")
     if not program:
@@ -146,25 +150,24 @@ def run(asked: argparse.Namespace) -> int:
     tell = lambda text: print(text, flush=True)
     cores = len(os.sched_getaffinity(0))
     jobs, threads = bounded(asked.jobs or cores, asked.threads or 1, cores)
-    for name, sign in {"table.md": TABLE, "entries.svg": PICTURE, "trapping.csv": trapping.SIGN, "trapping.svg": PICTURE}.items():
+    for name, sign in ({"table.md": TABLE, "entries.svg": PICTURE} | trapping.FILES | kink.FILES).items():
         require_own(asked.output / name, sign)
     asked.output.mkdir(parents=True, exist_ok=True)
     runs = Runs(Program(program), asked.output, jobs, threads, tell, given)
-    if "trapping" in asked.names:
-        trapping.measure(runs, asked.output, asked.quick, tell)
-    names = [name for name in asked.names if name != "trapping"] or ([] if asked.names else list(ENTRIES))
+    passed = [STUDIES[name].measure(runs, asked.output, asked.quick, tell) for name in studies]
+    names = [name for name in asked.names if name not in STUDIES] or ([] if asked.names else list(ENTRIES))
     found = verdicts([entries[name] for name in names], runs, asked.quick, tell)
     if runs.interrupted:
         return INTERRUPTED
     if not found:
-        return PASSED
+        return PASSED if all(passed) else RED
     extend_cracks(found)
     text = table(found, given)
     write_own(asked.output / "table.md", text.encode(), TABLE)
     if not asked.quick:
         draw(found, asked.output / "entries.svg")
     tell("\n" + text)
-    return PASSED if all(verdict.passes for verdict in found) else RED
+    return PASSED if all([*passed, *(verdict.passes for verdict in found)]) else RED
 
 
 if __name__ == "__main__":
