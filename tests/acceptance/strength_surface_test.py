@@ -81,7 +81,7 @@ class StrengthSurfaces(Folder):
                     pull = surface_pull.SurfacePull(
                         StatePull(2, 3.015, E, nu), E, nu, told["onset"], told["critical"],
                         lambda s, growth=growth: growth * surface_pull.drucker_prager(s, STRENGTH, COMPRESSION))  # fmt: skip
-                    courses = [(weight, pull.course(stresses, math.atan2(n[1], n[0]))) for n, weight in zip(*directions(2), strict=True)]
+                    courses = [(weight, pull.course(stresses, math.atan2(n[1], n[0]), step=5e-3)) for n, weight in zip(*directions(2), strict=True)]
                     onset, peak = (sum(weight * course[k] for weight, course in courses) for k in (0, 1))
                     # The lattice is as stiff as E and nu say in the mean over directions.
                     self.assertAlmostEqual(onset / strengths["onset"], 1, delta=2e-3)
@@ -89,7 +89,7 @@ class StrengthSurfaces(Folder):
 
     def test_a_patch_bears_the_strengths(self):
         for model, nu in (("state", 0.2), ("bond", 1 / 3)):
-            reach = 1.6 * STRENGTH / E
+            reach = 1.5 * STRENGTH / E
             with self.subTest(model=model, stress="uniaxial"):
                 told = self.told(nu, "--strength-surface", "drucker_prager", "--compressive-strength", COMPRESSION, model=model)
                 growth = STRENGTH / told["strengths"]["uniaxial"]["onset"]
@@ -97,17 +97,17 @@ class StrengthSurfaces(Folder):
                     StatePull(2, 3.015, E, nu), E, nu, told["onset"], told["critical"],
                     lambda s, growth=growth: growth * surface_pull.drucker_prager(s, STRENGTH, COMPRESSION))  # fmt: skip
                 onset, peak = pull.course((1, 0), 0.0)
-                along, _, dissipated = self.stresses(nu, (reach, None), 160, {"model": model}, code=(0, 3))
+                along, _, dissipated = self.stresses(nu, (reach, None), 75, {"model": model}, code=(0, 3))
                 self.assertAlmostEqual(along.max() / peak, 1, delta=0.01)
                 self.assertAlmostEqual(along.max() / STRENGTH, 1, delta=0.05)  # of this direction, not of all
-                self.assertAlmostEqual(along[numpy.argmax(dissipated > 0)] / onset, 1, delta=0.02)  # a step
+                self.assertAlmostEqual(along[numpy.argmax(dissipated > 0)] / onset, 1, delta=0.03)  # a step
             with self.subTest(model=model, stress="biaxial"):
-                along, across, _ = self.stresses(nu, (reach * (1 - nu), reach * (1 - nu)), 160, {"model": model}, code=(0, 3))
+                along, across, _ = self.stresses(nu, (reach * (1 - nu), reach * (1 - nu)), 75, {"model": model}, code=(0, 3))
                 self.assertAlmostEqual(along.max() / BIAXIAL, 1, delta=0.01)
                 self.assertAlmostEqual(across.max() / BIAXIAL, 1, delta=0.01)
             with self.subTest(model=model, stress="biaxial, no surface"):
                 plain = {key: value for key, value in DAMAGE.items() if key not in SURFACE}
-                along, _, _ = self.stresses(nu, (reach * (1 - nu), reach * (1 - nu)), 160, {"model": model, "damage": plain}, code=(0, 3))
+                along, _, _ = self.stresses(nu, (reach * (1 - nu), reach * (1 - nu)), 75, {"model": model, "damage": plain}, code=(0, 3))
                 self.assertGreater(along.max(), 1.3 * STRENGTH)
 
     def test_steps_and_threads_do_not_decide_where_damage_begins(self):
