@@ -177,11 +177,6 @@ class Fracture(Comparison):
         self.compare_torn((2,), 'solver.mode="newton"', softening, "loading.table=[0, 0.8]", "solver.relative_tolerance=1e-12",
                           text=self.SHEET_UNDER_LOAD)  # fmt: skip
 
-    def test_damage_by_release_is_for_one_rank(self):
-        for setting in ('material.damage.drive="release"', 'material.damage={law="critical_stretch", fracture_energy=1e-3}'):
-            said = self.refusal(self.SHEET_UNDER_LOAD, setting)
-            self.assertIn('material.damage.drive = release: is for one rank with model "cpd"; give drive = "stretch"', said)
-
     def test_tetrahedra_that_are_lost_with_their_bonds(self):
         one = self.compare_torn((2,), 'solver.mode="relaxation"', 'material.damage={law="critical_stretch", critical=0.07}',
                                 "loading.table=[0, 0.8]", "relaxation.steps=2", text=CUBE + STORED)  # fmt: skip
