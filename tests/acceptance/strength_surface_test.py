@@ -163,5 +163,6 @@ class StrengthSurfaces(Folder):
                 self.assertIn(word, self.refusal(self.notched(**changes)))
         self.assertIn("a strength_surface needs it", self.refusal(case, "material.damage={law='linear', fracture_energy=2.6, strength_surface='rankine'}"))
         self.assertIn("laws that soften", self.refusal(case, "material.damage={law='critical_stretch', strength=3e6, strength_surface='rankine'}"))
+        self.assertIn("is for models", self.refusal(case, "material.model=cpd"))
         self.assertIn('mode "path"', self.refusal(case, "solver.mode=path"))
         self.assertIn("is missing", self.refusal(case, "material.damage={law='linear', fracture_energy=2.6, strength=3e6, strength_surface='mohr_coulomb'}"))

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "solvers/formulations/cpd/cpd_model.hpp"
-#include "solvers/formulations/solid/strength_onsets_of.hpp"
 #include "solvers/formulations/specification/require.hpp"
 #include "src/neighbourhood/horizon.hpp"
 
@@ -130,8 +129,7 @@ const Formulation& cpd_formulation() {
       .takes = {Option::potential, Option::poisson_ratio, Option::constants, Option::calibration,
                 Option::thermal_expansion, Option::strength, Option::softening,
                 Option::critical_stretch, Option::weights, Option::interfaces, Option::eigenstrains,
-                Option::pressures, Option::images, Option::events, Option::drive,
-                Option::strength_surface},
+                Option::pressures, Option::images, Option::events, Option::drive},
       .least_dimension = 2,
       .part_bonds = PartBonds::among_neighbours,
       .most_points = [](int dimension) { return dimension + 1; },
@@ -141,11 +139,7 @@ const Formulation& cpd_formulation() {
                        const Points& points) { require_whole_square_cells(points); },
       // Effective volumes count every neighbour.
       .setting_of_bonds = without_influence,
-      .make_model =
-          [](const ModelSetting& setting, Bonds bonds) {
-            return make_cpd_model(setting, std::move(bonds),
-                                  strength_onsets_of(setting, moduli_of_cpd));
-          },
+      .make_model = make_cpd_model,
       .moduli = moduli_of_cpd,
       .describe = describe_cpd,
       .fracture_scale = scale_of_cpd,

@@ -249,8 +249,7 @@ void refuse_release(const ModelSetting& of, const std::string& key, bool has_tet
 
 }  // namespace
 
-MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds,
-                         const std::shared_ptr<const StrengthOnsets>& onsets) {
+MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds) {
   const auto& [from, materials, factors, points, setting, index_map, threads] = of_model;
   // Tables have entries for the materials of four points.
   constexpr std::size_t most = 24;
@@ -305,8 +304,7 @@ MadeModel make_cpd_model(const ModelSetting& of_model, Bonds bonds,
   if (!is_whole) agree_on_kinds(left, points, index_map.numbered(), index_map.ranks());
   CutBonds cut = cut_bonds(left, points, from.cracks);
   auto [potential, never_fails] = mixed.potential(left);
-  if (onsets) drive = DamageDrive::release;
-  Model model(std::move(left), std::move(potential), std::move(never_fails), drive, onsets);
+  Model model(std::move(left), std::move(potential), std::move(never_fails), drive);
   std::optional<Simplices<Area>> triangles;
   std::optional<Simplices<Volume>> tetrahedra;
   if (of_triangles.constant != 0.0) {

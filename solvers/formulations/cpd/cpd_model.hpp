@@ -36,7 +36,6 @@ void refuse_damage_of_negative_constants(const MaterialSpecification& material,
 /// Makes the model. Collective for a part.
 /// @param bonds without weights yet; of a part those among_neighbours
 /// @throws InputError for damage that its constants or the body do not allow
-[[nodiscard]] MadeModel make_cpd_model(const ModelSetting& setting, Bonds bonds,
-                                       const std::shared_ptr<const StrengthOnsets>& onsets);
+[[nodiscard]] MadeModel make_cpd_model(const ModelSetting& setting, Bonds bonds);
 
 }  // namespace peristat
