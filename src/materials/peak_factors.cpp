@@ -40,6 +40,7 @@ PeakFactors::Onset PeakFactors::onset(const std::array<double, 2>& stresses) con
   if (!(rho > 0.0)) return {strength_.factor[1], 1.0};
   const bool has_peak = angle_of(stresses[0], stresses[1]) > least - 1.0;
   const double first = bulk_.onset(stresses, law_);
+  if (!std::isfinite(first)) return {0.0, 1.0};  // the stress drives no bond
   constexpr int turns = 2;
   Onset found{1.0, has_peak ? uniaxial_ : 1.0};
   for (int k = 0; k < turns && has_peak; ++k) {

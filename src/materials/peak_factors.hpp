@@ -28,7 +28,7 @@ class PeakFactors {
   [[nodiscard]] double at(const std::array<double, 3>& principal) const;
 
   /// A strength of the surface, and the one that the body has, which differs where the range of chi
-  /// ends.
+  /// ends, and is infinite where the stress drives no bond.
   struct Strength {
     double asked = 0.0, reached = 0.0;  ///< multiples of the stresses
     double onset = 0.0;                 ///< where the first bond starts, likewise

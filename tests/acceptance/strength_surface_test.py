@@ -149,6 +149,14 @@ class StrengthSurfaces(Folder):
         brittle = self.assert_completed(self.command("check", self.notched(fracture_energy=0.65)))
         self.assertRegex(brittle.said, rf"shear [0-9.e+]+ Pa where {SHEAR:.4g} Pa are asked \(too little work for more\)".replace("+0", r"\+0"))
 
+    def test_stresses_that_drive_no_bond_have_no_strength(self):
+        """With lambda = 0 equal biaxial tension sets nothing free with one bond."""
+        ended = self.assert_completed(self.command("check", self.notched(), "material.poisson_ratio=0"))
+        self.assertIn("equal biaxial no value: it drives no bond", ended.said)
+        found = self.told(0.0, "--strength-surface", "drucker_prager", "--compressive-strength", COMPRESSION)["strengths"]
+        self.assertIsNone(found["biaxial"]["reached"])
+        self.assertAlmostEqual(found["uniaxial"]["reached"] / STRENGTH, 1, delta=1e-12)
+
     def test_what_is_refused(self):
         case = self.notched()
         for changes, word in (

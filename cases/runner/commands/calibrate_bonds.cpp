@@ -79,12 +79,14 @@ std::string fracture_energies(const CpdTear& tear, const AnyLaw& law, int dimens
                            [&](const Coordinates& n) { return tear.energy(law, n); });
 }
 
-/// Stresses; null where bonds never fail.
+/// A stress; null where bonds never fail.
+std::string stress_pair(const char* key, double stress) {
+  return std::isinf(stress) ? fmt::format("\"{}\": null", key) : exact_pair(key, stress);
+}
+
 std::string over_directions(const DirectionalSpread& of) {
-  const auto pair = [](const char* key, double stress) {
-    return std::isinf(stress) ? fmt::format("\"{}\": null", key) : exact_pair(key, stress);
-  };
-  return object({pair("mean", of.mean), pair("least", of.least), pair("most", of.most)});
+  return object(
+      {stress_pair("mean", of.mean), stress_pair("least", of.least), stress_pair("most", of.most)});
 }
 
 /// Strengths on a surface, and those of the body; null where there are none.
@@ -93,8 +95,8 @@ std::string strengths_of_surface(const PeakFactors& factors) {
     const auto [asked, reached, onset] = factors.strength({first, second});
     if (!(asked > 0.0) || !std::isfinite(asked)) return fmt::format("\"{}\": null", name);
     return fmt::format("\"{}\": {}", name,
-                       object({exact_pair("surface", asked), exact_pair("reached", reached),
-                               exact_pair("onset", onset)}));
+                       object({exact_pair("surface", asked), stress_pair("reached", reached),
+                               stress_pair("onset", onset)}));
   };
   return object({of("uniaxial", 1.0, 0.0), of("biaxial", 1.0, 1.0), of("shear", 1.0, -1.0),
                  of("compression", 0.0, -1.0)});

@@ -111,6 +111,7 @@ void print_surface(std::FILE* out, const DamageSpecification& damage, const std:
   const auto text = [&](const char* of, double first, double second) {
     const auto [asked, reached, begins] = damage.peak_factors->strength({first, second});
     if (!(asked > 0.0) || !std::isfinite(asked)) return fmt::format("{} none", of);
+    if (!std::isfinite(reached)) return fmt::format("{} no value: it drives no bond", of);
     std::string told = fmt::format("{} {:.4g} Pa", of, reached);
     if (reached < (1.0 - same) * asked) {
       told += fmt::format(" where {:.4g} Pa are asked (too little work for more)", asked);
