@@ -42,13 +42,11 @@ class StrengthOnsets {
  public:
   /// @param of_point number of its material per point; empty: the first one
   /// @param factor of each point's strength; empty: 1
-  /// @param is_linear whether strains are those of small displacements
   StrengthOnsets(std::vector<std::optional<PointStrength>> materials,
-                 std::vector<std::uint8_t> of_point, std::vector<double> factor, bool is_linear)
+                 std::vector<std::uint8_t> of_point, std::vector<double> factor)
       : materials_(std::move(materials)),
         of_point_(std::move(of_point)),
-        factor_(std::move(factor)),
-        is_linear_(is_linear) {}
+        factor_(std::move(factor)) {}
 
   /// What the bonds of a point start by.
   struct PointOnset {
@@ -69,7 +67,6 @@ class StrengthOnsets {
   std::vector<std::optional<PointStrength>> materials_;
   std::vector<std::uint8_t> of_point_;
   std::vector<double> factor_;
-  bool is_linear_;
 };
 
 }  // namespace peristat

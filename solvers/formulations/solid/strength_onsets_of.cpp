@@ -33,9 +33,8 @@ std::shared_ptr<const StrengthOnsets> strength_onsets_of(const ModelSetting& set
     is_any = true;
   }
   if (!is_any) return nullptr;
-  const bool is_linear = setting.of.material.model == MaterialModel::lps;
   return std::make_shared<const StrengthOnsets>(std::move(strengths), setting.materials.of_points(),
-                                                setting.factors.strength, is_linear);
+                                                setting.factors.strength);
 }
 
 }  // namespace peristat

@@ -33,7 +33,7 @@ std::shared_ptr<const StrengthOnsets> onsets_of(StrengthCriterion criterion, dou
                                   factor};
   return std::make_shared<const StrengthOnsets>(
       std::vector<std::optional<PointStrength>>{PointStrength{strength}},
-      std::vector<std::uint8_t>(), std::vector<double>(), false);
+      std::vector<std::uint8_t>(), std::vector<double>());
 }
 
 /// Displacements of a homogeneous stress along turned axes.
