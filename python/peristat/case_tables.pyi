@@ -85,6 +85,40 @@ class LatticeShape(Table):
     translate: List
     """stl: shift after the scaling [m]. Default: `[0.0, 0.0]`. Allowed: a number per dimension"""
 
+class LatticeRefine(Table):
+    shape: Literal["box", "disk", "ellipse", "cylinder", "sphere", "polygon", "image", "stl"]
+    """kind of the region, which has smooth sides and may reach beyond the body. required. Allowed: `'box'` (1D, 2D, 3D), `'disk'`, `'ellipse'` (2D), `'polygon'` (2D; in 3D, where it is infinite in z, only to subtract), `'image'` (2D), `'cylinder'`, `'sphere'`, `'stl'` (3D)"""
+    spacing: Quantity
+    """distance of points in the region [m]. required. Allowed: positive; below `lattice.spacing`, at least 1/64 of it"""
+    growth: float
+    """by how much the spacing grows per distance from the region, up to `lattice.spacing`. Default: 0.1. Allowed: 0.01 to 0.5"""
+    min: List
+    """box, image: lower corner [m]. required. Allowed: a number per dimension; below `max`"""
+    max: List
+    """box, image: upper corner [m]. required. Allowed: a number per dimension"""
+    centre: List
+    """disk, ellipse, cylinder, sphere: centre [m]. required. Allowed: a number per dimension"""
+    radius: Quantity
+    """disk, cylinder, sphere: radius [m]. required. Allowed: positive"""
+    radii: List
+    """ellipse: radii along its two axes [m]. required. Allowed: a number per dimension; positive"""
+    angle: Quantity
+    """ellipse: angle from x to the axis of the first radius, anticlockwise [degrees]. Default: 0. Allowed: -360 to 360"""
+    axis: List
+    """cylinder: direction of its axis. Default: `[0, 0, 1]`. Allowed: a number per dimension; not zero"""
+    length: Quantity
+    """cylinder: length along its axis, half to each side of the centre [m]. Default: infinite. Allowed: positive; finite if it is added"""
+    vertices: List
+    """polygon: corners in order. The last corner is joined to the first [m]. exactly one of `vertices`, `file`. Allowed: 3 or more pairs `[x, y]`; around an area"""
+    file: str
+    """polygon (instead of `vertices`): file with corners x, y; image: PNG or TIFF picture; stl: STL surface. The path is relative to the case file's folder. exactly one of `vertices`, `file`. Allowed: an existing file"""
+    scale: Quantity
+    """polygon, stl: length of 1 in the file [m]. Default: 1, or the `length` of `[units]`. Allowed: positive"""
+    grey: List
+    """image: smallest and largest grey value of the pixels inside the shape, 0 (black) to 255, or to 65535 in files with 16 bits. required. Allowed: two numbers, the second not below the first"""
+    translate: List
+    """stl: shift after the scaling [m]. Default: `[0.0, 0.0]`. Allowed: a number per dimension"""
+
 class LatticeLayer(Table):
     name: str
     """name of the layer and of its set. required. Allowed: letters, digits, `_`, `-`; at most 100 characters; no other set or layer has it"""
@@ -123,6 +157,9 @@ class Lattice(Table):
     def add_shape(self, *, add: Literal["box", "disk", "ellipse", "cylinder", "sphere", "polygon", "image", "stl"] = ..., subtract: Literal["box", "disk", "ellipse", "cylinder", "sphere", "polygon", "image", "stl"] = ..., name: str = ..., cuts_bonds: bool = ..., min: List = ..., max: List = ..., centre: List = ..., radius: Quantity = ..., radii: List = ..., angle: Quantity = ..., axis: List = ..., length: Quantity = ..., vertices: List = ..., file: str = ..., scale: Quantity = ..., grey: List = ..., translate: List = ...) -> LatticeShape: ...
     shape: Array[LatticeShape]
     """tables: shapes that make up the body. at least one is required"""
+    def add_refine(self, *, shape: Literal["box", "disk", "ellipse", "cylinder", "sphere", "polygon", "image", "stl"] = ..., spacing: Quantity = ..., growth: float = ..., min: List = ..., max: List = ..., centre: List = ..., radius: Quantity = ..., radii: List = ..., angle: Quantity = ..., axis: List = ..., length: Quantity = ..., vertices: List = ..., file: str = ..., scale: Quantity = ..., grey: List = ..., translate: List = ...) -> LatticeRefine: ...
+    refine: Array[LatticeRefine]
+    """tables: regions in which points of blue noise, and with them their horizons, are finer. Default: none"""
     def add_layer(self, *, name: str = ..., side: Literal["x-", "x+", "y-", "y+", "z-", "z+"] = ..., thickness: int = ..., where: str = ...) -> LatticeLayer: ...
     layer: Array[LatticeLayer]
     """tables: points outside the body. Default: none"""

@@ -196,7 +196,14 @@ BondSetting bond_setting(const BodySpecification& of, const Points& points) {
   setting.influence = influence_named(of.material.influence);
   setting.horizon = of.horizon;
   setting.cross_section = cross_section_of(of, points);
-  if (points.lattice) setting.lattice = {points.spacing, points.angle, of.surface_correction};
+  if (points.lattice) {
+    setting.lattice = {points.spacing, points.angle, of.surface_correction};
+  } else {
+    const double size = points.horizons.empty()
+                            ? double(points.spacing)
+                            : of.horizon / mean_horizon_ratio(points, setting.cross_section);
+    setting.cloud = {size, of.surface_correction};
+  }
   return setting;
 }
 

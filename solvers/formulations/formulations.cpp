@@ -173,6 +173,7 @@ std::vector<LawStretches> by_horizon(const MaterialSpecification& material, cons
     const double finer = std::exp2(double(k) / horizon_steps);
     BondSetting own = setting;
     own.horizon /= finer;
+    if (own.cloud) own.cloud->size /= finer;
     const DamageSpecification found =
         with_stretches(damage, key, fracture_scale_of(material, key, own, spacing / finer));
     all.push_back({found.onset, found.critical});

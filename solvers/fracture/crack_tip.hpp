@@ -13,7 +13,8 @@ struct CrackTipSpecification {
   Coordinates at{};                  ///< of the tip, in 3D any point of its straight front [m]
   Coordinates direction{};           ///< in which the crack would go on, of any length
   Coordinates front{0.0, 0.0, 1.0};  ///< 3D: along the front, of any length
-  /// Radii of the ring [m]; 0: 2 and 4 horizons.
+  /// Radii of the ring [m]; 0: 2 and 4 horizons. Of points with horizons of their own, the largest
+  /// within the ring counts.
   double inner = 0.0, outer = 0.0;
   /// Length of a cut ahead of the tip, by which energy release rates are found [m]; 0: none.
   double cut = 0.0;

@@ -44,21 +44,24 @@ std::array<double, 2> fall(double t) {
   return {1.0 - t * t * (3.0 - 2.0 * t), -6.0 * t * (1.0 - t)};
 }
 
+constexpr double outer_horizons = 4.0;  // default outer radius of a ring, in horizons
+
 }  // namespace
 
 CrackTipIntegrals::CrackTipIntegrals(const Points& points, const CrackTipSpecification& tip,
                                      const CrackTipSetting& setting, const std::string& key)
     : points_(points), tip_(tip), setting_(setting), frame_(frame_of(tip, points.dimension, key)) {
-  constexpr double inner_horizons = 2.0, outer_horizons = 4.0;
-  if (tip_.inner == 0.0) tip_.inner = inner_horizons * setting.horizon;
-  if (tip_.outer == 0.0) tip_.outer = std::max(outer_horizons * setting.horizon, 2.0 * tip_.inner);
-  if (!(tip_.inner >= inner_horizons * setting.horizon * (1.0 - 1e-9))) {
+  constexpr double inner_horizons = 2.0;
+  setting_.horizon = horizon_of_ring();
+  if (tip_.inner == 0.0) tip_.inner = inner_horizons * setting_.horizon;
+  if (tip_.outer == 0.0) tip_.outer = std::max(outer_horizons * setting_.horizon, 2.0 * tip_.inner);
+  if (!(tip_.inner >= inner_horizons * setting_.horizon * (1.0 - 1e-9))) {
     throw InputError(key + ".inner", number_text(tip_.inner),
                      "must be at least 2 horizons, " +
-                         number_text(inner_horizons * setting.horizon) +
+                         number_text(inner_horizons * setting_.horizon) +
                          " m: closer to the tip the body is nonlocal");
   }
-  if (!(tip_.outer >= tip_.inner + setting.horizon * (1.0 - 1e-9))) {
+  if (!(tip_.outer >= tip_.inner + setting_.horizon * (1.0 - 1e-9))) {
     throw InputError(key + ".outer", number_text(tip_.outer),
                      "must be at least a horizon larger than the inner radius, " +
                          number_text(tip_.inner) + " m");
@@ -189,22 +192,38 @@ void CrackTipIntegrals::weigh() {
     weighted_.push_back(weighted);
   }
   factor_ = (is_on_plane_ ? 2.0 : 1.0) / front_length(points_.own());
-  horizon_ = horizon_at_tip();
 }
 
-/// Horizon of the point next to the tip, where points have their own.
-double CrackTipIntegrals::horizon_at_tip() const {
+/// Largest horizon of the points within a distance of the tip, at least of the nearest one; each
+/// image has that of its source.
+double CrackTipIntegrals::largest_horizon_within(double distance) const {
   if (points_.horizons.empty()) return setting_.horizon;
-  double nearest = std::numeric_limits<double>::infinity(), horizon = 0.0;
-  for (const Weighted& weighted : weighted_) {
-    const Coordinates at = frame_.components(points_.position(weighted.point));
+  double nearest = std::numeric_limits<double>::infinity(), of_nearest = 0.0, largest = 0.0;
+  for (Index i = 0; i < points_.count(); ++i) {
+    if (!points_.owns(i)) continue;
+    const Coordinates at = frame_.components(points_.position(i));
     const double r = std::hypot(at[0], at[1]);
-    if (!(r < nearest)) continue;
+    const double horizon = points_.horizons[std::size_t(points_.source(i))];
+    if (r <= distance) largest = std::max(largest, horizon);
+    if (r >= nearest) continue;
     nearest = r;
-    horizon = points_.horizons[std::size_t(points_.source(weighted.point))];
+    of_nearest = horizon;
   }
   const double of_all = -sums().largest_of_all(-nearest);
-  return sums().largest_of_all(nearest == of_all ? horizon : 0.0);
+  return sums().largest_of_all(std::max(largest, nearest == of_all ? of_nearest : 0.0));
+}
+
+/// Largest horizon in the ring and within it. The ring's default radius depends on it: the smallest
+/// horizon is found that no point in its ring exceeds.
+double CrackTipIntegrals::horizon_of_ring() {
+  horizon_ = largest_horizon_within(0.0);
+  double horizon = horizon_;
+  for (double larger = 0.0;; horizon = larger) {
+    const double outer =
+        tip_.outer > 0.0 ? tip_.outer : std::max(outer_horizons * horizon, 2.0 * tip_.inner);
+    larger = largest_horizon_within(outer);
+    if (larger <= horizon) return horizon;
+  }
 }
 
 double CrackTipIntegrals::largest(std::span<const double> values) const {

@@ -74,7 +74,8 @@ class CrackTipIntegrals {
   void check_ring(const std::string& key) const;
   void weigh();
   [[nodiscard]] double front_length(Index points) const;
-  [[nodiscard]] double horizon_at_tip() const;
+  [[nodiscard]] double largest_horizon_within(double distance) const;
+  [[nodiscard]] double horizon_of_ring();
   [[nodiscard]] Sums sums() const { return {setting_.index_map, points_.dimension}; }
   [[nodiscard]] double largest(std::span<const double> values) const;
   [[nodiscard]] Rings fluxes(Assembler& assembler, const StateView& at,

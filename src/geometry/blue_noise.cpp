@@ -3,92 +3,71 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
-#include "src/core/counter_random.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 #include "src/geometry/convex_cell.hpp"
 #include "src/geometry/lattice_sites.hpp"
 #include "src/geometry/numbering.hpp"
+#include "src/geometry/poisson_disk.hpp"
+#include "src/geometry/spacing_field.hpp"
 #include "src/geometry/voronoi.hpp"
 #include "src/measures/small_algebra.hpp"
 
 namespace peristat {
 namespace {
 
-/// Places by the cell of a grid that they lie in; a cell is as large as the largest distance
-/// searched.
-class Grid {
+/// Parts of the body's box at which places are aimed, with the number of points that belong there.
+class Targets {
  public:
-  Grid(int dimension, const Box& box, double cell) : dimension_(dimension), low_(box.min) {
-    std::size_t cells = 1;
-    for (std::size_t c = 0; c < std::size_t(dimension); ++c) {
-      extent_[c] = std::size_t(std::max(1.0, std::ceil((box.max[c] - box.min[c]) / cell)));
-      cells *= extent_[c];
-    }
-    cell_ = cell;
-    last_.assign(cells, none);
-  }
-
-  void add(const Coordinates& place) {
-    const std::size_t at = flat(cell_of(place));
-    before_.push_back(last_[at]);
-    last_[at] = Index(places_.size());
-    places_.push_back(place);
-  }
-
-  /// @param distance at most the size of a cell
-  [[nodiscard]] bool has_within(double distance, const Coordinates& place) const {
-    const std::array<std::size_t, 3> centre = cell_of(place);
-    std::array<std::size_t, 3> from{}, to{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      from[c] = centre[c] - std::min<std::size_t>(centre[c], 1);
-      to[c] = std::min(centre[c] + 1, extent_[c] - 1);
-    }
-    for (std::size_t x = from[0]; x <= to[0]; ++x) {
-      for (std::size_t y = from[1]; y <= to[1]; ++y) {
-        for (std::size_t z = from[2]; z <= to[2]; ++z) {
-          for (Index k = last_[flat({x, y, z})]; k != none; k = before_[std::size_t(k)]) {
-            const Coordinates arm = minus<3>(places_[std::size_t(k)], place);
-            if (dot<3>(arm, arm) < distance * distance) return true;
-          }
-        }
+  Targets(const Lattice& lattice, const SpacingField& field, const Solid& body)
+      : field_(field), body_(body), dimension_(lattice.dimension) {
+    Lattice cut = lattice;
+    cut.volumes = CellVolumes::fractional;
+    const double edge = lattice.spacing;
+    for (const Site& site : body_sites(cut)) {
+      if (field.is_even()) {
+        count_ += site.share;
+      } else {
+        add(site.place, edge, site.share);
       }
     }
-    return false;
+    if (field.is_even()) targets_ = {{body.bounds(), 1.0}};
   }
 
-  [[nodiscard]] const std::vector<Coordinates>& places() const { return places_; }
+  [[nodiscard]] double count() const { return count_; }
+  [[nodiscard]] const std::vector<Target>& list() const { return targets_; }
 
  private:
-  static constexpr Index none = -1;
-
-  [[nodiscard]] std::array<std::size_t, 3> cell_of(const Coordinates& place) const {
-    std::array<std::size_t, 3> cell{};
-    for (std::size_t c = 0; c < std::size_t(dimension_); ++c)
-      cell[c] = std::min(std::size_t((place[c] - low_[c]) / cell_), extent_[c] - 1);
-    return cell;
+  /// Adds a cell, or its parts if it is larger than the spacing there. Of parts of a cell that the
+  /// boundary cuts, those with their centres in the body count.
+  void add(const Coordinates& centre, double edge, double share) {
+    const double spacing = field_.at(centre);
+    if (edge > 1.01 * spacing) {
+      for (int part = 0; part < 1 << dimension_; ++part) {
+        Coordinates at = centre;
+        for (std::size_t c = 0; c < std::size_t(dimension_); ++c)
+          at[c] += (part >> c & 1) != 0 ? 0.25 * edge : -0.25 * edge;
+        if (share >= 1.0 || body_.contains(at)) add(at, 0.5 * edge, 1.0);
+      }
+      return;
+    }
+    Target target{{centre, centre}, share * std::pow(edge / spacing, dimension_)};
+    for (std::size_t c = 0; c < std::size_t(dimension_); ++c) {
+      target.box.min[c] -= 0.5 * edge;
+      target.box.max[c] += 0.5 * edge;
+    }
+    count_ += target.count;
+    targets_.push_back(target);
   }
-  [[nodiscard]] std::size_t flat(const std::array<std::size_t, 3>& cell) const {
-    return (cell[0] * extent_[1] + cell[1]) * extent_[2] + cell[2];
-  }
 
+  const SpacingField& field_;
+  const Solid& body_;
   int dimension_;
-  Coordinates low_;
-  double cell_ = 0.0;
-  std::array<std::size_t, 3> extent_{1, 1, 1};
-  std::vector<Index> last_, before_;  // last place per cell; per place the one before
-  std::vector<Coordinates> places_;
+  std::vector<Target> targets_;
+  double count_ = 0.0;
 };
-
-/// Area or volume of the body, in cells of the lattice.
-double cells_in_body(const Lattice& lattice) {
-  Lattice cut = lattice;
-  cut.volumes = CellVolumes::fractional;
-  double sum = 0.0;
-  for (const Site& site : body_sites(cut)) sum += site.share;
-  return sum;
-}
 
 struct Parts {
   std::vector<PartInBody> of_place;
@@ -121,54 +100,67 @@ Parts parts_of(const Lattice& lattice, const Solid& body, const std::vector<Coor
   return parts;
 }
 
-}  // namespace
-
-std::vector<Coordinates> poisson_disk_places(const Solid& body, std::size_t count, double spacing,
-                                             std::uint64_t seed) {
-  const Box box = body.bounds();
-  Grid grid(body.dimension(), box, spacing);
-  double distance = spacing;
-  const double shrink = 1.0 - 0.01 / double(count);
-  for (std::uint64_t dart = 0; grid.places().size() < count; ++dart) {
-    const std::uint64_t bits = random_bits(seed, dart);
-    Coordinates place{};
-    for (std::size_t c = 0; c < std::size_t(body.dimension()); ++c)
-      place[c] = box.min[c] + (box.max[c] - box.min[c]) * open_unit(random_bits(bits, c));
-    if (!body.contains(place)) continue;
-    if (grid.has_within(distance, place)) {
-      distance *= shrink;
-    } else {
-      grid.add(place);
-    }
+/// Refuses a region that makes no point finer.
+void refuse_idle_regions(const std::vector<Refinement>& regions, const SpacingField& field,
+                         const std::vector<Target>& targets) {
+  std::vector<bool> acts(regions.size(), false);
+  for (const Target& target : targets) {
+    const auto region = field.region_at(scaled<3>(0.5, plus<3>(target.box.min, target.box.max)));
+    if (region) acts[*region] = true;
   }
-  return grid.places();
+  for (std::size_t k = 0; k < regions.size(); ++k) {
+    if (acts[k]) continue;
+    throw InputError("refinements[" + std::to_string(k) + "].shape", "",
+                     "has no effect: it is outside the body, or other regions are finer there");
+  }
 }
+
+/// Moves a place to the centroid of its cell under a density h^-(d + 2), with which a centroidal
+/// Voronoi diagram has cells of the size h (Du, Faber and Gunzburger 1999): to first order the
+/// centroid of the even cell, moved by -(d + 2) grad h V^(2/d) / (12 h).
+Coordinates lloyd_step(const PartInBody& part, const Solid& body, const SpacingField& field) {
+  if (field.is_even()) return part.centroid;
+  const double d = body.dimension(), h = field.at(part.centroid);
+  const double factor = -(d + 2.0) * std::pow(part.volume, 2.0 / d) / (12.0 * h);
+  const Coordinates moved =
+      plus<3>(part.centroid, scaled<3>(factor, field.gradient(part.centroid)));
+  return body.contains(moved) ? moved : part.centroid;
+}
+
+}  // namespace
 
 Points make_blue_noise_points(const Lattice& lattice) {
   const Solid body(lattice.dimension, lattice.shapes);
-  const double cells = std::round(cells_in_body(lattice));
-  if (cells < 1.0) {
+  const SpacingField field(lattice.dimension, lattice.spacing, lattice.refinements);
+  const Targets targets(lattice, field, body);
+  const double count = std::round(targets.count());
+  if (count < 1.0) {
     throw InputError(
         "shapes", "",
         "the body is smaller than half a cell; spacing = " + number_text(lattice.spacing));
   }
+  refuse_idle_regions(lattice.refinements, field, targets.list());
   std::vector<Coordinates> places =
-      poisson_disk_places(body, std::size_t(cells), lattice.spacing, lattice.seed);
+      poisson_disk_places(body, std::size_t(count), field, targets.list(), lattice.seed);
   for (int step = 0; step < lattice.lloyd_steps; ++step) {
     const Parts parts = parts_of(lattice, body, places, Accuracy::rough);
-    for (std::size_t k = 0; k < places.size(); ++k) places[k] = parts.of_place[k].centroid;
+    for (std::size_t k = 0; k < places.size(); ++k)
+      places[k] = lloyd_step(parts.of_place[k], body, field);
   }
   const Parts parts = parts_of(lattice, body, places, Accuracy::fine);
 
   Points points;
   points.dimension = lattice.dimension;
-  points.spacing = lattice.spacing;
-  points.cell_volume = std::pow(lattice.spacing, lattice.dimension) * lattice.cross_section;
+  double volume = 0.0;
   for (const PartInBody& part : parts.of_place) {
     points.reference.insert(points.reference.end(), part.centroid.begin(),
                             part.centroid.begin() + lattice.dimension);
     points.volume.push_back(part.volume * lattice.cross_section);
+    volume += part.volume;
   }
+  points.spacing = lattice.spacing;
+  if (!field.is_even()) points.spacing = std::pow(volume / count, 1.0 / lattice.dimension);
+  points.cell_volume = std::pow(points.spacing, lattice.dimension) * lattice.cross_section;
   const bool are_polygons =
       lattice.dimension == 2 && std::ranges::all_of(parts.of_place, &PartInBody::is_whole);
   for (std::size_t k = 0; are_polygons && k < parts.polygon.size(); ++k)

@@ -19,6 +19,7 @@ namespace peristat {
 namespace {
 
 constexpr double most_points = std::numeric_limits<Index>::max();
+constexpr double finest_share = 64.0;  // lattice spacing over that of a refinement, at most
 
 std::string element(const char* list, std::size_t number) {
   return std::string(list) + "[" + std::to_string(number) + "]";
@@ -77,11 +78,31 @@ void check_layer(const Lattice& lattice, std::size_t number) {
 
 /// Refuses more points than can be numbered.
 void require_numbers(const Lattice& lattice) {
-  const double points = most_sites(lattice);
+  const double points = estimate_points(lattice);
   if (points < most_points) return;
   throw InputError("spacing", number_text(lattice.spacing),
                    "up to " + number_text(points) + " points, but there must be fewer than " +
                        number_text(most_points));
+}
+
+void check_refinement(const Lattice& lattice, std::size_t number) {
+  const Refinement& region = lattice.refinements[number];
+  const std::string table = element("refinements", number);
+  check_shape(region.shape, lattice.dimension, table, table + ".shape");
+  if (!has_smooth_sides(region.shape)) {
+    throw InputError(table + ".shape", "",
+                     "must have smooth sides; an image or a surface of triangles is no region of "
+                     "finer points");
+  }
+  const double most = lattice.spacing, least = most / finest_share;
+  if (!(region.spacing >= least && region.spacing < most)) {
+    throw InputError(table + ".spacing", number_text(region.spacing),
+                     "must be below lattice.spacing, " + number_text(most) + " m, and at least 1/" +
+                         number_text(finest_share) + " of it");
+  }
+  if (!(region.growth >= 0.01 && region.growth <= 0.5)) {
+    throw InputError(table + ".growth", number_text(region.growth), "must be from 0.01 to 0.5");
+  }
 }
 
 /// Refuses settings that have a meaning on a lattice alone.
@@ -104,6 +125,7 @@ void check_blue_noise(const Lattice& lattice) {
   if (lattice.lloyd_steps < 0) {
     throw InputError("lloyd_steps", std::to_string(lattice.lloyd_steps), "must not be negative");
   }
+  for (std::size_t k = 0; k < lattice.refinements.size(); ++k) check_refinement(lattice, k);
 }
 
 }  // namespace
@@ -153,13 +175,21 @@ void check_lattice(const Lattice& lattice) {
   }
   for (std::size_t k = 0; k < lattice.shapes.size(); ++k) check_shape_step(lattice, k);
   for (std::size_t k = 0; k < lattice.layers.size(); ++k) check_layer(lattice, k);
-  if (lattice.arrangement == Arrangement::blue_noise) check_blue_noise(lattice);
+  if (lattice.arrangement == Arrangement::blue_noise) return check_blue_noise(lattice);
+  if (!lattice.refinements.empty())
+    throw InputError("refinements", "",
+                     "is for points = \"blue_noise\": a lattice has one spacing");
 }
 
 double estimate_points(const Lattice& lattice) {
   if (lattice.dimension < 1 || lattice.dimension > 3)
     return std::numeric_limits<double>::infinity();
-  return most_sites(lattice);
+  double finer = 0.0;
+  if (!lattice.refinements.empty()) {
+    finer = SpacingField(lattice.dimension, lattice.spacing, lattice.refinements)
+                .most_points(Solid(lattice.dimension, lattice.shapes).bounds());
+  }
+  return most_sites(lattice) + finer;
 }
 
 Points make_points(const Lattice& lattice) {

@@ -9,6 +9,7 @@
 #include "src/geometry/layer.hpp"
 #include "src/geometry/points.hpp"
 #include "src/geometry/solid.hpp"
+#include "src/geometry/spacing_field.hpp"
 
 namespace peristat {
 
@@ -39,6 +40,7 @@ struct Lattice {
   /// Largest random shift of the corners of cells inside the body along each of the lattice's axes,
   /// in spacings, below 1/4, so that cells stay convex ([GPMB] app. B); dimensions 1 and 2.
   double cell_perturbation = 0.0;
+  std::vector<Refinement> refinements{};  ///< blue noise: regions of finer points
   int lloyd_steps = 5;  ///< blue noise: how often points move to the centroids of their cells
   std::uint64_t seed = 1;
   /// Functions that expressions of layers may call; null: none.

@@ -14,6 +14,7 @@ enum class PlaneState { stress, strain };
 struct BondSetting : Kernel {
   PlaneState plane = PlaneState::stress;  ///< 2D only
   std::optional<BulkLattice> lattice{};   ///< nothing for a cloud of points
+  std::optional<BulkCloud> cloud{};       ///< nothing for a lattice, or the continuum
 };
 
 /// Micromodulus c [N/m6] of the bond force density c omega s for Young's modulus E [Pa], from the

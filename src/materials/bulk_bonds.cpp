@@ -176,8 +176,28 @@ double bulk_micromodulus(double youngs_modulus, const BondSetting& setting) {
   return micromodulus(youngs_modulus, setting, BulkBonds(setting).moment(1));
 }
 
+namespace {
+
+/// Second moment of the corrected bonds of a cloud, the mean over points [m5].
+double second_moment(const BondSetting& setting, const BulkCloud& cloud) {
+  const double second = setting.cloud_moment(2, cloud.size);
+  switch (cloud.surface_correction) {
+    case SurfaceCorrection::energy:
+      return second * setting.moment(1) / setting.cloud_moment(1, cloud.size);
+    case SurfaceCorrection::volume:
+      return second * setting.lattice_moment(0, cloud.size) / setting.cloud_moment(0, cloud.size);
+    case SurfaceCorrection::none:
+      break;
+  }
+  return second;
+}
+
+}  // namespace
+
 double mean_crossing(const BondSetting& setting) {
-  const double second = setting.lattice ? BulkBonds(setting).moment(2) : setting.moment(2);
+  const double second = setting.lattice ? BulkBonds(setting).moment(2)
+                        : setting.cloud ? second_moment(setting, *setting.cloud)
+                                        : setting.moment(2);
   return 0.5 * mean_of_magnitude(setting.dimension) * second;
 }
 

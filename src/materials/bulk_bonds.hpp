@@ -60,8 +60,9 @@ class BulkBonds {
 /// with its corrections.
 [[nodiscard]] double bulk_micromodulus(double youngs_modulus, const BondSetting& setting);
 
-/// Mean bond area A over all planes [m^5], see BulkBonds::crossing: of the setting's lattice or,
-/// without one, <|n_x|> m_2 / 2 of the continuum.
+/// Mean bond area A over all planes [m^5], see BulkBonds::crossing: of the setting's lattice, or
+/// <|n_x|> m_2 / 2 with the m_2 of its cloud or of the continuum. Bonds of a cloud are corrected:
+/// by energy m_1 becomes that of the continuum, by volume m_0 that of a lattice.
 [[nodiscard]] double mean_crossing(const BondSetting& setting);
 
 }  // namespace peristat

@@ -15,4 +15,10 @@ struct BulkLattice {
   SurfaceCorrection surface_correction = SurfaceCorrection::none;
 };
 
+/// Points of a cloud deep inside a body, with the correction of their bonds.
+struct BulkCloud {
+  double size = 0.0;  ///< mean size of the points whose horizon is the setting's [m]
+  SurfaceCorrection surface_correction = SurfaceCorrection::none;
+};
+
 }  // namespace peristat

@@ -49,6 +49,21 @@ double Kernel::moment(int k) const {
          mean_of_reach(shape, dimension, power);
 }
 
+double Kernel::cloud_moment(int k, double size) const {
+  if (volume_correction != VolumeCorrection::linear) return moment(k);
+  const int power = k + dimension;
+  const auto shell = [&](double ratio) {
+    return partial_volume(ratio * horizon, size) * influence_at(ratio * horizon) *
+           std::pow(ratio, power - 1);
+  };
+  const double half = 0.5 * size / horizon;
+  const double inside = integral(shell, 0.0, 1.0 - half);
+  const double around = integral(shell, 1.0 - half, 1.0) + integral(shell, 1.0, 1.0 + half);
+  Kernel whole = *this;
+  whole.influence = {};
+  return whole.moment(k) * power * (inside + around);
+}
+
 double Kernel::lattice_moment(int k, const Spacing& spacing) const {
   const LatticeKernel lattice(*this, spacing);
   const double cell = std::pow(spacing, dimension) * cross_section;

@@ -63,6 +63,11 @@ struct Kernel {
   /// m_k = int omega r^k dV over the shape of the horizon [m^(k+3)]; m_0 is V_H where omega is 1.
   [[nodiscard]] double moment(int k) const;
 
+  /// The same integral with the shares of volumes of one size, spread evenly: the mean over points
+  /// of a cloud. The linear share makes it larger, without influence by the factor
+  /// ((1 + q)^(p+1) - (1 - q)^(p+1)) / (2 q (p + 1)), q = size / (2 delta), p = k + dimension.
+  [[nodiscard]] double cloud_moment(int k, double size) const;
+
   /// The same sum over the neighbours of a point inside a lattice, with their partial volumes.
   [[nodiscard]] double lattice_moment(int k, const Spacing& spacing) const;
 };

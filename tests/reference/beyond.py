@@ -56,7 +56,7 @@ class Beyond:
 
     def __init__(self, case, reference, spacing, reach):
         self.case, self.own, self.spacing = case, len(reference), spacing
-        self.in_expressions = case.spacing_in_expressions if case.is_lattice else spacing
+        self.in_expressions = case.spacing_in_expressions if case.has_one_spacing else spacing
         self.axes = "xyz"[: reference.shape[1]]
         each = [maps_along(axis, case, reach) for axis in self.axes]
         self.maps = list(itertools.product(*each))

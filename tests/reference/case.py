@@ -62,13 +62,28 @@ class Case:
 
     def spacing(self, volume):
         """Edge of a square with the volume of a lattice's cell, or with a cloud's mean volume [m]."""
-        if self.is_lattice:
+        if self.has_one_spacing:
             return float(numpy.prod(self.spacings) ** (1 / self.dimension))
         return float((numpy.mean(volume) / self.cross_section) ** (1 / self.dimension))
 
     @property
+    def is_refined(self):
+        """True for blue noise with regions of finer points, whose sizes differ."""
+        return self.is_lattice and bool(self["lattice"].get("refine"))
+
+    @property
+    def has_rows(self):
+        return self.is_lattice and self["lattice"].get("points", "lattice") == "lattice"
+
+    @property
+    def has_one_spacing(self):
+        return self.is_lattice and not self.is_refined
+
+    @property
     def ratio_to_sizes(self):
         """Horizon of each point over its size; None: there is one horizon."""
+        if self.is_refined:
+            return self["lattice"].get("horizon_ratio", 3.015)
         horizon = None if self.is_lattice else self["points"]["horizon"]
         return float(horizon["ratio"]) if isinstance(horizon, dict) else None
 
@@ -193,7 +208,7 @@ class Conditions:
     def __init__(self, case, reference, volume, sets):
         self.case, self.reference, self.volume, self.sets = case, reference, volume, sets
         self.spacing = case.spacing(volume)
-        self.spacings = case.spacing_in_expressions if case.is_lattice else self.spacing
+        self.spacings = case.spacing_in_expressions if case.has_one_spacing else self.spacing
         self.prescribed = numpy.zeros(reference.shape, bool)
         for support in case.get("support"):
             self.prescribed |= self.held_by(support)

@@ -53,7 +53,7 @@ class Ties:
     def __init__(self, case, reference, volume, sets, prescribed):
         self.case, self.reference, self.sets, self.prescribed = case, reference, sets, prescribed
         self.spacing = case.spacing(volume)
-        self.spacings = case.spacing_in_expressions if case.is_lattice else self.spacing
+        self.spacings = case.spacing_in_expressions if case.has_one_spacing else self.spacing
         self.volume = volume
         self.follows, self.held = numpy.zeros(reference.shape, bool), numpy.zeros(reference.shape, bool)
         self.rigid, self.slopes, self.rows = [], [], []

@@ -56,25 +56,27 @@ Key<Spec> where(const std::string& meaning, const std::string& fallback) {
 Table<ShapeStep> shape_step_keys() {
   using K = Key<ShapeStep>;
   using Action = ShapeStep::Action;
-  return {"lattice.shape",
-          {K("add", &ShapeStep::shape, shape_beside(), "kind of the shape to add")
-               .written_if([](auto& step, auto&) { return step.action == Action::add; })
-               .one_of(),
-           K("subtract", &ShapeStep::shape, shape_beside(), "kind of the shape to subtract")
-               .then([](auto&, auto& step) { step.action = Action::subtract; })
-               .written_if([](auto& step, auto&) { return step.action == Action::subtract; })
-               .one_of(),
-           K("name", &ShapeStep::name, text(),
-             "name of the shape, by which loads refer to its boundary")
-               .written_if([](auto& step, auto&) { return !step.name.empty(); }),
-           K("cuts_bonds", &ShapeStep::cuts_bonds, boolean(),
-             "`subtract`: whether bonds that cross the shape are cut. Otherwise bonds longer than "
-             "its width bridge it")
-               .written_if([](auto& step, auto&) { return step.cuts_bonds; })
-               .then([](auto& at, auto& step) {
-                 if (step.cuts_bonds && step.action == Action::add)
-                   at.refuse("is for a shape that is subtracted");
-               })}};
+  return {
+      "lattice.shape",
+      {K("add", &ShapeStep::shape, shape_beside({"name", "cuts_bonds"}), "kind of the shape to add")
+           .written_if([](auto& step, auto&) { return step.action == Action::add; })
+           .one_of(),
+       K("subtract", &ShapeStep::shape, shape_beside({"name", "cuts_bonds"}),
+         "kind of the shape to subtract")
+           .then([](auto&, auto& step) { step.action = Action::subtract; })
+           .written_if([](auto& step, auto&) { return step.action == Action::subtract; })
+           .one_of(),
+       K("name", &ShapeStep::name, text(),
+         "name of the shape, by which loads refer to its boundary")
+           .written_if([](auto& step, auto&) { return !step.name.empty(); }),
+       K("cuts_bonds", &ShapeStep::cuts_bonds, boolean(),
+         "`subtract`: whether bonds that cross the shape are cut. Otherwise bonds longer than "
+         "its width bridge it")
+           .written_if([](auto& step, auto&) { return step.cuts_bonds; })
+           .then([](auto& at, auto& step) {
+             if (step.cuts_bonds && step.action == Action::add)
+               at.refuse("is for a shape that is subtracted");
+           })}};
 }
 
 Table<Layer> layer_keys() {
@@ -85,6 +87,20 @@ Table<Layer> layer_keys() {
            K("thickness", &Layer::thickness, integer(1, 1000, "spacings"), "number of planes"),
            where<Layer>("expression; the layer keeps only the points where it is not zero",
                         "all points of the layer")}};
+}
+
+Table<Refinement> refinement_keys() {
+  using K = Key<Refinement>;
+  return {"lattice.refine",
+          {K("shape", &Refinement::shape, shape_beside({"spacing", "growth"}),
+             "kind of the region, which has smooth sides and may reach beyond the body")
+               .required(),
+           K("spacing", &Refinement::spacing, positive("m"), "distance of points in the region")
+               .moreover("below `lattice.spacing`, at least 1/64 of it")
+               .required(),
+           K("growth", &Refinement::growth, between(0.01, 0.5, ""),
+             "by how much the spacing grows per distance from the region, up to "
+             "`lattice.spacing`")}};
 }
 
 }  // namespace
@@ -169,6 +185,12 @@ Table<Case> lattice_keys() {
            })
            .required("at least one is required")
            .on_ranks(),
+       K("refine", in(lattice, &Lattice::refinements), refinement_keys(),
+         "tables: regions in which points of blue noise, and with them their "
+         "[horizons](theory.md#horizon-per-point), are finer")
+           .unless([](auto& from,
+                      auto&) { return lattice(from).arrangement != Arrangement::blue_noise; },
+                   "is for points = \"blue_noise\""),
        K("layer", in(lattice, &Lattice::layers), layer_keys(), "tables: points outside the body")
            .on_ranks()},
       [](auto&, auto& result) {

@@ -44,6 +44,7 @@ CaseLocation location_of(const Case& from, const std::string& key) {
 void resolve_size(Case& result) {
   if (const auto* lattice = std::get_if<Lattice>(&result.body)) {
     result.horizon = result.horizon_ratio * lattice->spacing;
+    result.horizon_per_size = lattice->refinements.empty() ? 0.0 : result.horizon_ratio;
     result.cross_section = lattice->cross_section;
   } else {
     const auto& source = std::get<PointSource>(result.body);
@@ -59,6 +60,7 @@ const std::map<std::string, std::string>& keys_of_members() {
       {"spacing", "lattice.spacing"},
       {"arrangement", "lattice.points"},
       {"lloyd_steps", "lattice.lloyd_steps"},
+      {"refinements", "lattice.refine"},
       {"perturbation", "lattice.perturbation"},
       {"cell_perturbation", "lattice.cell_perturbation"},
       {"angle", "lattice.angle"},
@@ -99,7 +101,8 @@ std::string key_of(const Case& from, std::string member) {
   if (member == "cross_section")
     return std::string(lattice != nullptr ? "lattice." : "points.") +
            (from.dimension == 1 ? "area" : "thickness");
-  if (member == "points.horizons") return "points.horizon";
+  if (member == "points.horizons" || member == "horizon_per_size")
+    return lattice != nullptr ? "lattice.refine" : "points.horizon";
   if (member == "horizon") return lattice != nullptr ? "lattice.horizon_ratio" : "points.horizon";
   if (member.starts_with("points") && lattice != nullptr) return "lattice.shape";
   if (member == "loading.mode") return "solver.mode";

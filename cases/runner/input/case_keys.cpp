@@ -150,7 +150,7 @@ const std::vector<TableDescription>& table_descriptions() {
     std::vector<TableDescription> all;
     document_keys().describe(all);
     for (auto& table : all)
-      if (table.name == "lattice.shape") add_shapes(all, table);
+      if (table.name == "lattice.shape" || table.name == "lattice.refine") add_shapes(all, table);
     return all;
   }();
   return tables;

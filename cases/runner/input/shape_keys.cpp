@@ -230,12 +230,13 @@ std::string kind_of(const Shape& shape) {
 
 }  // namespace
 
-Kind<Shape> shape_beside() {
-  const auto read = [](const Entry& at) {
+Kind<Shape> shape_beside(const std::vector<std::string>& others) {
+  const auto read = [others](const Entry& at) {
     refuse_other_dimension(at, at.from.string(at.key));
     const std::string kind = at.from.one_of(at.key, shape_kinds(at.so_far.dimension));
     std::vector<std::string> keys = case_keys().at("set.shape." + kind);
-    keys.insert(keys.begin(), {at.key, "name", "cuts_bonds"});
+    keys.insert(keys.begin(), at.key);
+    keys.insert(keys.begin() + 1, others.begin(), others.end());
     at.from.allow_only(keys, "is not a key of the shape " + kind);
     return read_shape(at, kind);
   };

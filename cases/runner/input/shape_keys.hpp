@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "cases/runner/input/key_kinds.hpp"
@@ -8,7 +9,8 @@
 namespace peristat {
 
 /// The kind of a shape, whose other keys stand beside this one.
-[[nodiscard]] Kind<Shape> shape_beside();
+/// @param others keys of the same table that are not the shape's
+[[nodiscard]] Kind<Shape> shape_beside(const std::vector<std::string>& others);
 
 /// A shape in a table of its own: { box = { min = [0, 0], max = [1, 1] } }
 [[nodiscard]] Kind<Shape> shape_inside();

@@ -14,7 +14,7 @@ from specimen import ANGLES
 
 FILES = {"kink.md": kink_table.TABLE, "kink.csv": kink_table.SIGN, "kink.svg": PICTURE}  # and their signatures
 QUICK = (Loading(0.577, 0.0), Loading(0.364, -0.2))
-POINTS = [*map(Points, ANGLES), *(Points(seed=seed) for seed in (1, 2, 3))]
+POINTS = [*map(Points, ANGLES), *(Points(seed=seed, finer=finer) for finer in (1, 2) for seed in (1, 2, 3))]
 
 
 def settings(quick: bool) -> list[tuple[Loading, Points]]:

@@ -5,7 +5,8 @@ from pathlib import Path
 import kink_table
 from own_files import PICTURE, picture, write_own
 
-COLOURS = {"0°": "tab:red", "18°": "tab:orange", "27°": "tab:purple", "45°": "tab:brown", "blue noise": "tab:blue"}
+COLOURS = {"0°": "tab:red", "18°": "tab:orange", "27°": "tab:purple", "45°": "tab:brown", kink_table.NOISE: "tab:blue",
+           kink_table.FINER: "tab:cyan"}  # fmt: skip
 
 
 def draw(found: kink_table.Results, path: Path) -> None:

@@ -42,14 +42,15 @@ class Loading:
 
 @dataclass(frozen=True)
 class Points:
-    """A lattice at an angle [degrees], or blue noise of a seed."""
+    """A lattice at an angle [degrees], or blue noise of a seed, finer along the crack's way."""
 
     angle: float = 0.0
     seed: int = 0
+    finer: int = 1
 
     @property
     def name(self) -> str:
-        return f"noise{self.seed}" if self.seed else f"{self.angle:.0f}"
+        return f"noise{self.seed}" + (f"_{self.finer}" if self.finer > 1 else "") if self.seed else f"{self.angle:.0f}"
 
 
 def text(loading: Loading, points: Points) -> str:
@@ -82,7 +83,14 @@ direction = [1, 0]
 table = [{", ".join(f"{load:g}" for load in LOADS)}]
 steps = {STEPS}
 """  # fmt: skip
-    return case.replace("angle = 0.0\n", f'points = "blue_noise"\nseed = {points.seed}\n') if points.seed else case
+    return case.replace("angle = 0.0\n", noise(points)) if points.seed else case
+
+
+def noise(points: Points) -> str:
+    """Lines of blue noise; the region of finer points contains the crack until it has grown by FAR."""
+    low, high = -1.5 * HORIZON, (FAR + 0.5) * HORIZON
+    region = f'shape = "box", min = [{low:.6g}, {-high:.6g}], max = [{high:.6g}, {-low:.6g}], spacing = {SPACING / points.finer:g}'
+    return f'points = "blue_noise"\nseed = {points.seed}\n' + (f"refine = [{{ {region} }}]\n" if points.finer > 1 else "")
 
 
 def tip_height(points: Points) -> float:

@@ -102,7 +102,7 @@ inline constexpr std::array<OptionOfMaterial, 15> options_of_material{{
 using OptionOfBody = OptionOf<BodySpecification>;
 inline constexpr CollocationSpecification usual_collocation;
 inline constexpr std::array<OptionOfBody, 12> options_of_body{{
-    {Option::horizons, "horizon", [](auto& of) { return of.horizon_per_size != 0.0; }},
+    {Option::horizons, "horizon_per_size", [](auto& of) { return of.horizon_per_size != 0.0; }},
     {Option::volume_correction, "volume_correction",
      [](auto& of) { return of.volume_correction != VolumeCorrection::none; }},
     {Option::horizon_shape, "horizon_shape",

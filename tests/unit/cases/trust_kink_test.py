@@ -98,6 +98,7 @@ class Cases(unittest.TestCase):
         for text in texts:
             lattice = tomllib.loads(text)["lattice"]
             self.assertNotEqual("seed" in lattice, "angle" in lattice)
+            self.assertLessEqual("refine" in lattice, "seed" in lattice)
 
     def test_the_rim_moves_as_the_field_of_a_tip_off_the_axis(self):
         points = Points(45.0)
@@ -136,6 +137,14 @@ class Tables(unittest.TestCase):
         self.assertEqual(kink_table.faults(found, self.loading), [])
         self.assertIn("| pass |", kink_table.table(found))
         self.assertIn("± 11.3 |", kink_table.table(found))
+
+    def test_finer_points_have_a_column_of_their_own_and_a_t_stress_a_wider_range(self):
+        self.loading = Loading(0.577, -0.2)
+        due = kink_table.REFERENCE[self.loading]
+        points = (Points(seed=1), Points(seed=1, finer=2))
+        found = {(self.loading, at): Found(due + off, 1.0, 1.0, 0.0) for at, off in zip(points, (9.0, 7.0))}
+        self.assertEqual(kink_table.faults(found, self.loading), ["blue noise by +9.0°"])
+        self.assertIn(f"| {due + 7:.1f} | **red**", kink_table.table(found))
 
     def test_what_is_off_is_red_and_says_by_how_much(self):
         self.assertIn("| **red**: 0° by +23.0° |", kink_table.table(self.found(23.0, 0.0, 0.0)))

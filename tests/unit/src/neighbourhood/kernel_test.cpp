@@ -1,5 +1,6 @@
 #include "src/neighbourhood/kernel.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -30,6 +31,25 @@ TEST(Kernel, WeighsMomentsWithItsInfluence) {
       EXPECT_LT(kernel.moment(k), uniform);
       EXPECT_GT(kernel.moment(k), std::exp(-1.0) * uniform);
     }
+  }
+}
+
+// A volume counts by the share of it within the horizon: a mean of whole balls of the radii around
+// the horizon.
+TEST(Kernel, HasMomentsOfVolumesThatAreSpreadEvenly) {
+  for (const int dimension : {1, 2, 3}) {
+    Kernel kernel{dimension, delta, h};
+    EXPECT_EQ(kernel.cloud_moment(1, 0.1), kernel.moment(1));
+    kernel.volume_correction = VolumeCorrection::linear;
+    for (const int k : {0, 1, 2}) {
+      const double q = 0.5 * 0.1 / delta, p = k + dimension;
+      const double larger = (std::pow(1 + q, p + 1) - std::pow(1 - q, p + 1)) / (2 * q * (p + 1));
+      EXPECT_NEAR(kernel.cloud_moment(k, 0.1) / kernel.moment(k), larger, 1e-8);
+      EXPECT_NEAR(kernel.cloud_moment(k, 1e-5) / kernel.moment(k), 1.0, 1e-8);
+    }
+    // Without weight at the horizon, hardly any of the shell counts.
+    kernel.influence = [](double ratio) { return std::max(0.0, 1.0 - ratio); };
+    EXPECT_NEAR(kernel.cloud_moment(1, 0.01) / kernel.moment(1), 1.0, 1e-3);
   }
 }
 
