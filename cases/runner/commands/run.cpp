@@ -456,8 +456,8 @@ class CaseRun {
       summary_.warnings.push_back(fmt::format(
           "crack tip {}: T* = {:.2g} in mixed mode, K_I = {:.3g} and K_II = {:.3g} Pa m^0.5, at "
           "load factor {:.4g}: below {:g} a crack locks to a row of a lattice and turns too "
-          "little; points without rows are lattice.points = \"blue_noise\" (model bond), or those "
-          "of a file, and T* falls with the root of the horizon",
+          "little; points without rows are lattice.points = \"blue_noise\", or those "
+          "of a file, and T* falls with the root of the horizon, which lattice.refine makes short",
           name, t_star, k1, k2, load, locking_t_star));
       progress_.say("warning: " + summary_.warnings.back());
     }

@@ -119,7 +119,7 @@ Table<Case> lattice_keys() {
          "`\"lattice\"`: points on the lattice; `\"blue_noise\"`: points at random, at about the "
          "spacing from their neighbours, with the volumes of their Voronoi cells")
            .unless(in_dimension<1>, "is for dimensions 2 and 3")
-           .moreover("`blue_noise` with model `bond`")
+           .moreover("`blue_noise` with models `bond`, `state` and `lps` as an energy")
            .early()
            .on_ranks(),
        K("lloyd_steps", in(lattice, &Lattice::lloyd_steps), integer(0, 100, ""),

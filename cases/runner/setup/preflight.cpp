@@ -512,7 +512,7 @@ std::string rows_text(const Preflight& of) {
       "{}: within {:g} degrees of a row of the lattice, along an axis or a diagonal; if the load "
       "is "
       "not that of mode I, a crack may stay in the row where it should turn; points without rows "
-      "are lattice.points = \"blue_noise\" (model bond), or those of a file",
+      "are lattice.points = \"blue_noise\", or those of a file",
       fmt::join(of.along_rows, ", "), along_row);
 }
 

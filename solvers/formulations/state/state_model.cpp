@@ -81,7 +81,9 @@ std::string warning_of_late_cracks(const MaterialSpecification& material, const 
 
 FractureScale scale_of_states(const MaterialSpecification& material, const std::string&,
                               const BondSetting& setting, double spacing) {
-  const BondSetting of_states = state_setting(setting);
+  BondSetting of_states = state_setting(setting);
+  // Every point divides by its own weighted volume, so that m_1 is right in a cloud, too.
+  if (of_states.cloud) of_states.cloud->surface_correction = SurfaceCorrection::energy;
   FractureScale scale;
   scale.spacing = spacing;
   scale.micromodulus = micromodulus_of_states(material, setting);
