@@ -43,7 +43,9 @@ class Plate:
 
     @property
     def coarsest(self) -> float:
-        return min(self.crack / 4, ZONE / 6)
+        """A quarter of the crack or a sixth of the zone, or a little less: a third of half the width has whole spacings, and
+        so has that half at three quarters and at half of this spacing, as a plane of symmetry needs."""
+        return self.half / (3 * math.ceil(self.half / (3 * min(self.crack / 4, ZONE / 6))))
 
     def text(self, lattice: Lattice, h: float) -> str:
         y, half, height = aside(lattice, h), self.half, 2.4 * self.half
@@ -99,9 +101,10 @@ displacement = ["free", "-load"]
 
 def specimen(plate: Plate) -> Specimen:
     title = f"Edge crack, {plate.size:g} times the length of the transition"
-    strength = Measure("stress at the peak", plate.value, allowed=0.1)
-    return Specimen(f"edge_crack_{plate.size:g}".replace(".", ""), title, "strength and Griffith", plate.coarsest, plate.text, (strength,))
+    strength = Measure("stress at the peak", plate.value, allowed=0.1, at=0.5)
+    name = f"edge_crack_{plate.size:g}".replace(".", "")
+    return Specimen(name, title, "strength and Griffith", plate.coarsest, plate.text, (strength,), spacings=(1.0, 0.75, 0.5))
 
 
-PLATES = [Plate(0.5, 1 / 16), Plate(2.0, 1 / 8), Plate(8.0, 1 / 4), Plate(32.0, 0.4)]
+PLATES = [Plate(0.5, 1 / 10), Plate(2.0, 1 / 8), Plate(8.0, 1 / 4), Plate(32.0, 0.4)]
 SPECIMENS = [specimen(plate) for plate in PLATES]
