@@ -43,9 +43,9 @@ class Plate:
 
     @property
     def coarsest(self) -> float:
-        """A quarter of the crack or a sixth of the zone, or a little less: a third of half the width has whole spacings, and
+        """A quarter of the crack or of the zone, or a little less: a third of half the width has whole spacings, and
         so has that half at three quarters and at half of this spacing, as a plane of symmetry needs."""
-        return self.half / (3 * math.ceil(self.half / (3 * min(self.crack / 4, ZONE / 6))))
+        return self.half / (3 * math.ceil(self.half / (3 * min(self.crack / 4, ZONE / 4))))
 
     def text(self, lattice: Lattice, h: float) -> str:
         y, half, height = aside(lattice, h), self.half, 2.4 * self.half

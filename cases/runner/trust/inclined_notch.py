@@ -3,13 +3,12 @@
 under a T-stress, too, the crack turned farther."""
 
 import math
-import tomllib
 from pathlib import Path
 
 import crack_path
 from bending import rollers
 from setting import FRACTURE_ENERGY, MODULUS, setting
-from specimen import Lattice, Measure, Specimen
+from specimen import Lattice, Measure, Specimen, lattice_of
 
 RADIUS, THICKNESS = 0.05, 5e-3
 SUPPORT, NOTCH, INCLINED = 0.43 * RADIUS, 0.3 * RADIUS, math.radians(30)
@@ -77,7 +76,7 @@ stop_below = 0.3
 
 def deviation(folder: Path) -> float:
     """1 + the largest distance of the crack's centre line from the path, in horizons."""
-    lattice = tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]
+    lattice = lattice_of(folder)
     horizon = lattice["spacing"] * lattice["horizon_ratio"]
     middles = [place for place in crack_path.broken_middles(folder) if TIP[1] < place[1] < FOLLOWED]
     return 1 + max(crack_path.distance(place, PATH) for place in crack_path.line(middles, 1, 0.03 * RADIUS)) / horizon
