@@ -5,6 +5,7 @@
 beside the length E G / f_t^2 of a third of a metre, so that the strength decides more than the toughness.
 """
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -30,12 +31,13 @@ class Beam:
 
     def text(self, lattice: Lattice, h: float) -> str:
         d, x = self.depth, aside(lattice, h) - self.eccentricity * self.depth
+        half = h * math.ceil(0.625 * SPAN * d / h)  # notches in the middle and aside lie between columns of points
         ends = f"(abs(x) > {1.05 * d} && y < {0.25 * d}) || (abs(x) < {0.25 * d} && y > {0.85 * d})"
         return of_material(setting(h, lattice, THICKNESS, ["ends"]), *self.constants) + f"""
 [[lattice.shape]]
 add = "box"
-min = [{-0.625 * SPAN * d}, 0.0]
-max = [{0.625 * SPAN * d}, {d}]
+min = [{-half}, 0.0]
+max = [{half}, {d}]
 
 [[crack]]
 from = [{x}, {-d}]
@@ -59,6 +61,6 @@ BEAMS = [
          (33.8e9, 125.2, 3.5e6), (4894.0, 5405.0)),
 ]  # fmt: skip
 SPECIMENS = [
-    Specimen(beam.name, beam.title, beam.reference, beam.depth / 20, beam.text, (Measure("peak load", beam.load, allowed=0.1),))
+    Specimen(beam.name, beam.title, beam.reference, beam.depth / 24, beam.text, (Measure("peak load", beam.load, allowed=0.1),))
     for beam in BEAMS
 ]

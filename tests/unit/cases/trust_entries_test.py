@@ -147,6 +147,18 @@ class ConcreteBeams(unittest.TestCase):
         self.assertAlmostEqual(case["roller"][1]["at"][0] - case["roller"][0]["at"][0], 0.2, delta=1e-12)
 
 
+class CutsBetweenPoints(unittest.TestCase):
+    def test_no_notch_along_the_lattice_lies_on_a_column_of_points(self):
+        """Points on it would lose all their bonds."""
+        across = [*((specimen, 0) for specimen in concrete_beams.SPECIMENS), (double_edge_notch.SPECIMENS[0], 1)]
+        for specimen, axis in across:
+            for lattice in specimen.lattices(quick=False):
+                if lattice.angle == 0.0:
+                    case = tomllib.loads(specimen.text(lattice))
+                    rows = (case["crack"][0]["to"][axis] - case["lattice"]["shape"][0]["min"][axis]) / specimen.spacing(lattice)
+                    self.assertAlmostEqual(rows, round(rows), delta=1e-6, msg=f"{specimen.name} {lattice.name}")
+
+
 class SizeEffect(unittest.TestCase):
     def test_strengths_of_the_law_have_its_toughness(self):
         strengths = [size_effect.law(depth) for depth in size_effect.DEPTHS]
