@@ -81,6 +81,15 @@ class Trust(Folder):
         again = self.trust("senb_05", "--quick", "--set", "loading.steps=2", "--set", "loading.table=[0, 1e-6]")
         self.assertRegex(again.output, r"senb_05/h1_m3.015_0: \d+ s")  # other settings are other runs
 
+    def test_strength_and_toughness_meet_and_a_sheared_plate_bears_what_was_measured(self):
+        """An edge crack of twice the length of the transition: Griffith's load is 1.22 of the reference, the strength
+        1.73."""
+        ended = self.trust("edge_crack_2", "double_edge_notch", "--quick", "--jobs", 1)
+        self.assert_code(ended, 0)
+        value = lambda name, quantity: float(re.search(rf"{name}/h1_m3.015_0, {quantity}: ([0-9.]+)", ended.output)[1])
+        self.assertAlmostEqual(value("edge_crack_2", "stress at the peak"), 1, delta=0.06)
+        self.assertAlmostEqual(value("double_edge_notch", "largest shear force"), 1, delta=0.06)
+
     def test_a_crack_kinks_without_t_stress_and_keeps_to_its_row_with_it(self):
         """On a lattice along the crack: without T it turns as in fracture mechanics, within 5 degrees; with negative T a
         row holds it, 24 degrees off, and the table says so, with exit code 3. Nothing is run twice."""

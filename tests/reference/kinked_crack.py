@@ -56,11 +56,17 @@ def powers(z, count, radius):
     return Sources(unit * z ** (n / 2 - 1), even * unit * z.conj() ** (n / 2 - 1), (n / 2 - 1) * unit * z ** (n / 2 - 2) / radius)
 
 
-def dislocations(z, at, burgers):
-    """Dislocations at places beside the main crack, with Burgers vectors in units of (kappa + 1) / mu."""
-    potentials = lambda z: _potentials(z[:, None], at[None, :], burgers / (1j * math.pi))
+def dislocations(z, at, burgers, field):
+    """Dislocations at places, with Burgers vectors in units of (kappa + 1) / mu and the potentials of a field."""
+    potentials = lambda z: field(z[:, None], at[None, :], burgers / (1j * math.pi))
     phi, _, dphi = potentials(z)
     return Sources(phi, potentials(z.conj())[1], dphi)
+
+
+def alone(z, c, a):
+    """Phi, Omega, Phi' of a dislocation at c in a plane without the main crack."""
+    d = c.conj()
+    return a / (z - c), a / (z - d) + a.conj() * (c - d) / (z - d) ** 2, -a / (z - c) ** 2
 
 
 def _potentials(z, c, a):
@@ -68,8 +74,7 @@ def _potentials(z, c, a):
     of the dislocation alone, S the principal parts of sqrt(z) t."""
     d = c.conj()
     b = a.conj() * (c - d)
-    phi, dphi = a / (z - c), -a / (z - c) ** 2
-    omega = a / (z - d) + b / (z - d) ** 2
+    phi, omega, dphi = alone(z, c, a)
     t, dt = phi + omega, dphi - a / (z - d) ** 2 - 2 * b / (z - d) ** 3
     root, root_c, root_d = numpy.sqrt(z), numpy.sqrt(c), numpy.sqrt(d)
     simple = a * root_d + b / numpy.where(d == 0, 1, 2 * root_d)  # b is 0 where d is
@@ -79,10 +84,11 @@ def _potentials(z, c, a):
     return phi + f, omega + f, dphi + df
 
 
-def elements(z, ends):
-    """Elements between successive ends, with the jumps 1 and i of the upper face relative to the lower one."""
+def elements(z, ends, field=_potentials):
+    """Elements between successive ends, with the jumps 1 and i of the upper face relative to the lower one, beside the
+    main crack or in another field."""
     # Each begins with a dislocation and ends with the opposite one.
-    jumps = [dislocations(z, ends, unit * numpy.ones(len(ends))) for unit in (1, 1j)]
+    jumps = [dislocations(z, ends, unit * numpy.ones(len(ends)), field) for unit in (1, 1j)]
     interleave = lambda name: numpy.stack([numpy.diff(getattr(of, name)) for of in jumps], 2).reshape(len(z), -1)
     return Sources(*map(interleave, ("phi", "omega", "dphi")))
 
@@ -97,26 +103,31 @@ class Plate:
         if math.isfinite(radius):
             angles = numpy.pi * ((2 * numpy.arange(RIM_POINTS) + 1) / RIM_POINTS - 1)
             self.rim = radius * numpy.exp(1j * angles)
-            self.inverse = numpy.linalg.pinv(_real(powers(self.rim, POWERS, radius).stretch(self.rim, kappa)))
+            self.inverse = numpy.linalg.pinv(real(powers(self.rim, POWERS, radius).stretch(self.rim, kappa)))
 
     def intensities(self, ends):
         """K_I, K_II at the tip of the kink through these ends, which begins at 0."""
         sides = numpy.diff(ends)
         middles, angles = 0.5 * (ends[1:] + ends[:-1]), numpy.angle(sides)
-        at_middles = lambda sources: _real(sources.traction(middles, angles))
+        at_middles = lambda sources: real(sources.traction(middles, angles))
         opening, sliding, stress = self.factors
         given = numpy.array([opening, -sliding, 0, 0]) / (2 * math.sqrt(2 * math.pi)) + numpy.array([0, 0, stress / 4, 0])
         applied = at_middles(powers(middles, 2, 1.0)) @ given
         matrix = at_middles(elements(middles, ends))
         if math.isfinite(self.radius):
-            on_rim = _real(elements(self.rim, ends).stretch(self.rim, self.kappa))
+            on_rim = real(elements(self.rim, ends).stretch(self.rim, self.kappa))
             matrix = matrix - at_middles(powers(middles, POWERS, self.radius)) @ (self.inverse @ on_rim)
-        jump = numpy.linalg.solve(matrix, -applied)[-2:] @ [1, 1j] / (sides[-1] / abs(sides[-1]))
-        factor = math.sqrt(2 * math.pi / (0.5 * abs(sides[-1]))) / TIP_JUMP
-        return factor * jump.imag, factor * jump.real
+        return of_jump(numpy.linalg.solve(matrix, -applied)[-2:], sides[-1])
 
 
-def _real(values):
+def of_jump(jump, side):
+    """K_I, K_II from the jump of the last element, whose end minus beginning is `side`."""
+    turned = jump @ [1, 1j] / (side / abs(side))
+    factor = math.sqrt(2 * math.pi / (0.5 * abs(side))) / TIP_JUMP
+    return factor * turned.imag, factor * turned.real
+
+
+def real(values):
     """Complex rows as two real ones each."""
     return numpy.concatenate([values.real, values.imag])
 
@@ -136,12 +147,16 @@ def path(plate, length, increment=0.25):
     """Ends of the elements of a crack that grows until its tip is this far from where it began, by increments in the
     direction of the largest hoop stress at its tip."""
     opening, sliding, _ = plate.factors
-    ends, angle = numpy.zeros(1, complex), hoop(opening, sliding)
+    return grow(plate, numpy.zeros(1, complex), hoop(opening, sliding), increment, lambda tip: abs(tip) >= length)
+
+
+def grow(body, ends, angle, increment, is_enough):
+    """The ends of a crack that turns to an angle and grows from there until its tip is far enough."""
     while True:
         ends = numpy.append(ends, ends[-1] + straight(angle, increment, ELEMENTS)[1:])
-        if abs(ends[-1]) >= length:
+        if is_enough(ends[-1]):
             return ends
-        angle += hoop(*plate.intensities(ends))
+        angle += hoop(*body.intensities(ends))
 
 
 def chord(ends, near, far):

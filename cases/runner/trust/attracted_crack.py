@@ -3,13 +3,12 @@
 meets that hole."""
 
 import math
-import tomllib
 from pathlib import Path
 
 import crack_path
 from bending import mouth_sets, rollers
 from setting import FRACTURE_ENERGY, MODULUS, setting
-from specimen import Lattice, Measure, Specimen, aside
+from specimen import Lattice, Measure, Specimen, aside, lattice_of
 
 INCH, THICKNESS = 0.0254, 0.0127
 HALF, DEPTH, SUPPORT = 10 * INCH, 8 * INCH, 9 * INCH
@@ -52,7 +51,7 @@ stop_below = 0.25
 
 def missed_by(folder: Path) -> float:
     """1 + the distance of the crack from the rim of the middle hole, in horizons."""
-    lattice = tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]
+    lattice = lattice_of(folder)
     away = [math.dist(place, HOLES[1]) - RADIUS for place in crack_path.broken_middles(folder)]
     return 1 + max(min(away), 0.0) / (lattice["spacing"] * lattice["horizon_ratio"])
 

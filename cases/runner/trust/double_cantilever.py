@@ -2,12 +2,11 @@
 the groove can fail. Compared are the load and the energy dissipated by bonds."""
 
 import math
-import tomllib
 from pathlib import Path
 
 from other_setting import grooved
 from setting import FRACTURE_ENERGY, MODULUS, setting
-from specimen import Lattice, Measure, Specimen, aside, rows
+from specimen import Lattice, Measure, Specimen, aside, lattice_of, rows
 
 ARM, LENGTH, THICKNESS = 0.01, 0.066, 1e-3
 FIRST, LAST = 0.025, 0.044  # crack lengths between which the growth is followed
@@ -101,7 +100,7 @@ def energy_over_area(folder: Path) -> float:
     energy of a straight tear in the direction of the crack: G_c is the mean over all directions."""
     found = [row for row in rows(folder) if row["tip"] > FIRST + 0.25 * ARM]
     taken = slope([row["tip"] for row in found], [row["dissipated_energy"] for row in found]) / THICKNESS
-    lattice = tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]
+    lattice = lattice_of(folder)
     return taken / (FRACTURE_ENERGY * share_of_direction(lattice["horizon_ratio"], math.radians(lattice["angle"])))
 
 

@@ -47,6 +47,17 @@ def panel_load(toughness: float, width: float, crack: float, thickness: float) -
     return stress * width * thickness
 
 
+def double_edge_factor(a: float) -> float:
+    """F of K = F sigma sqrt(pi a) of a panel under tension with a crack in both edges; a stands for its length over half
+    of the width; within 0.5 % [Tada, Paris and Irwin 2000]."""
+    return (1.122 - 0.561 * a - 0.205 * a**2 + 0.471 * a**3 - 0.190 * a**4) / math.sqrt(1 - a)
+
+
+def edge_crack(toughness: float, stress: float) -> float:
+    """Length of the edge crack of a half-plane that runs at this stress [m]."""
+    return (toughness / (double_edge_factor(0.0) * stress)) ** 2 / math.pi
+
+
 def cantilever_crack(modulus: float, fracture_energy: float, arm: float, opening: float) -> float:
     """Crack length of a double cantilever whose ends are `opening` apart [m]: 3 E h^3 D^2 / (16 (a + 0.64 h)^4) = G_c,
     where 0.64 of the arms' height accounts for the rotation at their root [Kanninen 1973]."""

@@ -1,6 +1,7 @@
 """An entry of the suite: runs of one setting, and quantities of each that have a reference."""
 
 import csv
+import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -89,6 +90,14 @@ def rows(folder: Path, name: str = "history") -> list[dict]:
     with open(folder / f"{name}.csv", newline="") as table:
         found = [{key: value(text) for key, text in row.items()} for row in csv.DictReader(table)]
     return [row for row in found if name != "history" or row.get("step") != 0]
+
+
+def lattice_of(folder: Path) -> dict:
+    """Keys of `[lattice]` that a run had, with the values of `--set`."""
+    import h5py
+
+    with h5py.File(folder / "results.h5") as file:
+        return tomllib.loads(file["case/as_resolved"][()].decode())["lattice"]
 
 
 def peak(values: list[float]) -> float:

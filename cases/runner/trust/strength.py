@@ -2,12 +2,11 @@
 soda-lime glass are second-hand, from the nine circles of elastic brittle fracture [Nine circles 2026]."""
 
 import math
-import tomllib
 from pathlib import Path
 
 from other_setting import of_material
 from setting import setting
-from specimen import Lattice, Measure, Specimen, rows
+from specimen import Lattice, Measure, Specimen, lattice_of, rows
 
 MODULUS, FRACTURE_ENERGY, TENSILE, BIAXIAL, SHEAR, COMPRESSIVE = 70e9, 10.0, 40e6, 27e6, 44.4e6, 1000e6
 POISSON_RATIO = 1 / 3  # of bond-based models in plane stress
@@ -74,7 +73,7 @@ def utilisation(folder: Path) -> float:
 
 def _principal_stresses(folder: Path) -> list[tuple[float, float]]:
     """The larger and the smaller one of each step [Pa]."""
-    area = CELLS * tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]["spacing"] * THICKNESS
+    area = lattice_of(folder)["shape"][0]["max"][0] * THICKNESS
     found = []
     for row in rows(folder):
         xx, xy, yx, yy = (row[f"reaction_{of}"] / area for of in ("x:period_x", "y:period_x", "x:period_y", "y:period_y"))

@@ -1,10 +1,9 @@
 """A steady crack in a strip: J along the way is its resistance, and the dissipated energy is G_c times its area."""
 
-import tomllib
 from pathlib import Path
 
 from setting import FRACTURE_ENERGY
-from specimen import Measure, Specimen, rows
+from specimen import Measure, Specimen, lattice_of, rows
 from strip import Strip
 
 
@@ -17,7 +16,7 @@ def resistance(folder: Path) -> float:
 
 def dissipation(folder: Path) -> float:
     """Energy dissipated by bonds per area, over G_c, on the second half of the way."""
-    lattice = tomllib.loads((folder.parent / "case.toml").read_text())["lattice"]
+    lattice = lattice_of(folder)
     area = STRIP.crack_area(lattice["spacing"] * lattice["horizon_ratio"])
     found = rows(folder)
     middle = min(found, key=lambda row: abs(row["load_factor"] - 0.5))

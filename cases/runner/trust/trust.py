@@ -16,7 +16,10 @@ import attracted_crack
 import brazilian_disk
 import centre_crack
 import compact_tension
+import concrete_beams
 import double_cantilever
+import double_edge_notch
+import edge_cracks
 import inclined_notch
 import kink
 import l_panel
@@ -37,7 +40,7 @@ from strip import Strip
 from verdict import CALIBRATION, HEADING, Verdict, extension_of, row
 
 MODULES = (surfing, notched_beam, compact_tension, centre_crack, double_cantilever, brazilian_disk, size_effect, l_panel,
-           inclined_notch, attracted_crack, strength, phase_field)  # fmt: skip
+           concrete_beams, double_edge_notch, inclined_notch, attracted_crack, strength, edge_cracks, phase_field)  # fmt: skip
 ENTRIES: dict[str, Specimen] = {s.name: s for module in MODULES for s in module.SPECIMENS}
 STUDIES = {"trapping": trapping, "kink": kink}  # with tables of their own
 STEADY = "surfing"

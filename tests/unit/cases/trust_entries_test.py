@@ -11,8 +11,11 @@ sys.path[:0] = [str(RUNNER / "trust"), str(RUNNER / "sweep")]
 
 import attracted_crack  # noqa: E402
 import brazilian_disk  # noqa: E402
+import concrete_beams  # noqa: E402
 import crack_path  # noqa: E402
 import double_cantilever as cantilever  # noqa: E402
+import double_edge_notch  # noqa: E402
+import edge_cracks  # noqa: E402
 import inclined_notch  # noqa: E402
 import l_panel  # noqa: E402
 import phase_field  # noqa: E402
@@ -50,7 +53,8 @@ class OtherSettings(unittest.TestCase):
 class OneSetting(unittest.TestCase):
     def test_no_entry_has_a_key_of_its_own(self):
         """Lattice, quadrature, law and solver agree with the setting on every lattice."""
-        modules = (attracted_crack, brazilian_disk, cantilever, inclined_notch, l_panel, phase_field, size_effect, strength)
+        modules = (attracted_crack, brazilian_disk, cantilever, concrete_beams, double_edge_notch, edge_cracks, inclined_notch, l_panel,
+                   phase_field, size_effect, strength)  # fmt: skip
         specimens = [specimen for module in modules for specimen in module.SPECIMENS]
         self.assertEqual(len({specimen.name for specimen in specimens}), len(specimens))
         for specimen in specimens:
@@ -103,6 +107,56 @@ class Strengths(unittest.TestCase):
             self.assertAlmostEqual(middle - radius, -1.0, delta=1e-12)
             along = (math.cos(angle), math.sin(angle))
             self.assertAlmostEqual(xx * along[0] ** 2 + 2 * xy * along[0] * along[1] + yy * along[1] ** 2, 3.0, delta=1e-12)
+
+
+class EdgeCracks(unittest.TestCase):
+    def test_short_cracks_bear_the_strength_and_long_ones_griffith_s_load(self):
+        self.assertAlmostEqual(edge_cracks.Plate(1e-4, 1e-3).strength / strength.TENSILE, 1, delta=1e-3)
+        long = edge_cracks.Plate(1e4, 0.4)
+        factor = long.strength * math.sqrt(math.pi * long.crack) * edge_cracks.lefm.double_edge_factor(0.4)
+        self.assertAlmostEqual(factor / edge_cracks.TOUGHNESS, 1, delta=1e-3)
+
+    def test_at_the_length_of_the_transition_both_are_alike(self):
+        """1.122 sigma sqrt(pi a) is the toughness at the strength, and a crack of that length bears 1 / sqrt(2) of it."""
+        factor = 1.122 * strength.TENSILE * math.sqrt(math.pi * edge_cracks.SHORTEST)
+        self.assertAlmostEqual(factor / edge_cracks.TOUGHNESS, 1, delta=1e-12)
+        self.assertAlmostEqual(edge_cracks.Plate(1.0, 1e-6).strength / strength.TENSILE, 0.5**0.5, delta=1e-4)
+
+    def test_a_plane_of_symmetry_lies_half_a_spacing_before_points(self):
+        for plate, specimen in zip(edge_cracks.PLATES, edge_cracks.SPECIMENS):
+            for lattice in specimen.lattices(quick=False):
+                if edge_cracks.has_one_tip(lattice):
+                    spacings = plate.half / specimen.spacing(lattice)
+                    self.assertAlmostEqual(spacings, round(spacings), delta=1e-9)
+
+    def test_deep_cracks_have_the_factor_of_the_ligament(self):
+        """K = 2 sigma b / sqrt(pi (b - a)) of two half-planes that touch along 2 (b - a) under the force 2 sigma b
+        [Tada, Paris and Irwin 2000]; the formula is good for 0.5 %."""
+        a = 0.98
+        due = 2 / math.sqrt(math.pi * (1 - a)) / math.sqrt(math.pi * a)
+        self.assertAlmostEqual(edge_cracks.lefm.double_edge_factor(a) / due, 1, delta=0.02)
+
+
+class ConcreteBeams(unittest.TestCase):
+    def test_the_notch_is_aside_and_the_load_in_the_middle(self):
+        beam = concrete_beams.BEAMS[1]
+        case = tomllib.loads(beam.text(Lattice(), 4e-3))
+        self.assertAlmostEqual(case["crack"][0]["to"][0], -0.05, delta=1e-12)
+        self.assertAlmostEqual(case["crack"][0]["to"][1], 0.02, delta=1e-12)
+        self.assertEqual({roller["name"]: roller["at"] for roller in case["roller"]}["load"], [0.0, 0.08])
+        self.assertAlmostEqual(case["roller"][1]["at"][0] - case["roller"][0]["at"][0], 0.2, delta=1e-12)
+
+
+class CutsBetweenPoints(unittest.TestCase):
+    def test_no_notch_along_the_lattice_lies_on_a_column_of_points(self):
+        """Points on it would lose all their bonds."""
+        across = [*((specimen, 0) for specimen in concrete_beams.SPECIMENS), (double_edge_notch.SPECIMENS[0], 1)]
+        for specimen, axis in across:
+            for lattice in specimen.lattices(quick=False):
+                if lattice.angle == 0.0:
+                    case = tomllib.loads(specimen.text(lattice))
+                    rows = (case["crack"][0]["to"][axis] - case["lattice"]["shape"][0]["min"][axis]) / specimen.spacing(lattice)
+                    self.assertAlmostEqual(rows, round(rows), delta=1e-6, msg=f"{specimen.name} {lattice.name}")
 
 
 class SizeEffect(unittest.TestCase):

@@ -7,6 +7,8 @@ import tomllib
 import unittest
 from pathlib import Path
 
+import h5py
+
 RUNNER = Path(__file__).resolve().parents[3] / "cases" / "runner"
 sys.path[:0] = [str(RUNNER / "trust"), str(RUNNER / "sweep")]
 
@@ -189,7 +191,8 @@ class Strips(unittest.TestCase):
         """The field moves 8 horizons of 3 mm in a strip of 1 mm thickness: half of the way at 9 J/m2, over G_c = 10."""
         folder = Path(self.enterContext(tempfile.TemporaryDirectory())) / "out"
         folder.mkdir()
-        (folder.parent / "case.toml").write_text("[lattice]\nspacing = 1e-3\nhorizon_ratio = 3.0\n")
+        with h5py.File(folder / "results.h5", "w") as file:
+            file["case/as_resolved"] = "[lattice]\nspacing = 1e-3\nhorizon_ratio = 3.0\n"
         energies = [0.0, 7.0, 7.0 + 9.0 * 4 * 3e-3 * 1e-3]
         lines = ["load_factor,dissipated_energy", *(f"{0.5 * k},{energy!r}" for k, energy in enumerate(energies))]
         (folder / "history.csv").write_text("\n".join(lines))
