@@ -27,6 +27,10 @@ struct Evaluation {
   /// Only from a pass that commits: the forces have changed, because more than the damaged bonds
   /// has lost stiffness.
   bool moves_equilibrium = false;
+  /// Only from a pass that commits: energy that was stored in struts, of which `released` has what
+  /// their law does not count, and their number.
+  double strut_energy = 0.0;
+  Index struts = 0;
   /// Magnitude of the terms whose difference the energy is, times the unit round-off [J]; 0: the
   /// energy's own round-off suffices.
   double round_off = 0.0;
@@ -41,6 +45,8 @@ struct Evaluation {
     growth.utilisation = std::max(growth.utilisation, other.growth.utilisation);
     released += other.released;
     moves_equilibrium |= other.moves_equilibrium;
+    strut_energy += other.strut_energy;
+    struts += other.struts;
   }
 };
 

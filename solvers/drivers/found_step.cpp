@@ -109,6 +109,7 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
     found.growth.degrading += committed.growth.degrading;
     found.growth.breaking += committed.growth.breaking;
     found.energies.released += committed.released;
+    found.energies.has_cut_struts |= committed.struts > 0;
     attempt.state.stored_energy = committed.energy;
     attempt.state.energy_round_off = committed.round_off;
     if (!committed.moves_equilibrium) return;

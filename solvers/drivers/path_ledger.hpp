@@ -25,6 +25,8 @@ struct StepEnergies {
   /// Bonds broke one after the other under a fixed control: work in excess of the stored and
   /// dissipated energy counts as drained.
   bool is_avalanche = false;
+  /// Struts were cut, and the body has found an equilibrium without them: as in an avalanche.
+  bool has_cut_struts = false;
   /// State of the step before its points failed: the work is summed by way of this state, and
   /// heating up to it.
   struct Intact {
