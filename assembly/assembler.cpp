@@ -236,11 +236,9 @@ void Assembler::cut_struts(std::span<const double> displacement, History& histor
   found.energy = cut.energy;
   found.round_off = cut.round_off;
   found.degenerate |= cut.degenerate;
-  found.strut_energy = before - cut.energy;
-  found.released += found.strut_energy - of_law;
-  found.struts = Index(struts.size());
-  found.growth.degrading += found.struts;
-  found.growth.breaking += found.struts;
+  const auto count = Index(struts.size());
+  found.growth += {count, count, 0.0, before - cut.energy};
+  found.released += before - cut.energy - of_law;
   found.moves_equilibrium = true;
 }
 
@@ -256,8 +254,7 @@ DamageGrowth Assembler::growth(const StateView& at) {
   now.curvature = at.curvature;
   DamageGrowth growth = growth_by_laws(now);
   const auto struts = Index(find_struts(now).size());
-  growth.degrading += struts;
-  growth.breaking += struts;
+  growth += {struts, struts};
   return growth;
 }
 

@@ -125,7 +125,7 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
                      const SharedEnvironment& environment);
   /// Bonds that a commit in this state would cut as struts.
   [[nodiscard]] std::vector<Offset> find_struts(const StateView& at) const;
-  /// Cuts the struts of a state that is committed, and evaluates it anew if there are some.
+  /// Cuts the struts of a committed state, and evaluates it anew if there are some.
   void cut_struts(std::span<const double> displacement, History& history,
                   std::span<double> gradient, const SharedEnvironment& environment,
                   Evaluation& found);

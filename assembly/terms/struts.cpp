@@ -1,7 +1,7 @@
 #include "assembly/terms/struts.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+#include <functional>
 
 #include "assembly/terms/bonds/bond_look.hpp"
 #include "src/core/threads.hpp"
@@ -9,12 +9,11 @@
 namespace peristat {
 namespace {
 
-double env(const char* name, double usual) {
-  const char* const text = std::getenv(name);
-  return text ? std::atof(text) : usual;
-}
-const double least_share = env("STRUT_Q", 0.6);
-const double least_opening = env("STRUT_F", 2.0);
+/// Share of the ways round a strut that are cut, and the elongation of their broken bonds over the
+/// one that the strut bears. Bonds ahead of a crack's tip have smaller ones. At half of this
+/// opening a steady crack would need 5 % less energy; at this one it is within 0.3 % of that of
+/// bonds that fail by their stretch alone (docs/trustworthy-peaks.md).
+constexpr double least_share = 0.6, least_opening = 2.0;
 constexpr int least_ways = 3;
 
 /// Broken bonds, and the points that have some.
@@ -80,11 +79,13 @@ class WaysRound {
     below_.for_each_neighbour(bonds_, j, [&](Index p, Offset other) {
       const Offset one = bond_to_[std::size_t(p)];
       if (one == none || bonds_.weight(one) == 0.0 || bonds_.weight(other) == 0.0) return;
-      const bool one_is = broken_.bond[std::size_t(one)], other_is = broken_.bond[std::size_t(other)];
+      const bool one_is = broken_.bond[std::size_t(one)],
+                 other_is = broken_.bond[std::size_t(other)];
       ways.open += !one_is && !other_is;
       if (one_is == other_is) return;
       ++ways.cut;
-      ways.elongation += one_is ? elongation(std::min(i, p), one) : elongation(std::min(j, p), other);
+      ways.elongation +=
+          one_is ? elongation(std::min(i, p), one) : elongation(std::min(j, p), other);
     });
     return ways;
   }
@@ -113,6 +114,22 @@ class WaysRound {
   Index at_ = -1;
 };
 
+/// True for a bond that is there and can fail.
+bool may_fail(const Bonds& bonds, Offset bond, const Broken& broken,
+              std::span<const double> history) {
+  const auto b = std::size_t(bond);
+  return !broken.bond[b] && history[b] != never_failing && bonds.weight(bond) != 0.0;
+}
+
+std::function<double(Offset)> critical_stretches(const BondFailure& failure,
+                                                 std::span<const double> history) {
+  std::function<double(Offset)> critical;
+  failure.with_damage_law(history, [&](const auto& law) {
+    critical = [law](Offset bond) { return law.of_bond(bond).law.critical(); };
+  });
+  return critical;
+}
+
 Index lower_end(const Bonds& bonds, Offset bond) {
   return Index(std::ranges::upper_bound(bonds.offset, bond) - bonds.offset.begin()) - 1;
 }
@@ -125,31 +142,31 @@ std::vector<Offset> Struts::find_in(const BondFailure& failure, const Points& po
                                     int threads) const {
   const Broken broken = broken_of(failure, bonds_, history);
   if (!broken.any) return {};
+  const std::function<double(Offset)> critical = critical_stretches(failure, history);
   const BondLook<D> look(points, bonds_, at);
   std::vector<std::vector<Offset>> of_thread(static_cast<std::size_t>(threads));
-  failure.with_damage_law(history, [&](const auto& law) {
-    run_on_threads(threads, [&](int thread) {
-      WaysRound<D> round(bonds_, below_, broken, look);
-      std::vector<Offset>& found = of_thread[std::size_t(thread)];
+  run_on_threads(threads, [&](int thread) {
+    WaysRound<D> round(bonds_, below_, broken, look);
+    const auto is_strut = [&](Index i, Offset bond) {
+      Ways ways;
+      // Halves of a bond across a plane have the ways on either side; a bond between two images has
+      // no weight, and is not surrounded by all of its neighbours.
+      alike_.for_each(bond, [&](Offset one) {
+        if (bonds_.weight(one) == 0.0) return;
+        ways += round.of(one == bond ? i : lower_end(bonds_, one), bonds_.partner[one]);
+      });
+      return ways.leave_a_strut(critical(bond) * bonds_.length(bond));
+    };
+    std::vector<Offset>& found = of_thread[std::size_t(thread)];
 #pragma omp for schedule(static) nowait
-      for (Index i = 0; i < bonds_.points(); ++i) {
-        if (!broken.point[std::size_t(i)]) continue;
-        for (Offset bond = bonds_.offset[i]; bond < bonds_.offset[i + 1]; ++bond) {
-          const auto b = std::size_t(bond);
-          const bool may_be = !broken.bond[b] && broken.point[std::size_t(bonds_.partner[bond])] &&
-                              history[b] != never_failing && bonds_.weight(bond) != 0.0 &&
-                              alike_.first(bond) == bond;
-          if (!may_be) continue;
-          Ways ways;
-          alike_.for_each(bond, [&](Offset one) {
-            const Index lower = one == bond ? i : lower_end(bonds_, one);
-            ways += round.of(lower, bonds_.partner[one]);
-          });
-          if (!ways.leave_a_strut(law.of_bond(bond).law.critical() * bonds_.length(bond))) continue;
-          alike_.for_each(bond, [&](Offset one) { found.push_back(one); });
-        }
+    for (Index i = 0; i < bonds_.points(); ++i) {
+      for (Offset bond = bonds_.offset[i]; bond < bonds_.offset[i + 1]; ++bond) {
+        if (!broken.point[std::size_t(i)] && !broken.point[std::size_t(bonds_.partner[bond])])
+          continue;
+        if (alike_.first(bond) != bond || !may_fail(bonds_, bond, broken, history)) continue;
+        if (is_strut(i, bond)) alike_.for_each(bond, [&](Offset one) { found.push_back(one); });
       }
-    });
+    }
   });
   std::vector<Offset> all;
   for (const auto& some : of_thread) all.insert(all.end(), some.begin(), some.end());

@@ -17,7 +17,7 @@ namespace peristat {
 /// these two is broken, and open if none is. With both broken p is beyond either end and tells
 /// nothing. The bond is a strut if
 ///
-///   cut + open >= 3,   cut >= 0.6 (cut + open),   mean_cut(s L) >= opening s_c L_ij,
+///   cut + open >= 3,   cut >= 0.6 (cut + open),   mean_cut(s L) >= 2 s_c L_ij,
 ///
 /// s L the elongation of the broken bond of a cut way, s_c L_ij that at which the bond itself
 /// breaks: the faces have parted by more than it bears, and only its slant has kept it. Bonds that

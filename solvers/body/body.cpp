@@ -326,6 +326,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   };
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.controls.empty()) refuse("controls");
+  if (cuts_struts(of)) refuse("damage.struts");
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const LoadSpecification::Kind kind = of.loads[k].kind;
     if (kind == LoadSpecification::Kind::stress && !takes(of, Option::surface_loads)) {

@@ -192,10 +192,9 @@ void ImplicitStepping::run_avalanche(ImplicitStep& step) {
     Assembler& assembler = path_.damaged();
     const Evaluation committed = assembler.commit(attempt.state.displacement, attempt.state.history,
                                                   {}, attempt.state.environment);
-    step.found.growth.degrading += committed.growth.degrading;
-    step.found.growth.breaking += committed.growth.breaking;
+    step.found.growth += committed.growth;
     step.found.energies.released += committed.released;
-    step.found.energies.has_cut_struts |= committed.struts > 0;
+    step.found.energies.struts += committed.growth.strut_energy;
     if (committed.growth.degrading == 0) break;
     if (passes == most_passes) {
       attempt.outcome = Outcome::iteration_limit;

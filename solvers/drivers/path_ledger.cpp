@@ -45,7 +45,7 @@ Ledger PathLedger::with_step(const Sums& sums, std::span<const double> displacem
     after.numerical_work += step.relaxed->work - work;
     after.drained += step.relaxed->drained;
   }
-  if (step.is_avalanche || (step.has_cut_struts && !step.relaxed)) {
+  if (step.is_avalanche || (step.struts != 0.0 && !step.relaxed)) {
     after.drained += std::max(0.0, after.balance_error() - entries.balance_error());
   }
   return after;
@@ -56,6 +56,7 @@ void PathLedger::accept(const Ledger& with_step, std::vector<double> working,
   force = std::move(working);
   entries = with_step;
   released += step.released;
+  struts += step.struts;
 }
 
 std::string PathLedger::jump_to(const Ledger& with_step) const {
