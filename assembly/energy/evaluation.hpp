@@ -31,8 +31,8 @@ struct Evaluation {
                             ///< not finite: reject the state
   DamageGrowth growth{};    ///< only from a pass that commits
   /// Only from a pass that commits: energy that triangles and tetrahedra lose with the integrity of
-  /// their bonds, or that states lose beyond what the bonds' law dissipates; and of struts what they
-  /// stored less what their law counts as dissipated [J].
+  /// their bonds, or that states lose beyond what the bonds' law dissipates; and of struts what
+  /// they stored less what their law counts as dissipated [J].
   double released = 0.0;
   /// Only from a pass that commits: the forces have changed, because more than the damaged bonds
   /// has lost stiffness.

@@ -64,8 +64,7 @@ void refuse_events_of_states(const Body& body, const StudyOptions& options) {
 /// Refuses struts in modes whose steps are no equilibria between commits.
 void refuse_modes_with_struts(const Body& body, const StudyOptions& options) {
   const Mode mode = options.loading.mode;
-  const bool is_known =
-      mode == Mode::newton || mode == Mode::adaptive || mode == Mode::relaxation;
+  const bool is_known = mode == Mode::newton || mode == Mode::adaptive || mode == Mode::relaxation;
   if (is_known || !body.model.struts()) return;
   throw InputError("loading.mode", std::string(mode.name),
                    "can't cut struts; take newton, adaptive or relaxation, or damage.struts = "

@@ -6,14 +6,15 @@ from tests.acceptance.folder import Folder
 from tests.acceptance.motions import columns
 from tests.same_results import differences
 
+PULL = '["1.5e-4*load", "2e-4*load"]'
 # Torn in two by a pull and a larger shear.
-TORN = """\
+TORN = f"""\
 dimension = 2
 [lattice]
 spacing = 1e-3
 horizon_ratio = 3.015
 thickness = 1e-3
-shape = [{ add = "box", min = [0, 0], max = [0.016, 0.012] }]
+shape = [{{ add = "box", min = [0, 0], max = [0.016, 0.012] }}]
 [[lattice.layer]]
 name = "left"
 side = "x-"
@@ -38,7 +39,7 @@ set = "left"
 displacement = [0, 0]
 [[support]]
 set = "right"
-displacement = ["1.5e-4*load", "2e-4*load"]
+displacement = {PULL}
 [loading]
 steps = 20
 [solver]
@@ -84,7 +85,7 @@ class Struts(Folder):
 
     def test_faces_part_in_newtons_steps_under_a_control(self):
         """Steps of a controlled opening; what settling after the cut of struts releases is drained."""
-        controlled = TORN.replace('"1.5e-4*load", "2e-4*load"', '"0.75*load", "load"') + """\
+        controlled = TORN.replace(PULL, '["0.75*load", "load"]') + """\
 [[set]]
 name = "one"
 where = "x < 0.008 && x > 0.007 && y > 0.011"

@@ -98,8 +98,7 @@ inline constexpr std::array<OptionOfMaterial, 16> options_of_material{{
     {Option::drive, "damage.drive", [](auto& m) { return m.damage.drive.has_value(); }},
     {Option::strength_surface, "damage.strength_surface",
      [](auto& m) { return m.damage.has_surface(); }},
-    {Option::struts, "damage.struts",
-     [](auto& m) { return m.damage.struts != StrutRemedy::keep; }},
+    {Option::struts, "damage.struts", [](auto& m) { return m.damage.struts != StrutRemedy::keep; }},
 }};
 
 using OptionOfBody = OptionOf<BodySpecification>;

@@ -103,10 +103,9 @@ void check_data(const DamageSpecification& damage, const std::string& table) {
   require_positive(damage.strength, table + "strength");
   check_surface(damage, table);
   if (damage.law == DamageLaw::none) {
-    for (const std::string key :
-         {"fracture_energy", "fracture_toughness", "strength", "critical", "stretches", "drive",
-          "struts", "strength_surface", "compressive_strength", "biaxial_strength",
-          "strength_factor"}) {
+    for (const std::string key : {"fracture_energy", "fracture_toughness", "strength", "critical",
+                                  "stretches", "drive", "struts", "strength_surface",
+                                  "compressive_strength", "biaxial_strength", "strength_factor"}) {
       require_absent(is_given(damage, key), table + key, "needs a law");
     }
     return;
