@@ -188,6 +188,7 @@ Evaluation Assembler::commit(std::span<const double> displacement, History& hist
     const Evaluation of_term = term.commit(displacement, environment, history, gradient, how);
     found += of_part(term, {displacement, history, Damage::grows, environment}, of_term);
   });
+  cut_struts(displacement, history, gradient, environment, found);
   return of_all(found, gradient);
 }
 
@@ -198,7 +199,47 @@ Evaluation Assembler::commit_forces(std::span<const double> displacement, Histor
   for_each_term([&](TermPasses& term, Write how) {
     found += term.commit_forces(displacement, environment, history, gradient, how);
   });
+  cut_struts(displacement, history, gradient, environment, found);
   return of_all(found, gradient);
+}
+
+std::vector<Offset> Assembler::find_struts(const StateView& at) const {
+  const Struts* const struts = model_.struts();
+  if (!struts) return {};
+  return struts->find(*model_.failing_bonds(), points_, at, model_.failure_history(at.history),
+                      threads());
+}
+
+void Assembler::cut_struts(std::span<const double> displacement, History& history,
+                           std::span<double> gradient, const SharedEnvironment& environment,
+                           Evaluation& found) {
+  const auto at = [&] { return StateView{displacement, history, Damage::grows, environment}; };
+  const std::vector<Offset> struts = find_struts(at());
+  if (struts.empty()) return;
+  const BondFailure& failure = *model_.failing_bonds();
+  const Bonds& bonds = failure.bonds();
+  const std::span<const double> largest = bond_stretches(model_, history);
+  std::vector<double> after(largest.begin(), largest.end());
+  double of_law = 0.0;
+  failure.with_damage_law(model_.failure_history(history), [&](const auto& laws) {
+    for (const Offset bond : struts) {
+      const auto law = laws.of_bond(bond);
+      double& stretch = after[std::size_t(bond)];
+      of_law += bonds.weight(bond) * bonds.length(bond) *
+                (law.dissipated(law.law.critical()) - law.dissipated(stretch));
+      stretch = law.law.critical();
+    }
+  });
+  const double before = energy(at()).energy;
+  history = history_of(after, history);
+  const Evaluation cut = this->gradient(at(), gradient);
+  found.energy = cut.energy;
+  found.round_off = cut.round_off;
+  found.degenerate |= cut.degenerate;
+  const auto count = Index(struts.size());
+  found.growth += {count, count, 0.0, before - cut.energy};
+  found.released += before - cut.energy - of_law;
+  found.moves_equilibrium = true;
 }
 
 void Assembler::follower_force(const StateView& at, std::span<double> force) {
@@ -211,10 +252,17 @@ DamageGrowth Assembler::growth(const StateView& at) {
   const History history = with_onsets(at);
   StateView now(at.displacement, history, at.damage, at.environment);
   now.curvature = at.curvature;
+  DamageGrowth growth = growth_by_laws(now);
+  const auto struts = Index(find_struts(now).size());
+  growth += {struts, struts};
+  return growth;
+}
+
+DamageGrowth Assembler::growth_by_laws(const StateView& now) {
   if (model_.fails_by_release() && !model_.drives_bonds()) {
     const BondFailure& bonds = *model_.failing_bonds();
     return of_all(
-        growth_of_bonds_alone(bonds, points_, drives(now), history.of(model_.slot_of(bonds))));
+        growth_of_bonds_alone(bonds, points_, drives(now), now.history.of(model_.slot_of(bonds))));
   }
   Evaluation found;
   for_each_term([&](TermPasses& term, Write) {

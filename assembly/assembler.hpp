@@ -123,6 +123,14 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   /// Damages by release, if the model's bonds fail so. Returns its growth.
   Evaluation release(std::span<const double> displacement, History& history,
                      const SharedEnvironment& environment);
+  /// Bonds that a commit in this state would cut as struts.
+  [[nodiscard]] std::vector<Offset> find_struts(const StateView& at) const;
+  /// Cuts the struts of a committed state, and evaluates it anew if there are some.
+  void cut_struts(std::span<const double> displacement, History& history,
+                  std::span<double> gradient, const SharedEnvironment& environment,
+                  Evaluation& found);
+  /// `growth` without struts.
+  [[nodiscard]] DamageGrowth growth_by_laws(const StateView& now);
   /// Returns a term's evaluation, on a part of a body with the energy of owned points alone.
   [[nodiscard]] Evaluation of_part(TermPasses& term, const StateView& at, Evaluation found);
   /// Sums the ranks' evaluations to that of the whole body, and clears the forces of ghosts.

@@ -9,7 +9,7 @@ is the difference of two elastic strips of different lengths. G is the mean over
 process zone has developed; damage commits at the end of each step of the control, and what it sets free beyond the
 law is drained, so that G tends to `tear` with finer steps: G = tear (1 + drained / dissipated). A straight tear of the same strip, whose halves move apart as rigid bodies, takes
 `tear`, which differs from the fracture energy by the direction of the lattice and, in 3D, by the free faces.
-Names: stress_NU, strain_NU, space_NU, bond (plane stress); strength_NU and surface_NU in plane stress with a strength,
+Names: stress_NU, strain_NU, space_NU, bond (plane stress), bond_cut (with struts cut); strength_NU and surface_NU in plane stress with a strength,
 without and with a strength surface. Finished runs in DIR are not repeated.
 """
 
@@ -108,6 +108,7 @@ thickness = 3
 
     def damage(self) -> str:
         more = f"strength = {STRENGTH}\n" if self.kind in ("strength", "surface") else ""
+        more += 'struts = "cut"\n' if self.name.endswith("_cut") else ""
         more += f'strength_surface = "drucker_prager"\ncompressive_strength = {COMPRESSIVE}\n' if self.kind == "surface" else ""
         return f'[material.damage]\nlaw = "linear"\nfracture_energy = {FRACTURE_ENERGY}\n{more}no_fail = ["low", "high"]\n'
 

@@ -13,6 +13,15 @@ struct DamageGrowth {
   /// Largest ratio of a bond's stretch to the stretch that it bears: damage grows above 1. Only
   /// from a pass that does not commit.
   double utilisation = 0.0;
+  /// Energy that was stored in struts, see Struts. Only from a pass that commits [J].
+  double strut_energy = 0.0;
+
+  void operator+=(const DamageGrowth& other) {
+    degrading += other.degrading;
+    breaking += other.breaking;
+    utilisation = std::max(utilisation, other.utilisation);
+    strut_energy += other.strut_energy;
+  }
 };
 
 /// Result of a pass over the interactions, beside the arrays that it fills.
@@ -22,7 +31,8 @@ struct Evaluation {
                             ///< not finite: reject the state
   DamageGrowth growth{};    ///< only from a pass that commits
   /// Only from a pass that commits: energy that triangles and tetrahedra lose with the integrity of
-  /// their bonds, or that states lose beyond what the bonds' law dissipates [J].
+  /// their bonds, or that states lose beyond what the bonds' law dissipates; and of struts what
+  /// they stored less what their law counts as dissipated [J].
   double released = 0.0;
   /// Only from a pass that commits: the forces have changed, because more than the damaged bonds
   /// has lost stiffness.
@@ -36,9 +46,7 @@ struct Evaluation {
     energy += other.energy;
     round_off += other.round_off;
     degenerate |= other.degenerate;
-    growth.degrading += other.growth.degrading;
-    growth.breaking += other.growth.breaking;
-    growth.utilisation = std::max(growth.utilisation, other.growth.utilisation);
+    growth += other.growth;
     released += other.released;
     moves_equilibrium |= other.moves_equilibrium;
   }

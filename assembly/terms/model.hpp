@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "assembly/terms/failure/bond_failure.hpp"
+#include "assembly/terms/struts.hpp"
 #include "assembly/terms/term.hpp"
 
 namespace peristat {
@@ -33,6 +34,11 @@ class Model {
   explicit Model(std::shared_ptr<Term> term);
 
   void add(std::shared_ptr<Term> term) { terms_.push_back(std::move(term)); }
+
+  /// Bonds that join the faces of open cracks fail with these.
+  void cut_struts(std::shared_ptr<const Struts> struts) { struts_ = std::move(struts); }
+  /// Null: they don't.
+  [[nodiscard]] const Struts* struts() const { return has_history() ? struts_.get() : nullptr; }
 
   [[nodiscard]] const Bonds& bonds() const { return failure_->bonds(); }
   [[nodiscard]] const std::shared_ptr<const Bonds>& shared_bonds() const {
@@ -92,6 +98,7 @@ class Model {
  private:
   std::shared_ptr<const FailureModel> failure_;
   std::vector<std::shared_ptr<Term>> terms_;
+  std::shared_ptr<const Struts> struts_;
 };
 
 }  // namespace peristat

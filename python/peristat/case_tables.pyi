@@ -317,6 +317,8 @@ class MaterialDamage(Table):
     """`table`: force of a bond at each of the `stretches`, divided by its constant $c$, and linear in between. So the first force equals the first stretch. Force over stretch must not grow. The last force may be 0 [1]. required with law `table`. Allowed: list of numbers"""
     drive: Literal["stretch", "release"]
     """`cpd`, `state`, and `lps` as an energy: what drives the damage of a bond. `'stretch'`: its stretch; `'release'`: what its loss would set free with all that depends on it, as an equivalent stretch that the law takes. `state` has `'release'` alone. Default: `'release'` with `state`, and with `fracture_energy` or `fracture_toughness`; otherwise `'stretch'`. Allowed: `'stretch'`, `'release'`; the same for all materials of a body"""
+    struts: Literal["keep", "cut"]
+    """model `bond`: what becomes of struts, bonds that still join the two faces of an open crack. `'keep'`: their stretch alone decides; `'cut'`: they fail with the bonds around them. Default: `'keep'`. Allowed: `'keep'`, `'cut'`; the same for all materials of a body"""
     no_fail: List
     """sets of points whose bonds stay elastic at any stretch, including bonds to points outside the sets. Default: none. Allowed: list of names of sets and layers"""
 

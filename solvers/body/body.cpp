@@ -15,6 +15,7 @@
 #include "solvers/body/surface_sites.hpp"
 #include "solvers/formulations/check_specification.hpp"
 #include "solvers/formulations/convolved/convolved_lattice.hpp"
+#include "solvers/formulations/specification/for_each_material.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "solvers/ranks/sum_on_machine.hpp"
 #include "src/core/input_error.hpp"
@@ -69,6 +70,14 @@ BondSetting setting_of_bonds(const Body& body) {
   return of.is_convolved() ? setting_of_short_bonds(body.points, std::move(setting)) : setting;
 }
 
+bool cuts_struts(const BodySpecification& of) {
+  bool cuts = false;
+  for_each_material(of, [&](const MaterialSpecification& material, const std::string&) {
+    cuts |= material.damage.struts == StrutRemedy::cut;
+  });
+  return cuts;
+}
+
 /// Makes the model of a body, and stores the bonds that its pre-cracks have cut.
 /// @param make_network makes the bonds of a setting
 template <class MakeNetwork>
@@ -83,6 +92,9 @@ void make_model(Body& body, const MakeNetwork& make_network, int threads) {
       {of, materials, body.factors, body.points, body.setting, *body.index_map, threads},
       std::move(bonds));
   body.model = std::move(made.model);
+  if (cuts_struts(of)) {
+    body.model.cut_struts(std::make_shared<const Struts>(body.points, body.model.bonds()));
+  }
   body.cut_weight = std::move(made.cut.weight);
   body.cut_bonds = std::move(made.cut.ends);
   body.remarks = std::move(made.remarks);
@@ -321,6 +333,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   };
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.controls.empty()) refuse("controls");
+  if (cuts_struts(of)) refuse("damage.struts");
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const LoadSpecification::Kind kind = of.loads[k].kind;
     if (kind == LoadSpecification::Kind::stress && !takes(of, Option::surface_loads)) {

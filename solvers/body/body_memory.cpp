@@ -95,6 +95,7 @@ MemoryEstimate estimate_memory(const Body& body) {
   if (body.specification.eigenstrains.are_there()) {
     estimate.body_bytes += states_with_environment * sizeof(double) * double(body.points.count());
   }
+  if (const Struts* const struts = body.model.struts()) estimate.body_bytes += struts->bytes();
   if (body.points.interior) estimate.body_bytes += body.points.interior->bytes();
   return estimate;
 }

@@ -76,6 +76,7 @@ void complete_record(const Path& path, const Attempt& attempt, FoundStep& found)
   record.stored_energy = found.ledger.stored;
   record.dissipated_energy = found.ledger.dissipated;
   record.drained_energy = found.ledger.drained;
+  record.strut_energy = path.state().ledger.struts;
   record.external_work = found.ledger.external_work;
   record.numerical_work = found.ledger.numerical_work;
   record.balance_error = found.ledger.balance_error();
@@ -106,9 +107,9 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
   for (int pass = 0; pass < most; ++pass) {
     const Evaluation committed = assembler.commit(attempt.state.displacement, attempt.state.history,
                                                   {}, attempt.state.environment);
-    found.growth.degrading += committed.growth.degrading;
-    found.growth.breaking += committed.growth.breaking;
+    found.growth += committed.growth;
     found.energies.released += committed.released;
+    found.energies.struts += committed.growth.strut_energy;
     attempt.state.stored_energy = committed.energy;
     attempt.state.energy_round_off = committed.round_off;
     if (!committed.moves_equilibrium) return;

@@ -93,7 +93,7 @@ void ImplicitStepping::establish(ImplicitStep& step) {
   }
   if (step.growth.degrading > 0) {
     const bool fails_in_avalanches = path_.damaged().model().fails_in_avalanches();
-    if (fails_in_avalanches) {
+    if (fails_in_avalanches || path_.damaged().model().struts()) {
       step.found.energies.intact = {path_.working_force(attempt.state, attempt.external_force),
                                     attempt.state.displacement};
       step.found.energies.heating =
@@ -192,9 +192,9 @@ void ImplicitStepping::run_avalanche(ImplicitStep& step) {
     Assembler& assembler = path_.damaged();
     const Evaluation committed = assembler.commit(attempt.state.displacement, attempt.state.history,
                                                   {}, attempt.state.environment);
-    step.found.growth.degrading += committed.growth.degrading;
-    step.found.growth.breaking += committed.growth.breaking;
+    step.found.growth += committed.growth;
     step.found.energies.released += committed.released;
+    step.found.energies.struts += committed.growth.strut_energy;
     if (committed.growth.degrading == 0) break;
     if (passes == most_passes) {
       attempt.outcome = Outcome::iteration_limit;

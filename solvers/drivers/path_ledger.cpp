@@ -45,7 +45,7 @@ Ledger PathLedger::with_step(const Sums& sums, std::span<const double> displacem
     after.numerical_work += step.relaxed->work - work;
     after.drained += step.relaxed->drained;
   }
-  if (step.is_avalanche) {
+  if (step.is_avalanche || (step.struts != 0.0 && !step.relaxed)) {
     after.drained += std::max(0.0, after.balance_error() - entries.balance_error());
   }
   return after;
@@ -56,10 +56,12 @@ void PathLedger::accept(const Ledger& with_step, std::vector<double> working,
   force = std::move(working);
   entries = with_step;
   released += step.released;
+  struts += step.struts;
 }
 
 std::string PathLedger::jump_to(const Ledger& with_step) const {
-  const double lost = with_step.balance_error() - entries.balance_error();
+  const double lost =
+      with_step.balance_error() + with_step.drained - entries.balance_error() - entries.drained;
   if (lost <= share_of_jump * std::max(entries.stored, with_step.external_work)) return {};
   return number_text(lost) + " J of " + number_text(with_step.external_work) +
          " J are released that no work or dissipation accounts for: the body has jumped to another "

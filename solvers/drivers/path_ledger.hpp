@@ -25,6 +25,9 @@ struct StepEnergies {
   /// Bonds broke one after the other under a fixed control: work in excess of the stored and
   /// dissipated energy counts as drained.
   bool is_avalanche = false;
+  /// Stored in struts that were cut, part of what is dissipated. What the body then releases on its
+  /// way to an equilibrium without them counts as in an avalanche.
+  double struts = 0.0;
   /// State of the step before its points failed: the work is summed by way of this state, and
   /// heating up to it.
   struct Intact {
@@ -41,7 +44,8 @@ struct StepEnergies {
 /// load 0, is applied slowly, see StepEnergies::is_elastic_preload.
 struct PathLedger {
   Ledger entries;
-  double released = 0.0;      ///< by triangles and tetrahedra whose bonds were damaged [J]
+  double released = 0.0;      ///< see Evaluation::released [J]
+  double struts = 0.0;        ///< stored in struts when they were cut [J]
   std::vector<double> force;  ///< working force in the last accepted state [N]
 
   /// Begins in a state: the energy stored there counts as work that was done before.

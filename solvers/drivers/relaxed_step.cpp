@@ -71,9 +71,9 @@ void relax_towards(Path& path, RelaxedStep& step, const LoadPoint& target,
   step.found.record.settled = relaxed.largest_residual < 0.0;
   step.found.energies.relaxed->work += relaxed.external_work;
   step.found.energies.relaxed->drained += relaxed.drained_energy;
-  step.found.growth.degrading += relaxed.growth.degrading;
-  step.found.growth.breaking += relaxed.growth.breaking;
+  step.found.growth += relaxed.growth;
   step.found.energies.released += relaxed.released_energy;
+  step.found.energies.struts += relaxed.growth.strut_energy;
   step.scale = relaxed.scale;
   step.attempt = to_attempt(std::move(relaxed), target);
 }

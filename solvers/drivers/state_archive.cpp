@@ -27,7 +27,7 @@ void transfer_history(StateArchive& archive, const std::string& name, History& h
 }
 
 void transfer_ledger(StateArchive& archive, PathLedger& ledger) {
-  auto& [entries, released, force] = ledger;
+  auto& [entries, released, struts, force] = ledger;
   auto& [stored, dissipated, drained, external_work, numerical_work, kinetic] = entries;
   archive.transfer("ledger/stored", stored);
   archive.transfer("ledger/dissipated", dissipated);
@@ -36,6 +36,7 @@ void transfer_ledger(StateArchive& archive, PathLedger& ledger) {
   archive.transfer("ledger/numerical_work", numerical_work);
   archive.transfer("ledger/kinetic", kinetic);
   archive.transfer("ledger/released", released);
+  archive.transfer("ledger/struts", struts);
   archive.transfer("ledger/force", force, Rows::dofs);
 }
 

@@ -366,6 +366,19 @@ void check_drives(const BodySpecification& of) {
   });
 }
 
+/// Refuses materials with different rules for struts, which may lie between them.
+void check_struts(const BodySpecification& of) {
+  std::optional<StrutRemedy> first;
+  for_each_material(of, [&](const MaterialSpecification& material, const std::string& key) {
+    if (!material.damage.breaks_bonds()) return;
+    const StrutRemedy remedy = material.damage.struts;
+    require(!first || remedy == *first, key + ".damage.struts",
+            remedy == StrutRemedy::cut ? "cut" : "keep",
+            "must be the same for all materials of a body that can be damaged");
+    first = remedy;
+  });
+}
+
 void check_all_materials(const BodySpecification& of, int dimension, const OptionSet& options) {
   for (const auto& [option, key, is_given] : options_of_body) {
     require_absent(is_given(of) && !options.has(option), key, is_for(option));
@@ -375,6 +388,7 @@ void check_all_materials(const BodySpecification& of, int dimension, const Optio
   }
   check_regions(of, dimension, options);
   check_drives(of);
+  check_struts(of);
   check_mirrored_fibres(of, dimension);
   if (of.horizon_per_size != 0.0) check_for_horizons(of);
 }

@@ -43,8 +43,7 @@ bool Motion::find_forces() {
     problem_.assembler.follower_force(at_.at(), at_.follower_force);
   }
   fold_followers(problem_, external_force_, at_);
-  sums_.growth.degrading += found.growth.degrading;
-  sums_.growth.breaking += found.growth.breaking;
+  sums_.growth += found.growth;
   sums_.released += found.released;
   return !found.degenerate;
 }

@@ -92,12 +92,10 @@ NewtonResult Newmark::find(double time, const InertialSprings& inertia) {
     if (found.outcome != Outcome::converged) return found;
     const Evaluation committed = problem.assembler.commit(
         found.state.displacement, found.state.history, {}, found.state.environment);
-    growth.degrading += committed.growth.degrading;
-    growth.breaking += committed.growth.breaking;
+    growth += committed.growth;
     released += committed.released;
     if (committed.growth.degrading == 0) {
-      sums_.growth.degrading += growth.degrading;
-      sums_.growth.breaking += growth.breaking;
+      sums_.growth += growth;
       sums_.released += released;
       return found;
     }

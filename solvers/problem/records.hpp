@@ -82,6 +82,7 @@ struct StepRecord {
   /// the path; and the energy released there since the start [J].
   bool is_on_response = true;
   double released_energy = 0.0;
+  double strut_energy = 0.0;  ///< that struts stored when they were cut, also dissipated [J]
   Stability stability = Stability::not_judged;  ///< mode path judges it
   /// Mode path: load factor at which the last bonds broke; nothing: they broke in this step.
   std::optional<double> broke_at;

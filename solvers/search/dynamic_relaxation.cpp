@@ -71,8 +71,7 @@ class Relaxation {
         options_.breaking == Breaking::transient
             ? assembler.commit(at_.displacement, at_.history, at_.gradient, at_.environment)
             : assembler.gradient(at_.at(), at_.gradient);
-    result_.growth.degrading += found.growth.degrading;
-    result_.growth.breaking += found.growth.breaking;
+    result_.growth += found.growth;
     result_.released_energy += found.released;
     at_.stored_energy = found.energy;
     at_.energy_round_off = found.round_off;

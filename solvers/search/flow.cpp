@@ -297,8 +297,7 @@ class Flow {
     if (options_.breaking == Breaking::at_equilibrium) return Outcome::converged;
     const Evaluation found = problem_.assembler.commit(current_.displacement, current_.history, {},
                                                        current_.environment);
-    result_.growth.degrading += found.growth.degrading;
-    result_.growth.breaking += found.growth.breaking;
+    result_.growth += found.growth;
     result_.released_energy += found.released;
     current_.stored_energy = found.energy;
     current_.energy_round_off = found.round_off;

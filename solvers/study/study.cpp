@@ -61,6 +61,16 @@ void refuse_events_of_states(const Body& body, const StudyOptions& options) {
           "with it; take damage.drive = \"release\"");
 }
 
+/// Refuses struts in modes whose steps are no equilibria between commits.
+void refuse_modes_with_struts(const Body& body, const StudyOptions& options) {
+  const Mode mode = options.loading.mode;
+  const bool is_known = mode == Mode::newton || mode == Mode::adaptive || mode == Mode::relaxation;
+  if (is_known || !body.model.struts()) return;
+  throw InputError("loading.mode", std::string(mode.name),
+                   "can't cut struts; take newton, adaptive or relaxation, or damage.struts = "
+                   "\"keep\"");
+}
+
 /// Points that fail one by one have no strength that a step could be led to, and what follows one
 /// has no stand-in.
 void refuse_modes_of_failing_points(const Body& body, const StudyOptions& options) {
@@ -126,6 +136,7 @@ void check_study(const Body& body, const StudyOptions& options) {
   }
   refuse_modes_without_potential(body, options);
   refuse_events_of_states(body, options);
+  refuse_modes_with_struts(body, options);
   refuse_modes_of_failing_points(body, options);
   const bool is_implicit = moves && options.loading.dynamics.scheme == MotionScheme::newmark;
   if (is_implicit != body.specification.has_inertia) {

@@ -26,7 +26,7 @@ HISTORY_COLUMNS = [
     "max_damage", "max_stretch", "reaction_x:left", "reaction_y:left", "reaction_z:left",
     "reaction_x:right", "reaction_y:right", "reaction_z:right", "displacement_x:right", "end_x", "end_y",
     "numerical_work", "pin_force", "settled", "stage",
-    "control", "negative_pivots", "on_response", "released_energy", "stability",
+    "control", "negative_pivots", "on_response", "released_energy", "stability", "strut_energy",
 ]  # fmt: skip
 ITERATION_COLUMNS = [
     "step", "iteration", "residual", "relative_residual", "energy", "step_length",

@@ -36,7 +36,7 @@ void require_law(const Entry& at, DamageSpecification&) {
   if (at.from.has("law")) return;
   for (const char* key :
        {"fracture_energy", "fracture_toughness", "strength", "critical", "onset", "peak",
-        "hardening", "rate", "stretches", "forces", "drive", "strength_surface",
+        "hardening", "rate", "stretches", "forces", "drive", "struts", "strength_surface",
         "compressive_strength", "biaxial_strength", "strength_factor"}) {
     if (!at.from.has(key)) continue;
     at.from.refuse(key,
@@ -215,6 +215,14 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
            .by_rules(damage_rules)
            .default_words("`\"release\"` with `state`, and with `fracture_energy` or "
                           "`fracture_toughness`; otherwise `\"stretch\"`")
+           .moreover("the same for all materials of a body"),
+       K("struts", &Spec::struts,
+         choice<StrutRemedy>({{"keep", StrutRemedy::keep}, {"cut", StrutRemedy::cut}}),
+         "model `bond`: what becomes of [struts](theory.md#struts), bonds that still join the two "
+         "faces of an open crack. `\"keep\"`: their stretch alone decides; `\"cut\"`: they fail "
+         "with the bonds around them")
+           .unless(is_whole, "")
+           .by_rules(damage_rules)
            .moreover("the same for all materials of a body"),
        K("no_fail", &Spec::no_fail, known_sets(),
          "sets of points whose bonds stay elastic at any stretch, including bonds to points "

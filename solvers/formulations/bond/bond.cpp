@@ -54,6 +54,7 @@ const Formulation& bond_formulation() {
                                                  Option::fibre,
                                                  Option::strength,
                                                  Option::strength_surface,
+                                                 Option::struts,
                                                  Option::softening,
                                                  Option::critical_stretch,
                                                  Option::volume_correction,

@@ -27,6 +27,7 @@ enum class Option {
   energy_density,    ///< the law by which points fail
   drive,             ///< of the damage of bonds, where release is possible
   strength_surface,
+  struts,
   // Of a body
   volume_correction,
   horizon_shape,
@@ -78,7 +79,7 @@ struct OptionOf {
 };
 
 using OptionOfMaterial = OptionOf<MaterialSpecification>;
-inline constexpr std::array<OptionOfMaterial, 15> options_of_material{{
+inline constexpr std::array<OptionOfMaterial, 16> options_of_material{{
     {Option::plane, "plane", [](auto& m) { return m.plane != PlaneState::stress; }},
     {Option::kinematics, "kinematics", [](auto& m) { return m.kinematics != Kinematics::finite; }},
     {Option::potential, "potential", [](auto& m) { return m.potential != Harmonic::name; }},
@@ -97,6 +98,7 @@ inline constexpr std::array<OptionOfMaterial, 15> options_of_material{{
     {Option::drive, "damage.drive", [](auto& m) { return m.damage.drive.has_value(); }},
     {Option::strength_surface, "damage.strength_surface",
      [](auto& m) { return m.damage.has_surface(); }},
+    {Option::struts, "damage.struts", [](auto& m) { return m.damage.struts != StrutRemedy::keep; }},
 }};
 
 using OptionOfBody = OptionOf<BodySpecification>;

@@ -53,6 +53,9 @@ struct LawStretches {
 
 inline constexpr std::array<double, 2> usual_strength_factor{0.2, 100.0};
 
+/// What becomes of bonds that still join the faces of an open crack, see Struts.
+enum class StrutRemedy { keep, cut };
+
 struct DamageSpecification {
   DamageLaw law = DamageLaw::none;
   double onset = 0.0;                  ///< s_m, of the laws that soften
@@ -83,6 +86,7 @@ struct DamageSpecification {
   std::shared_ptr<const PeakFactors> peak_factors{};
   /// What drives the damage; none: see Formulation::default_drive.
   std::optional<DamageDrive> drive{};
+  StrutRemedy struts = StrutRemedy::keep;
   /// True if the stretches were computed from a fracture energy: those of a bond then depend on the
   /// horizons of its points, and these are for the body's horizon.
   bool is_by_energy = false;

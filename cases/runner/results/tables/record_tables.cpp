@@ -99,6 +99,9 @@ const std::vector<Column>& later_step_columns() {
       {integer, "stability", "1",
        "path: 1 stable, -1 unstable (breaking continues at the same load), -2 bifurcated (the "
        "tangent has negative pivots); other modes: 0, not judged"},
+      {number, "strut_energy", "J",
+       "energy that struts stored when they were cut, since the start: part of the dissipated "
+       "energy"},
   };
   return columns;
 }
@@ -243,6 +246,7 @@ Row make_row(const StepRecord& record, const std::vector<std::string>& support_s
   row.emplace_back(std::int64_t{record.is_on_response});
   append("released_energy", record.released_energy);
   row.emplace_back(static_cast<std::int64_t>(record.stability));
+  append("strut_energy", record.strut_energy);
   return row;
 }
 
@@ -285,7 +289,7 @@ StepRecord read_step(const Row& row, const std::vector<std::string>& support_set
   cells >> record.numerical_work >> record.pin_force >> record.settled >> record.stage >>
       record.control >> record.negative_pivots >> record.is_on_response >> record.released_energy;
   std::int64_t stability = 0;
-  cells >> stability;
+  cells >> stability >> record.strut_energy;
   record.stability = Stability{static_cast<std::int8_t>(stability)};
   return record;
 }

@@ -211,6 +211,7 @@ StepRecord example_step(int step) {
   record.negative_pivots = 2;
   record.is_on_response = false;
   record.released_energy = 0.375;
+  record.strut_energy = 0.03125;
   record.stability = Stability::unstable;
   record.load_factor = 0.1 * step;
   record.mode = "newton";
@@ -422,9 +423,9 @@ TEST_F(ResultsTest, TablesHaveTheColumnsOfTheContract) {
           "max_damage,max_stretch,reaction_x:right,reaction_y:right,reaction_z:right,"
           "\"reaction_x:left, \"\"top\"\"\",\"reaction_y:left, \"\"top\"\"\","
           "\"reaction_z:left, \"\"top\"\"\",tip_x,tip_y,crack,numerical_work,pin_force,settled,"
-          "stage,control,negative_pivots,on_response,released_energy,stability",
+          "stage,control,negative_pivots,on_response,released_energy,stability,strut_energy",
           "1,0.1,newton,4,100,0.3333333333333333,0.25,0.125,5,1e-17,3,0.5,0.01,1,2,0,-1,-2,0,0.5,"
-          "-0.5,9,0.0625,0.75,1,1.5,1.25e-05,2,0,0.375,-1"}));
+          "-0.5,9,0.0625,0.75,1,1.5,1.25e-05,2,0,0.375,-1,0.03125"}));
   EXPECT_EQ(lines(directory / "iterations.csv"),
             (std::vector<std::string>{
                 "step,iteration,residual,relative_residual,energy,step_length,"
