@@ -894,7 +894,7 @@ TEST_F(ResultsTest, AKillLeavesEveryAnnouncedStep) {
     EXPECT_EQ(file.numbers("/points/volume"), example_points(2).volume);
 
     for (const auto& [name, columns] : std::map<std::string, int>{
-             {"history.csv", 31}, {"iterations.csv", 13}, {"decisions.csv", 8}}) {
+             {"history.csv", 32}, {"iterations.csv", 13}, {"decisions.csv", 8}}) {
       EXPECT_EQ(read_text(folder / name).back(), '\n') << name;
       const std::vector<std::string> rows = lines(folder / name);
       ASSERT_GE(rows.size(), 1u + announced) << name;
