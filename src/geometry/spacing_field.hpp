@@ -11,7 +11,7 @@ namespace peristat {
 struct Refinement {
   Shape shape{};
   double spacing = 0.0;  ///< in the shape [m]
-  double growth = 0.1;  ///< of the spacing per distance from the shape
+  double growth = 0.1;   ///< of the spacing per distance from the shape
 };
 
 /// Spacing of a body's points at every place: h(x) = min(h_0, h_k + g_k d_k(x)) over regions k at
