@@ -215,8 +215,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         for strip in asked.names:
             in_space = strip.startswith("space")
-            # A shorter strip has to be opened farther until the crack has grown by as much.
-            size = {"length": 26, "crack": 8, "height": 22, "growing": 2 * GROWING_PART} if in_space else {}
+            # A lower strip has to be opened farther until the process zone has developed.
+            size = {"length": 26, "crack": 8, "height": 14, "growing": 2 * GROWING_PART} if in_space else {}
             found = measured(Strip(strip, asked.steps * (1 + in_space), **size), asked.work or Path(name))
             print(f"| {strip.replace('_', ', ')} | {asked.steps} | {found.tear:.3f} | {found.release:.3f} | {found.drained:.3f} "
                   f"| {found.tear * (1 + found.drained):.3f} |", flush=True)  # fmt: skip
