@@ -88,7 +88,7 @@ class Trust(Folder):
         self.assert_code(ended, 0)
         value = lambda name, quantity: float(re.search(rf"{name}/h1_m3.015_0, {quantity}: ([0-9.]+)", ended.output)[1])
         self.assertAlmostEqual(value("edge_crack_2", "stress at the peak"), 1, delta=0.06)
-        self.assertAlmostEqual(value("double_edge_notch", "largest shear force"), 1, delta=0.06)
+        self.assertAlmostEqual(value("double_edge_notch", "largest shear force"), 1, delta=0.1)
 
     def test_a_crack_kinks_without_t_stress_and_keeps_to_its_row_with_it(self):
         """On a lattice along the crack: without T it turns as in fracture mechanics, within 5 degrees; with negative T a
