@@ -184,8 +184,12 @@ double second_moment(const BondSetting& setting, const BulkCloud& cloud) {
   switch (cloud.surface_correction) {
     case SurfaceCorrection::energy:
       return second * setting.moment(1) / setting.cloud_moment(1, cloud.size);
-    case SurfaceCorrection::volume:
-      return second * setting.lattice_moment(0, cloud.size) / setting.cloud_moment(0, cloud.size);
+    case SurfaceCorrection::volume: {
+      // A point is none of its own neighbours.
+      const double own = std::pow(cloud.size, setting.dimension) * setting.cross_section;
+      const double seen = setting.cloud_moment(0, cloud.size) - own;
+      return second * setting.lattice_moment(0, cloud.size) / seen;
+    }
     case SurfaceCorrection::none:
       break;
   }
