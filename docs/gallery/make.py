@@ -61,6 +61,7 @@ SHOWS = {
     "plate_with_hole/square": "Two cracks that run from the hole to the edges in one step; the case of the [tutorial](tutorial-fracture.md).",
     "four_holes/path": "A brittle crack that finds its way between four holes, from event to event.",
     "four_holes/tension": "A crack that finds its way between four holes, with a smaller horizon until damage begins.",
+    "three_point_bending/half_disk": "A crack that turns and curves towards the load, through points without rows that are finer along its way.",
     "three_point_bending/mouth_opening": "A notched plate under control of its mouth opening, which follows the load down to two thirds of the peak.",
     "three_point_bending/notched": "The published notched plate, which softens over a long way under the moving load point.",
     "three_point_bending/path": "The notched plate of brittle bonds, from event to event: the displacement goes back again and again.",
