@@ -133,7 +133,7 @@ class Lattice(Table):
     spacing: Quantity | List
     """distance between neighbouring points, or one distance along each of the lattice's axes [m]. required. Allowed: positive, or a list with one number per dimension"""
     points: Literal["lattice", "blue_noise"]
-    """`'lattice'`: points on the lattice; `'blue_noise'`: points at random, at about the spacing from their neighbours, with the volumes of their Voronoi cells. Default: `'lattice'`. Allowed: `'lattice'`, `'blue_noise'`; `blue_noise` with model `bond`"""
+    """`'lattice'`: points on the lattice; `'blue_noise'`: points at random, at about the spacing from their neighbours, with the volumes of their Voronoi cells. Default: `'lattice'`. Allowed: `'lattice'`, `'blue_noise'`; `blue_noise` with models `bond`, `state` and `lps` as an energy"""
     lloyd_steps: int
     """number of times that points of blue noise move to the centroids of their Voronoi cells. Default: 5. Allowed: 0 to 100"""
     angle: Quantity
