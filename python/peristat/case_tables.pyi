@@ -676,7 +676,7 @@ class CrackTip(Table):
     front: List
     """3D: direction of the front, a vector of any length. The front extends through the whole body. Default: `[0, 0, 1]`. Allowed: a number per dimension; at a right angle to `direction`"""
     inner: Quantity
-    """inner radius of the ring of the integrals [m]. Default: 2 horizons. Allowed: positive; at least 2 horizons"""
+    """inner radius of the ring of the integrals [m]. Default: 2 horizons, of points with their own the largest within the ring. Allowed: positive; at least 2 horizons"""
     outer: Quantity
     """outer radius of the ring [m]. Default: 4 horizons, or twice `inner`. Allowed: positive; at least a horizon more than `inner`"""
     cut: Quantity

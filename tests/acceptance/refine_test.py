@@ -186,11 +186,16 @@ steps = 4
             (['lattice.refine=[{shape="disk", centre=[0,0], radius=0.01, spacing=1e-3, name="a"}]'], ("refine[0].name",)),
             (["material.model=state", "material.poisson_ratio=0.2"], ("lattice.refine", 'model "bond"')),
             (["material.model=cpd", "material.poisson_ratio=0.35", "quadrature={}"], ("lattice.refine", 'model "bond"')),
+            (['material.damage={law="critical_stretch", critical="1e-3*horizon"}'],
+             ("material.damage.critical", "lattice.refine gives every point its own")),
+            (['material.damage={law="linear", critical=1e-3, onset=1e-4}', "solver.mode=adaptive",
+              "solver.elastic_horizon_ratio=2"], ("elastic_horizon_ratio", "lattice.refine")),
             (['quadrature.volume_correction="exact"'], ("quadrature.volume_correction", '"linear"'))):  # fmt: skip
             with self.subTest(changes=changes):
                 said = self.refusal(PATCH, *changes)
                 for word in words:
                     self.assertIn(word, said)
+        self.assert_refused(self.command("calibrate", PATCH), "lattice.refine", "a length")
 
 
 if __name__ == "__main__":

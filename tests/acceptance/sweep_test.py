@@ -16,6 +16,7 @@ import h5py
 import matplotlib.image
 
 from tests.acceptance.folder import Folder
+from tests.acceptance.refine_test import PATCH
 from tests.acceptance.strip import PULLED
 from tests.reference.program import ROOT, limited_by_shell, settings
 
@@ -299,6 +300,16 @@ class Sweep(Folder):
         # Files made from a table are removed with it.
         self.assert_ends(self.sweep("--vary", "loading.steps=1", case=case), 0, "done")
         self.assertFalse((self.out / "refinement.csv").exists())
+
+    def test_a_refinement_refines_the_regions_of_finer_points_too(self):
+        self.write("refined.toml", PATCH)
+        coarse = ("--set", "lattice.spacing=8e-3", "--set", "lattice.refine[0].spacing=4e-3")
+        self.assert_ends(self.sweep(*coarse, "--refine", "3", case="refined.toml"), 0, *3 * ["done"])
+        spacings = [[float(row[key]) for key in ("lattice.spacing", "lattice.refine[0].spacing")] for row in self.rows()]
+        self.assertEqual(spacings, [[8e-3, 4e-3], [4e-3, 2e-3], [2e-3, 1e-3]])
+        with open(self.out / "refinement.csv", newline="") as table:
+            stored = next(row for row in csv.DictReader(table) if row["quantity"] == "energy_stored")
+        self.assertEqual([float(stored[f"spacing_{k}"]) for k in (1, 2, 3)], [8e-3, 4e-3, 2e-3])
 
     def test_spacings_of_a_refinement_are_in_m_whatever_the_units(self):
         run = self.sweep("--set", "lattice.spacing=4e-3", "--set", "units.length=mm", "--refine", "3", case=ROOT / "cases/bar/tension.toml")

@@ -197,9 +197,9 @@ Exit calibrate_bonds(const Case& from, bool with_strengths, std::FILE* out) {
   const auto body = make_body(from, 1);
   located_errors(from, [&] {
     if (!body->points.horizons.empty())
-      throw InputError("points.horizon", "",
-                       "is a ratio, so the constants differ from point to point; give a length, "
-                       "the horizon of one size");
+      throw InputError("horizon_per_size", "",
+                       "makes the constants differ from point to point; leave it out, or give one "
+                       "horizon, a length");
     const PointMaterials materials(body->specification, body->points);
     const auto all = all_materials(body->specification, materials);
     for (std::size_t k = 0; k < all.size(); ++k) {

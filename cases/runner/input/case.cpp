@@ -101,8 +101,7 @@ std::string key_of(const Case& from, std::string member) {
   if (member == "cross_section")
     return std::string(lattice != nullptr ? "lattice." : "points.") +
            (from.dimension == 1 ? "area" : "thickness");
-  if (member == "points.horizons" || member == "horizon_per_size")
-    return lattice != nullptr ? "lattice.refine" : "points.horizon";
+  if (member == "points.horizons" || member == "horizon_per_size") return key_of_own_horizons(from);
   if (member == "horizon") return lattice != nullptr ? "lattice.horizon_ratio" : "points.horizon";
   if (member.starts_with("points") && lattice != nullptr) return "lattice.shape";
   if (member == "loading.mode") return "solver.mode";
@@ -128,6 +127,12 @@ std::string key_of(const Case& from, std::string member) {
 }
 
 }  // namespace
+
+std::string key_of_own_horizons(const Case& from) {
+  if (const auto* lattice = std::get_if<Lattice>(&from.body))
+    return lattice->refinements.empty() ? "" : "lattice.refine";
+  return std::get<PointSource>(from.body).horizon.ratio > 0.0 ? "points.horizon" : "";
+}
 
 bool PointSource::is_mesh() const {
   std::string end = file.extension().string();

@@ -176,6 +176,9 @@ struct Case : BodySpecification {
 /// True if the results or a probe of the case contain strain or stress.
 [[nodiscard]] bool tells_stress(const Case& from);
 
+/// The key that gives every point a horizon of its own; empty: there is one horizon.
+[[nodiscard]] std::string key_of_own_horizons(const Case& from);
+
 /// Reads and checks a case file.
 /// @param overrides a value that is no TOML is taken as a string
 /// @throws InputError whose place is "FILE:LINE:COLUMN", "--set KEY=VALUE" or, if the file can't be

@@ -510,8 +510,8 @@ Kind<double> stretch() {
   const auto read = [=](const Entry& at) {
     if (!at.from.is_string(at.key)) return at.from.number(at.key, range);
     const auto* lattice = std::get_if<Lattice>(&at.so_far.body);
-    if (lattice == nullptr && std::get<PointSource>(at.so_far.body).horizon.ratio > 0.0)
-      at.refuse("must be a number: points.horizon gives every point its own horizon");
+    if (const std::string own = key_of_own_horizons(at.so_far); !own.empty())
+      at.refuse("must be a number: " + own + " gives every point its own horizon");
     const double horizon = lattice != nullptr
                                ? at.so_far.horizon_ratio * lattice->spacing
                                : std::get<PointSource>(at.so_far.body).horizon.length;

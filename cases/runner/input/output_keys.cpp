@@ -140,7 +140,7 @@ Table<CrackTipSpecification> crack_tip_keys() {
            K("inner", &Spec::inner, positive("m"), "inner radius of the ring of the integrals")
                .moreover("at least 2 horizons")
                .written_if([](auto& tip, auto&) { return tip.inner > 0.0; })
-               .default_words("2 horizons"),
+               .default_words("2 horizons, of points with their own the largest within the ring"),
            K("outer", &Spec::outer, positive("m"), "outer radius of the ring")
                .moreover("at least a horizon more than `inner`")
                .written_if([](auto& tip, auto&) { return tip.outer > 0.0; })

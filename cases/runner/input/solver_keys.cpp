@@ -73,9 +73,9 @@ void check_stand_in(const Entry& at, const SolverSpecification& solver) {
     at.refuse(
         "is for bodies with damage: the stand-in replaces the body until damage begins, so without "
         "damage it would replace the body to the end");
-  const auto* const points = std::get_if<PointSource>(&at.so_far.body);
-  if (solver.elastic_horizon_ratio > 0.0 && points != nullptr && points->horizon.ratio > 0.0)
-    at.refuse("gives the stand-in one horizon, but points.horizon gives every point its own");
+  const std::string own = key_of_own_horizons(at.so_far);
+  if (solver.elastic_horizon_ratio > 0.0 && !own.empty())
+    at.refuse("gives the stand-in one horizon, but " + own + " gives every point its own");
 }
 
 Kind<Mode> mode() {

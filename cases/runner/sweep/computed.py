@@ -77,6 +77,13 @@ class Keys:
                 return found
             raise error
 
+    def count(self, key: str) -> int:
+        """Number of elements of a list; 0 without one."""
+        value = self._case
+        for part in _parts(key):
+            value = value.get(part) if isinstance(value, dict) else None
+        return len(value) if isinstance(value, list) else 0
+
     def _put(self, parts: list[str | int], value) -> None:
         table = self._case
         for part, following in zip(parts, parts[1:]):

@@ -35,6 +35,7 @@ WORDS = {NOT_CONVERGED: "did not converge", OUT_OF_MEMORY: "out of memory", INTE
          WRONG_INPUT: "refused", MACHINE_FAILED: "the machine failed"}  # fmt: skip
 MADE_OF_THE_TABLE = {"sweep.png": PICTURE, "refinement.csv": SIGN, "refinement.png": PICTURE}  # and signatures
 REFINED = "lattice.spacing"
+REGIONS = "lattice.refine"  # whose spacings are refined with it
 # Errors of writing: the disk is full or failing, or a limit of the shell is reached.
 FAULTS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EMFILE, errno.ENFILE, errno.EIO, errno.ENOMEM}
 
@@ -389,8 +390,9 @@ def _find_combinations(sweep: Sweep, arguments: argparse.Namespace) -> None:
     axes, computed = _read_axes(sweep, arguments)
     keys = [key for axis in axes for key in axis.keys]
     given = arguments.settings
-    if sweep.refined is not None:  # the setting is the spacing of the coarsest lattice
-        given = [setting for setting in given if setting.partition("=")[0].strip() != REFINED]
+    if sweep.refined is not None:  # settings are the spacings of the coarsest lattice
+        scaled = {key for axis in axes if REFINED in axis.keys for key in axis.keys}
+        given = [setting for setting in given if setting.partition("=")[0].strip() not in scaled]
     set_as_given = [setting for setting in given if not split_computed(setting)]
     computed_by_set = [found for setting in given if (found := split_computed(setting))]
     sweep.keys = [*keys, *(key for key, _ in computed)]
@@ -440,17 +442,19 @@ def _read_axes(sweep: Sweep, arguments: argparse.Namespace) -> tuple[list[Axis],
 
 
 def _lattices(text: str, ratio: float, keys: Keys) -> Axis:
-    """Axis of --refine: spacings from that of the case on."""
+    """Axis of --refine: spacings from that of the case on, and those of its regions of finer points."""
     if not text.isdecimal() or not 3 <= int(text) <= 20:
         raise WrongInput(f"--refine {text}: must be a number of lattices from 3 to 20: an order needs three")
     if not 1.05 <= ratio <= 10.0:
         raise WrongInput(f"--ratio {ratio}: must be from 1.05 to 10")
     try:
-        spacing = keys.numbers(REFINED)
+        varied = [REFINED, *(f"{REGIONS}[{k}].spacing" for k in range(keys.count(REGIONS)))]
+        spacings = [keys.numbers(key) for key in varied]
     except WrongInput as error:
         raise WrongInput(f"--refine {text}: {error}") from None
-    lattices = [[length / ratio**level for length in spacing] for level in range(int(text))]
-    return Axis([REFINED], [[repr(lengths if len(lengths) > 1 else lengths[0]) for lengths in lattices]])
+    finer = lambda spacing, level: [length / ratio**level for length in spacing]
+    told = lambda lengths: repr(lengths if len(lengths) > 1 else lengths[0])
+    return Axis(varied, [[told(finer(spacing, level)) for level in range(int(text))] for spacing in spacings])
 
 
 def _spacing(text: str) -> float:
