@@ -64,13 +64,13 @@ Assembler::Assembler(const Points& points, const Model& model, int threads,
     : points_(points),
       model_(model),
       pattern_of_(pattern_of),
-      pattern_(pattern_of == PatternOf::blocks ? model.pattern() : model.visited_pattern()),
+      of_model_(pattern_of == PatternOf::blocks ? model.pattern() : model.visited_pattern()),
+      in_contact_(BlockPattern::diagonal(points.count())),
+      pattern_(of_model_),
       workspace_(pattern_, points.dimension, threads),
       index_map_(index_map) {
   if (model.terms().empty()) throw std::logic_error("a model without terms has no energy");
-  for (const auto& term : model.terms()) {
-    terms_.push_back(term->passes({points_, model_, pattern_, workspace_, index_map_}));
-  }
+  for (const auto& term : model.terms()) terms_.push_back(passes_of(*term));
   if (index_map.is_whole()) return;
   if (model.tangent_kind() == TangentKind::products) {
     throw std::logic_error("Assembler: convolutions have no ranks");
@@ -78,6 +78,10 @@ Assembler::Assembler(const Points& points, const Model& model, int threads,
   of_points_.resize(points.volume.size());
 }
 Assembler::~Assembler() = default;
+
+std::unique_ptr<TermPasses> Assembler::passes_of(const Term& term) {
+  return term.passes({points_, model_, pattern_, workspace_, index_map_});
+}
 
 template <class Visit>
 void Assembler::for_each_term(const Visit& visit, Write how) {
@@ -271,6 +275,44 @@ DamageGrowth Assembler::growth_by_laws(const StateView& now) {
     found += of_term;
   });
   return of_all(found.growth);
+}
+
+bool Assembler::has_contacts() const {
+  return std::ranges::any_of(terms_, [](const auto& term) { return term->has_contacts(); });
+}
+
+std::vector<Index> Assembler::closed_contacts(const StateView& at) {
+  std::vector<Index> closed;
+  for_each_term([&](TermPasses& term, Write) {
+    const std::vector<Index> of_term = term.closed_contacts(at);
+    closed.insert(closed.end(), of_term.begin(), of_term.end());
+  });
+  return closed;
+}
+
+double Assembler::longest_step(const StateView& at, std::span<const double> step) {
+  double longest = 1.0;
+  for_each_term(
+      [&](TermPasses& term, Write) { longest = std::min(longest, term.longest_step(at, step)); });
+  return has_contacts() ? -index_map_.ranks().max(-longest) : longest;
+}
+
+int Assembler::cover_contacts(const StateView& at) {
+  std::vector<Couplings> in_contact;
+  for_each_term([&](TermPasses& term, Write) {
+    if (const auto couplings = term.contact_couplings(at)) in_contact.push_back(*couplings);
+  });
+  BlockPattern now = in_contact.empty() ? BlockPattern::diagonal(points_.count())
+                                        : BlockPattern::united(in_contact, points_.count()).kept();
+  if (now == in_contact_) return version_of_pattern_;
+  in_contact_ = std::move(now);
+  pattern_ = in_contact_.partner.empty()
+                 ? of_model_
+                 : BlockPattern::united({of_model_, in_contact_}, points_.count()).kept();
+  for (std::size_t k = 0; k < terms_.size(); ++k) {
+    if (!terms_[k]->has_contacts()) terms_[k] = passes_of(*model_.terms()[k]);
+  }
+  return ++version_of_pattern_;
 }
 
 void Assembler::add_drive(const StateView& at, const StateLine& line, std::span<BondDrive> drives) {

@@ -74,6 +74,14 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   /// Damage that committing the state would cause.
   [[nodiscard]] DamageGrowth growth(const StateView& at);
 
+  /// True if points may touch one another or obstacles.
+  [[nodiscard]] bool has_contacts() const;
+  /// Contacts that count as closed at a state with a foreseen displacement, see TermPasses.
+  [[nodiscard]] std::vector<Index> closed_contacts(const StateView& at);
+  /// Largest share of a step, from 0 to 1, that no contact passes its largest depth within.
+  [[nodiscard]] double longest_step(const StateView& at, std::span<const double> step);
+  int cover_contacts(const StateView& at) override;
+
   /// What drives bonds that fail by release.
   /// @param drives of all bonds; given are those by their stretches in the deformed configuration
   void add_drive(const StateView& at, const StateLine& line, std::span<BondDrive> drives);
@@ -119,6 +127,7 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   /// Squared equivalent stretches of all bonds, without rates.
   [[nodiscard]] std::vector<BondDrive> drives(const StateView& at);
   /// A history before which bonds start to fail as the state says, see StrengthOnsets.
+  [[nodiscard]] std::unique_ptr<TermPasses> passes_of(const Term& term);
   [[nodiscard]] History with_onsets(const StateView& at);
   /// Damages by release, if the model's bonds fail so. Returns its growth.
   Evaluation release(std::span<const double> displacement, History& history,
@@ -148,7 +157,10 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   const Points& points_;
   const Model& model_;
   PatternOf pattern_of_;
-  BlockPattern pattern_;
+  BlockPattern of_model_;    // pattern without contacts
+  BlockPattern in_contact_;  // what these couple beside it
+  BlockPattern pattern_;     // of both
+  int version_of_pattern_ = 0;
   Workspace workspace_;
   std::vector<std::unique_ptr<TermPasses>> terms_;
   const IndexMap& index_map_;

@@ -18,6 +18,9 @@ class Energy {
 
   [[nodiscard]] virtual const Points& points() const = 0;
   [[nodiscard]] virtual const BlockPattern& pattern() const = 0;
+  /// Lets the pattern cover the points that are in contact at a state. Returns the version of the
+  /// pattern, which changes with it.
+  virtual int cover_contacts(const StateView& /*at*/) { return 0; }
   [[nodiscard]] virtual int threads() const = 0;
   /// Whether each off-diagonal block of its tangent is symmetric.
   [[nodiscard]] virtual bool has_symmetric_blocks() const = 0;

@@ -14,8 +14,13 @@ class KeptState {
     history_ = at.history;
     damage_ = at.damage;
     environment_ = at.environment;
+    foreseen_.assign(at.foreseen.begin(), at.foreseen.end());
   }
-  [[nodiscard]] StateView view() const { return {displacement_, history_, damage_, environment_}; }
+  [[nodiscard]] StateView view() const {
+    StateView view(displacement_, history_, damage_, environment_);
+    view.foreseen = foreseen_;
+    return view;
+  }
   /// Current positions of points with these reference positions.
   [[nodiscard]] std::vector<double> positions(std::vector<double> reference) const {
     for (std::size_t k = 0; k < displacement_.size(); ++k) reference[k] += displacement_[k];
@@ -27,6 +32,7 @@ class KeptState {
   History history_;
   Damage damage_ = Damage::grows;
   SharedEnvironment environment_;
+  std::vector<double> foreseen_;
 };
 
 }  // namespace peristat

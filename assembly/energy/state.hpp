@@ -46,6 +46,9 @@ struct StateView {
   /// not needed.
   std::span<const Tensor> curvature{};
   SharedEnvironment environment;
+  /// For the predictor of a step: the displacement that it is expected to lead to. A contact that
+  /// touches here, or is closed there, is then a linear spring. Empty: contacts follow their law.
+  std::span<const double> foreseen{};
 
   /// Eigenstretch per point, or empty.
   [[nodiscard]] std::span<const double> eigenstretch() const {

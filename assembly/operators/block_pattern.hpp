@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -45,6 +46,15 @@ class BlockPattern : public Couplings {
   }
 
   [[nodiscard]] Offset blocks() const { return static_cast<Offset>(partner.size()); }
+
+  /// A pattern with the same rows that needs nothing else to outlive it.
+  [[nodiscard]] BlockPattern kept() const {
+    return own_ ? *this : of_rows({offset.begin(), offset.end()}, {partner.begin(), partner.end()});
+  }
+  [[nodiscard]] friend bool operator==(const BlockPattern& one, const BlockPattern& other) {
+    return std::ranges::equal(one.offset, other.offset) &&
+           std::ranges::equal(one.partner, other.partner);
+  }
 
   /// Positions in this pattern of the blocks of one of its terms, in the order of the couplings;
   /// empty: the two orders agree.

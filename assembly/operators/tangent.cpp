@@ -103,9 +103,7 @@ Tangent::Tangent(const BlockPattern& of, int dimension_of_points, int threads, B
       blocks(stored_as),
       off_diagonal(std::size_t(of.blocks()) * block_size()),
       position(std::size_t(of.points()) * dimension) {
-  for (const RowRange& range : ranges) {
-    spilled.emplace_back(std::size_t(range.touched_end - range.last) * std::size_t(dimension));
-  }
+  make_room_for_spills();
 }
 
 Tangent::Tangent(const Energy& energy)
@@ -135,7 +133,24 @@ void Tangent::add_to_block(Offset block, std::span<const double> entries) {
   }
 }
 
+void Tangent::take_pattern(const BlockPattern& of, int version_of_it) {
+  pattern = of;
+  version = version_of_it;
+  ranges = partition_rows(of, threads());
+  off_diagonal.assign(std::size_t(of.blocks()) * block_size(), 0.0);
+  make_room_for_spills();
+}
+
+void Tangent::make_room_for_spills() {
+  spilled.clear();
+  for (const RowRange& range : ranges) {
+    spilled.emplace_back(std::size_t(range.touched_end - range.last) * std::size_t(dimension));
+  }
+}
+
 void Tangent::linearise(Energy& energy, const StateView& at, double projection) {
+  const int version_now = energy.cover_contacts(at);
+  if (version_now != version) take_pattern(energy.pattern(), version_now);
   energy.forms().blocks->tangent(at, *this, projection, Write::over);
 }
 

@@ -31,6 +31,8 @@ struct Tangent : TangentOperator {
   /// Position of entry (r, c) in a stored block.
   [[nodiscard]] std::size_t place_in_block(int r, int c) const;
 
+  /// Takes another pattern of the same points; the blocks are then undefined.
+  void take_pattern(const BlockPattern& of, int version_of_it);
   /// Makes all blocks zero.
   void clear();
   /// Adds dimension x dimension numbers, row major, to an off-diagonal block [N/m].
@@ -49,6 +51,9 @@ struct Tangent : TangentOperator {
   /// Per thread, contributions of a product to the rows of later threads; overwritten by each
   /// product.
   mutable std::vector<std::vector<double>> spilled;
+
+ private:
+  void make_room_for_spills();
 };
 
 }  // namespace peristat

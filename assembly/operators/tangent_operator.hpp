@@ -22,6 +22,7 @@ struct TangentOperator {
   virtual ~TangentOperator() = default;
 
   BlockPattern pattern;
+  int version = 0;  ///< of the pattern, see Energy::cover_contacts
   int dimension;
   std::vector<RowRange> ranges;       ///< rows of each thread
   std::vector<double> diagonal;       ///< points x d x d

@@ -81,6 +81,21 @@ class TermPasses {
   /// share of its points that the rank owns; otherwise all interactions on the rank count in full.
   [[nodiscard]] virtual bool shares_energy() const { return false; }
 
+  /// True for contacts, of which the three functions below tell.
+  [[nodiscard]] virtual bool has_contacts() const { return false; }
+  /// Contacts that count as closed where a predictor foresees a displacement (StateView::foreseen),
+  /// by numbers of the term's own.
+  [[nodiscard]] virtual std::vector<Index> closed_contacts(const StateView&) { return {}; }
+  /// Largest share of a step, from 0 to 1, that no contact passes its largest depth within.
+  [[nodiscard]] virtual double longest_step(const StateView&, std::span<const double> /*step*/) {
+    return 1.0;
+  }
+  /// Points that contacts couple at a state, beside those of Term::couplings. The passes own the
+  /// arrays.
+  [[nodiscard]] virtual std::optional<Couplings> contact_couplings(const StateView&) {
+    return std::nullopt;
+  }
+
   /// Adds to every point its equal share of the virials of its interactions, sum_a dE/dx_a (x) A_a
   /// with the reference arms A_a to their other points [J]: points x dimension x dimension, row
   /// major, the first index that of the force. Loads and supports have none.

@@ -47,7 +47,12 @@ void SolverLadder::count_pivots(bool counts) {
 
 LinearOutcome SolverLadder::factorize(const TangentOperator& tangent, FactorUse use) {
   tangent_ = &tangent;
-  LinearOutcome outcome = solver_->factorize(tangent, use);
+  LinearOutcome outcome = LinearOutcome::solved;
+  if (tangent.version != version_) {
+    version_ = tangent.version;
+    outcome = analyze(tangent.pattern, *free_);
+  }
+  if (outcome == LinearOutcome::solved) outcome = solver_->factorize(tangent, use);
   while (is_the_solvers_own(outcome) && rung_ + 1 < rungs_.size()) {
     outcome = climb_down(outcome);
     if (outcome == LinearOutcome::solved) outcome = solver_->factorize(tangent, use);

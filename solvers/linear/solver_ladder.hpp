@@ -48,6 +48,7 @@ class SolverLadder : public LinearSolver {
   std::optional<BlockPattern> pattern_;
   const FreeDofs* free_ = nullptr;
   const TangentOperator* tangent_ = nullptr;
+  int version_ = 0;          // of the pattern
   LinearStatistics before_;  // of the earlier rungs
   bool counts_pivots_ = true;
 };

@@ -70,10 +70,12 @@ struct Trial {
   double total_energy = 0.0;           ///< stored energy - f_ext.u [J]
   double residual_norm = 0.0;          ///< 2-norm of f_ext - dE/dx over free degrees of freedom [N]
   bool degenerate = false;
+  std::span<const double> foreseen{};  ///< see StateView
 
   [[nodiscard]] StateView at(Damage damage = Damage::grows) const {
     StateView view(displacement, history, damage, environment);
     view.curvature = curvature;
+    view.foreseen = foreseen;
     return view;
   }
 };

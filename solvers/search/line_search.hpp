@@ -19,7 +19,8 @@ struct LineSearchResult {
   int degenerate = 0;  ///< trials in which a measure had no gradient, or a value was not finite
 };
 
-/// Finds the largest step length 1, shrink, shrink^2, … along `direction` (zero on prescribed
+/// Finds the largest step length 1, shrink, shrink^2, …, or these times Assembler::longest_step,
+/// along `direction` (zero on prescribed
 /// degrees of freedom) that lowers the total energy sufficiently; `trial` becomes the accepted
 /// state.
 ///

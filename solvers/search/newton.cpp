@@ -57,13 +57,7 @@ class NewtonSearch {
                         ? options.scale
                         : residual_scale(problem, external_force_, start_gradient_, current_);
     if (current_.environment) {
-      Trial there;
-      there.displacement = from.displacement;
-      there.history = from.history;
-      there.environment = current_.environment;
-      evaluate(problem, external_force_, there, damage_);
-      start_gradient_ = std::move(there.gradient);
-      start_curvature_ = std::move(there.curvature);
+      find_start_gradient();
       if (options.scale <= 0.0) {
         result_.scale =
             std::max(result_.scale, environment_norm(problem, start(), start_gradient_));
@@ -88,7 +82,19 @@ class NewtonSearch {
   [[nodiscard]] StateView start() const {
     StateView view(from_.displacement, from_.history, damage_, current_.environment);
     view.curvature = start_curvature_;
+    view.foreseen = foreseen_;
     return view;
+  }
+
+  void find_start_gradient() {
+    Trial there;
+    there.displacement = from_.displacement;
+    there.history = from_.history;
+    there.environment = current_.environment;
+    there.foreseen = foreseen_;
+    evaluate(problem_, external_force_, there, damage_);
+    start_gradient_ = std::move(there.gradient);
+    start_curvature_ = std::move(there.curvature);
   }
 
   Outcome search() {
@@ -165,8 +171,7 @@ class NewtonSearch {
                               ? FactorUse::factorize_now
                               : FactorUse::may_reuse;
     const LinearOutcome linear =
-        is_predictor ? linearisation_.solve(start(), start_gradient_, row.projection, use,
-                                            current_.displacement, tolerance, direction_)
+        is_predictor ? predict(row.projection, use, tolerance)
                      : linearisation_.solve(current_.at(damage_), current_.gradient, row.projection,
                                             use, {}, tolerance, direction_);
     row.linear_iterations = solver_.last_iterations();
@@ -180,6 +185,40 @@ class NewtonSearch {
       start_inertia_ = result_.inertia;
     }
     return linear;
+  }
+
+  /// Finds the direction of the predictor. Contacts have no stiffness before they press: those that
+  /// the predictor foresees as closed count as springs, in rounds until they are those that it
+  /// closes.
+  LinearOutcome predict(double projection, FactorUse use, double tolerance) {
+    constexpr int most_rounds = 6;
+    Assembler& assembler = problem_.assembler;
+    if (!assembler.has_contacts()) return solve_at_start(projection, use, tolerance);
+    // A projected tangent is that of the last exact one.
+    if (projection > 0.0 && !foreseen_.empty()) return solve_at_start(projection, use, tolerance);
+    foreseen_ = from_.displacement;
+    std::vector<Index> closed = assembler.closed_contacts(start());
+    LinearOutcome linear = LinearOutcome::solved;
+    for (int round = 0; round < most_rounds; ++round) {
+      find_start_gradient();
+      linear = solve_at_start(projection, use, tolerance);
+      if (linear != LinearOutcome::solved) return linear;
+      std::vector<double> next = current_.displacement;
+      add_scaled(next, 1.0, direction_);
+      foreseen_.swap(next);
+      std::vector<Index> now = assembler.closed_contacts(start());
+      if (now == closed) {
+        foreseen_.swap(next);
+        return linear;
+      }
+      closed = std::move(now);
+    }
+    return linear;
+  }
+
+  LinearOutcome solve_at_start(double projection, FactorUse use, double tolerance) {
+    return linearisation_.solve(start(), start_gradient_, projection, use, current_.displacement,
+                                tolerance, direction_);
   }
 
   void release_damage() {
@@ -213,6 +252,7 @@ class NewtonSearch {
   Trial current_, next_;
   std::vector<Tensor> start_curvature_;
   std::vector<double> start_gradient_;  // dE/dx at start()
+  std::vector<double> foreseen_;        // displacement behind the predictor; empty: no contacts
   std::vector<double> direction_;
   std::optional<Inertia> start_inertia_;
   double last_residual_ = 0.0, last_projection_ = 0.0;
