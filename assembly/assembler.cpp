@@ -182,6 +182,7 @@ Evaluation Assembler::release(std::span<const double> displacement, History& his
         damage_bonds_alone(bonds, points_, drives(at()), history.change(model_.slot_of(bonds)));
   }
   found.moves_equilibrium = found.growth.degrading > 0;
+  if (found.moves_equilibrium) history.note_damage();
   return found;
 }
 
@@ -190,6 +191,7 @@ Evaluation Assembler::commit(std::span<const double> displacement, History& hist
   Evaluation found = release(displacement, history, environment);
   for_each_term([&](TermPasses& term, Write how) {
     const Evaluation of_term = term.commit(displacement, environment, history, gradient, how);
+    if (of_term.growth.degrading > 0) history.note_damage();
     found += of_part(term, {displacement, history, Damage::grows, environment}, of_term);
   });
   cut_struts(displacement, history, gradient, environment, found);
@@ -201,7 +203,10 @@ Evaluation Assembler::commit_forces(std::span<const double> displacement, Histor
                                     const SharedEnvironment& environment) {
   Evaluation found = release(displacement, history, environment);
   for_each_term([&](TermPasses& term, Write how) {
-    found += term.commit_forces(displacement, environment, history, gradient, how);
+    const Evaluation of_term =
+        term.commit_forces(displacement, environment, history, gradient, how);
+    if (of_term.growth.degrading > 0) history.note_damage();
+    found += of_term;
   });
   cut_struts(displacement, history, gradient, environment, found);
   return of_all(found, gradient);
@@ -295,6 +300,10 @@ double Assembler::longest_step(const StateView& at, std::span<const double> step
   for_each_term(
       [&](TermPasses& term, Write) { longest = std::min(longest, term.longest_step(at, step)); });
   return has_contacts() ? -index_map_.ranks().max(-longest) : longest;
+}
+
+void Assembler::add_contact_row_sums(const StateView& at, std::span<double> sums) {
+  for_each_term([&](TermPasses& term, Write) { term.add_contact_row_sums(at, sums); });
 }
 
 int Assembler::cover_contacts(const StateView& at) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <utility>
@@ -21,6 +23,12 @@ class History {
     return *terms_[term];
   }
 
+  /// Number that differs between histories that leave other integrities to bonds: equal ones leave
+  /// the same.
+  [[nodiscard]] std::uint64_t version() const { return version_; }
+  /// To be called after integrities have changed in the arrays that `change` returns.
+  void note_damage() { version_ = next_version(); }
+
   /// Array of a term for writing, copied first if other histories share it.
   [[nodiscard]] std::span<double> change(std::size_t term) {
     std::shared_ptr<std::vector<double>>& array = terms_.at(term);
@@ -31,9 +39,16 @@ class History {
   void replace(std::size_t term, std::vector<double> array) {
     if (term >= terms_.size()) terms_.resize(term + 1);
     terms_[term] = std::make_shared<std::vector<double>>(std::move(array));
+    note_damage();
   }
 
  private:
+  static std::uint64_t next_version() {
+    static std::atomic<std::uint64_t> last = 0;
+    return ++last;
+  }
+
+  std::uint64_t version_ = 0;
   std::vector<std::shared_ptr<std::vector<double>>> terms_;
 };
 

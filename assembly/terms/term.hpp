@@ -81,7 +81,7 @@ class TermPasses {
   /// share of its points that the rank owns; otherwise all interactions on the rank count in full.
   [[nodiscard]] virtual bool shares_energy() const { return false; }
 
-  /// True for contacts, of which the three functions below tell.
+  /// True for contacts, of which the functions below tell.
   [[nodiscard]] virtual bool has_contacts() const { return false; }
   /// Contacts that count as closed where a predictor foresees a displacement (StateView::foreseen),
   /// by numbers of the term's own.
@@ -90,6 +90,9 @@ class TermPasses {
   [[nodiscard]] virtual double longest_step(const StateView&, std::span<const double> /*step*/) {
     return 1.0;
   }
+  /// Adds upper bounds of the sums of the absolute entries of the rows of contacts [N/m].
+  /// @param sums per degree of freedom
+  virtual void add_contact_row_sums(const StateView&, std::span<double> /*sums*/) {}
   /// Points that contacts couple at a state, beside those of Term::couplings. The passes own the
   /// arrays.
   [[nodiscard]] virtual std::optional<Couplings> contact_couplings(const StateView&) {

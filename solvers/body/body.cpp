@@ -11,6 +11,7 @@
 #include "assembly/terms/springs/foundation_term.hpp"
 #include "assembly/terms/springs/inertia_term.hpp"
 #include "solvers/body/body_memory.hpp"
+#include "solvers/body/pair_contact.hpp"
 #include "solvers/body/require_memory_for.hpp"
 #include "solvers/body/surface_sites.hpp"
 #include "solvers/formulations/check_specification.hpp"
@@ -302,6 +303,7 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& gi
   BodySpecification of = given;
   take_horizons(points, of, SoleRank());
   check_specification(of, points);
+  refuse_contacts_with_constraints(of);
   const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
   add_images(points, of.constraints.symmetries, periods, reach_of_images(of, points, SoleRank()));
   auto body = std::make_unique<Body>();
@@ -333,6 +335,7 @@ void refuse_without_ranks(const BodySpecification& of) {
   };
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.controls.empty()) refuse("controls");
+  if (!of.contacts.empty()) refuse("contacts");
   if (cuts_struts(of)) refuse("damage.struts");
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const LoadSpecification::Kind kind = of.loads[k].kind;
@@ -374,6 +377,7 @@ void add_terms_of_conditions(Model& model, const Body& body) {
   }
   const Foundations& foundations = body.conditions->foundations();
   if (!foundations.none()) model.add(std::make_shared<FoundationTerm>(body.points, foundations));
+  if (auto contact = make_pair_contact(body)) model.add(std::move(contact));
   if (body.specification.has_inertia) model.add(std::make_shared<InertiaTerm>(body.points));
 }
 

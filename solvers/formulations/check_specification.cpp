@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "solvers/formulations/formulations.hpp"
+#include "solvers/formulations/specification/check_contacts.hpp"
 #include "solvers/formulations/specification/check_damage.hpp"
 #include "solvers/formulations/specification/for_each_material.hpp"
 #include "solvers/formulations/specification/require.hpp"
@@ -408,6 +409,7 @@ void check_specification(const BodySpecification& of, const Points& points) {
   check_horizon(of, points);
   check_corrections(of, points);
   check_horizon_shape(of, points);
+  check_contacts(of, points);
   const Formulation& formulation = formulation_of(of);
   if (formulation.check_body) formulation.check_body(of, points);
   for (std::size_t k = 0; k < of.cracks.size(); ++k)

@@ -57,10 +57,11 @@ class Relaxation {
     std::vector<double> sums(at_.displacement.size());
     tangent.absolute_row_sums(sums);
     for (std::size_t e = 0; e < dofs_.size(); ++e) {
-      const double density = 0.25 * options_.mass_factor * sums[dofs_[e]];
+      const double density = density_of(sums[dofs_[e]]);
       // A point without an unbroken bond stays where it is.
       inverse_density_[e] = density > 0.0 ? 1.0 / density : 0.0;
     }
+    if (problem_.assembler.has_contacts()) row_sums_ = std::move(sums);
   }
 
   /// Computes forces, residual and damage at the present displacement.
@@ -80,6 +81,7 @@ class Relaxation {
       at_.follower_force.resize(last_follower_force_.size());
       assembler.follower_force(at_.at(), at_.follower_force);
     }
+    make_room_for_contacts();
     residual_.swap(last_residual_);
     const std::vector<double>& force = result_.external_force;
     fold_followers(problem_, force, at_);
@@ -211,6 +213,23 @@ class Relaxation {
   }
 
  private:
+  [[nodiscard]] double density_of(double row_sum) const {
+    return 0.25 * options_.mass_factor * row_sum;
+  }
+
+  /// Raises the densities of points whose contacts press, which are stiffer than the bonds.
+  void make_room_for_contacts() {
+    if (row_sums_.empty()) return;
+    std::vector<double> sums(row_sums_.size());
+    problem_.assembler.add_contact_row_sums(at_.at(), sums);
+    for (std::size_t e = 0; e < dofs_.size(); ++e) {
+      const double of_contacts = sums[dofs_[e]];
+      if (!(of_contacts > 0.0)) continue;
+      const double density = density_of(row_sums_[dofs_[e]] + of_contacts);
+      inverse_density_[e] = std::min(inverse_density_[e], 1.0 / density);
+    }
+  }
+
   /// Moves the environment to a fraction of the path and adds half of its work; the other half is
   /// added in the next state.
   void heat_up(double share) {
@@ -295,8 +314,9 @@ class Relaxation {
   std::vector<double>& velocity_;  // V^(n-1/2), and after `accelerate` V^(n+1/2)
   RelaxationResult& result_;
   Trial& at_;
-  std::vector<FourSums> partial_;                 // per thread
-  std::vector<double> inverse_density_;           // 1/lambda; 0 where nothing resists
+  std::vector<FourSums> partial_;        // per thread
+  std::vector<double> inverse_density_;  // 1/lambda; 0 where nothing resists
+  std::vector<double> row_sums_;         // without contacts that close later; empty: there are none
   std::vector<double> residual_, last_residual_;  // F^n, F^(n-1)
   std::vector<Index> held_;                       // prescribed ones that count on this rank
   std::vector<double> last_reaction_;             // dE/dx there

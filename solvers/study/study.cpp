@@ -71,6 +71,32 @@ void refuse_modes_with_struts(const Body& body, const StudyOptions& options) {
                    "\"keep\"");
 }
 
+/// Refuses modes that do not follow contacts that close and open.
+void refuse_modes_with_contacts(const Body& body, const StudyOptions& options) {
+  if (body.specification.contacts.empty()) return;
+  const Mode mode = options.loading.mode;
+  const bool flows = (mode == Mode::relaxation || mode == Mode::adaptive) &&
+                     options.loading.relaxation.method == RelaxationMethod::flow;
+  if (flows) {
+    throw InputError("loading.relaxation.method", "flow",
+                     "does not follow contacts that close and open; take \"dynamic\"");
+  }
+  if (mode == Mode::dynamics && options.loading.dynamics.scheme == MotionScheme::verlet) {
+    throw InputError("dynamics.scheme", "verlet",
+                     "has no step that is stable for contact of points yet; take \"newmark\"");
+  }
+  if (mode == Mode::path || mode == Mode::arc_length) {
+    throw InputError("loading.mode", std::string(mode.name),
+                     "does not follow contacts of points that close and open yet; take newton, "
+                     "adaptive, relaxation or dynamics");
+  }
+  if (body.conditions->control()) {
+    throw InputError("controls", "",
+                     "a control does not follow contacts of points that close and open yet; "
+                     "prescribe displacements");
+  }
+}
+
 /// Points that fail one by one have no strength that a step could be led to, and what follows one
 /// has no stand-in.
 void refuse_modes_of_failing_points(const Body& body, const StudyOptions& options) {
@@ -137,6 +163,7 @@ void check_study(const Body& body, const StudyOptions& options) {
   refuse_modes_without_potential(body, options);
   refuse_events_of_states(body, options);
   refuse_modes_with_struts(body, options);
+  refuse_modes_with_contacts(body, options);
   refuse_modes_of_failing_points(body, options);
   const bool is_implicit = moves && options.loading.dynamics.scheme == MotionScheme::newmark;
   if (is_implicit != body.specification.has_inertia) {

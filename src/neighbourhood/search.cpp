@@ -3,116 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numeric>
 
+#include "src/neighbourhood/cell_list.hpp"
 #include "src/neighbourhood/horizon.hpp"
 
 namespace peristat {
 namespace {
-
-/// Cells per search radius. Half the radius leaves 3.7 candidates per bond in 3D instead of 6.1
-/// with cells as large as the radius.
-constexpr int cells_per_radius = 2;
-
-/// Some points in cells of at least radius / cells_per_radius; the last direction is the fastest.
-/// Points of a cell are contiguous, in the order of `members`.
-template <int D>
-struct CellList {
-  std::array<double, D> lower{};
-  std::array<double, D> cells_per_length{};
-  std::array<int, D> extent{};
-  std::vector<Index> begin;                     // first place of each cell, cells + 1
-  std::vector<Index> point;                     // points in the order of their cells
-  std::vector<std::array<double, D>> position;  // their positions in this order
-
-  CellList(const Points& points, const std::vector<Index>& members, double radius) {
-    std::array<double, D> upper;
-    lower.fill(std::numeric_limits<double>::infinity());
-    upper.fill(-std::numeric_limits<double>::infinity());
-    const auto count = static_cast<Index>(members.size());
-    const double* reference = points.reference.data();
-    for (const Index i : members) {
-      for (int c = 0; c < D; ++c) {
-        lower[c] = std::min(lower[c], reference[std::size_t(i) * D + c]);
-        upper[c] = std::max(upper[c], reference[std::size_t(i) * D + c]);
-      }
-    }
-    // Many more cells than points would only cost memory: a cloud with far outliers gets larger
-    // ones.
-    const double most_cells = 8.0 * count + 64.0;
-    std::array<double, D> wanted;
-    for (int c = 0; c < D; ++c) {
-      const double cells_along =
-          (upper[c] - lower[c]) * cells_per_radius / inclusive_radius(radius);
-      wanted[c] = std::clamp(std::floor(cells_along), 1.0, most_cells);
-    }
-    const auto total = [&] {
-      return std::accumulate(wanted.begin(), wanted.end(), 1.0, std::multiplies<>());
-    };
-    while (total() > most_cells) {
-      double& largest = *std::max_element(wanted.begin(), wanted.end());
-      largest = std::ceil(0.5 * largest);
-    }
-    const std::size_t cells = std::size_t(total());
-    for (int c = 0; c < D; ++c) {
-      const double span = upper[c] - lower[c];
-      extent[c] = static_cast<int>(wanted[c]);
-      cells_per_length[c] = span > 0.0 ? extent[c] / span : 0.0;
-    }
-    std::vector<Index> cell(members.size());
-    begin.assign(cells + 1, 0);
-    for (Index k = 0; k < count; ++k) {
-      std::size_t flat = 0;
-      for (int c = 0; c < D; ++c) {
-        flat = flat * extent[c] + coordinate(reference[std::size_t(members[k]) * D + c], c);
-      }
-      cell[k] = static_cast<Index>(flat);
-      ++begin[flat + 1];
-    }
-    for (std::size_t k = 0; k < cells; ++k) begin[k + 1] += begin[k];
-    std::vector<Index> next(begin.begin(), begin.end() - 1);
-    point.resize(count);
-    position.resize(count);
-    for (Index k = 0; k < count; ++k) {
-      const Index place = next[cell[k]]++;
-      point[place] = members[k];
-      for (int c = 0; c < D; ++c) position[place][c] = reference[std::size_t(members[k]) * D + c];
-    }
-  }
-
-  [[nodiscard]] int coordinate(double at, int direction) const {
-    // Clamped before the conversion: a body whose thickness is round-off has huge numbers here.
-    const double cell = (at - lower[direction]) * cells_per_length[direction];
-    return static_cast<int>(std::clamp(cell, 0.0, extent[direction] - 1.0));
-  }
-
-  /// Calls visit(first, last) for the places of each run of cells along the fastest direction.
-  template <class Visit>
-  void for_each_run(const std::array<double, D>& at, double radius, const Visit& visit) const {
-    std::array<int, D> from, to;
-    for (int c = 0; c < D; ++c) {
-      from[c] = coordinate(at[c] - radius, c);
-      to[c] = coordinate(at[c] + radius, c);
-    }
-    if constexpr (D == 1) {
-      visit(begin[from[0]], begin[to[0] + 1]);
-    } else if constexpr (D == 2) {
-      for (int a = from[0]; a <= to[0]; ++a) {
-        const std::size_t row = std::size_t(a) * extent[1];
-        visit(begin[row + from[1]], begin[row + to[1] + 1]);
-      }
-    } else {
-      for (int a = from[0]; a <= to[0]; ++a) {
-        for (int b = from[1]; b <= to[1]; ++b) {
-          const std::size_t row = (std::size_t(a) * extent[1] + b) * extent[2];
-          visit(begin[row + from[2]], begin[row + to[2] + 1]);
-        }
-      }
-    }
-  }
-};
 
 /// Rows that are searched together. Their number does not depend on the number of threads, so that
 /// kinds of bonds do not, either.
@@ -206,7 +104,7 @@ Bonds bonds_of_rows(const Points& points, int threads, const FindRow& find_row) 
 
 template <int D>
 Bonds search(const Points& points, double radius, int threads) {
-  const CellList<D> cells(points, all_of(points), radius);
+  const CellList<D> cells(points.reference, all_of(points), radius);
   const double longest = inclusive_radius(radius);
   const double squared_longest = longest * longest;
   return bonds_of_rows(points, threads, [&](Index i, std::vector<Candidate>& row) {
@@ -223,7 +121,7 @@ struct Level {
   std::vector<double> squared;  // inclusive radii in the order of the list
 
   Level(const Points& points, const std::vector<Index>& members, std::span<const double> radii)
-      : largest(largest_of(members, radii)), cells(points, members, largest) {
+      : largest(largest_of(members, radii)), cells(points.reference, members, largest) {
     for (const Index i : cells.point) {
       const double radius = inclusive_radius(radii[std::size_t(i)]);
       squared.push_back(radius * radius);
@@ -273,7 +171,7 @@ Bonds search(const Points& points, std::span<const double> radii, int threads) {
 
 template <int D>
 std::vector<std::int32_t> count(const Points& points, Index first, double radius, int threads) {
-  const CellList<D> cells(points, all_of(points), radius);
+  const CellList<D> cells(points.reference, all_of(points), radius);
   const double longest = inclusive_radius(radius);
   const double squared_longest = longest * longest;
   std::vector<std::int32_t> neighbours(static_cast<std::size_t>(first), 0);

@@ -81,6 +81,7 @@ const std::map<std::string, std::string>& keys_of_members() {
       {"regions", "region"},
       {"interfaces", "interface"},
       {"foundations", "foundation"},
+      {"contacts", "contact"},
       {"crack_tips", "crack_tip"},
       {"rigid_sets", "rigid"},
       {"rollers", "roller"},

@@ -5,6 +5,7 @@
 
 #include "cases/runner/input/body_keys.hpp"
 #include "cases/runner/input/constraint_keys.hpp"
+#include "cases/runner/input/contact_keys.hpp"
 #include "cases/runner/input/key_kinds.hpp"
 #include "cases/runner/input/load_keys.hpp"
 #include "cases/runner/input/loading_keys.hpp"
@@ -93,6 +94,8 @@ Table<Case> all_keys() {
        K("foundation", &Case::foundations, foundation_keys(),
          "tables: springs between a part of the body and the ground")
            .on_ranks(),
+       K("contact", &Case::contacts, contact_keys(),
+         "tables: contact of points that no whole bond joins"),
        K("eigenstrain", in(&Case::eigenstrains, &Eigenstrains::given), eigenstrain_keys(),
          "tables: strains without stored energy, such as growth or drying")
            .on_ranks(),

@@ -66,6 +66,7 @@ const Formulation& bond_formulation() {
                                                  Option::horizons,
                                                  Option::pressures,
                                                  Option::images,
+                                                 Option::contacts,
                                                  Option::events},
                                        .part_needs_lattice = false,
                                        .has_quadrature_of_bonds = true,

@@ -129,7 +129,7 @@ const Formulation& cpd_formulation() {
       .takes = {Option::potential, Option::poisson_ratio, Option::constants, Option::calibration,
                 Option::thermal_expansion, Option::strength, Option::softening,
                 Option::critical_stretch, Option::weights, Option::interfaces, Option::eigenstrains,
-                Option::pressures, Option::images, Option::events, Option::drive},
+                Option::pressures, Option::images, Option::contacts, Option::events, Option::drive},
       .least_dimension = 2,
       .part_bonds = PartBonds::among_neighbours,
       .most_points = [](int dimension) { return dimension + 1; },

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "assembly/terms/collocation/collocation_network.hpp"
+#include "solvers/formulations/specification/contact_specification.hpp"
 #include "solvers/formulations/specification/material_specification.hpp"
 #include "src/conditions/conditions.hpp"
 #include "src/conditions/constraint_specification.hpp"
@@ -88,6 +89,7 @@ struct BodySpecification {
   std::vector<SupportSpecification> supports{};
   std::vector<LoadSpecification> loads{};
   std::vector<FoundationSpecification> foundations{};
+  std::vector<ContactSpecification> contacts{};  ///< of points
   ConstraintSpecification constraints{};
   Eigenstrains eigenstrains{};
   /// Terms of the displacement that is controlled in the place of `load`, see DisplacementControl;

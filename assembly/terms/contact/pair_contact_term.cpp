@@ -1,0 +1,306 @@
+#include "assembly/terms/contact/pair_contact_term.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "assembly/terms/contact/near_pairs.hpp"
+#include "assembly/terms/contact/swept_pairs.hpp"
+#include "assembly/terms/workspace.hpp"
+
+namespace peristat {
+namespace {
+
+/// Depth over the largest from which a contact counts as touching: rest is at 0 to round-off.
+constexpr double touching = -1e-9;
+
+/// A contact at a state.
+struct TouchingPair {
+  const ContactPair& pair;
+  double distance = 0.0;     ///< r [m]
+  Coordinates normal{};      ///< from i to j
+  double depth = 0.0;        ///< x
+  double energy = 0.0;       ///< [J]
+  double force = 0.0;        ///< that presses [N]; below 0 only where it is foreseen
+  double stiffness = 0.0;    ///< along the normal [N/m]
+  bool is_foreseen = false;  ///< a spring of a predictor
+};
+
+class PairContactPasses : public TermPasses, BlockTangent {
+ public:
+  PairContactPasses(const PairContactTerm& term, const TermSetting& setting)
+      : pairs_(term.pairs()),
+        points_(setting.points),
+        pattern_(setting.pattern),
+        threads_(setting.workspace.threads()),
+        near_(pairs_, setting.model, threads_),
+        near_foreseen_(pairs_, setting.model, threads_) {}
+
+  Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
+    if (how == Write::over) std::ranges::fill(gradient, 0.0);
+    Evaluation found;
+    found.degenerate = !for_each_touching(at, [&](const TouchingPair& touching_pair) {
+      found.energy += touching_pair.energy;
+      found.degenerate |= !touching_pair.is_foreseen && !(touching_pair.depth < 1.0);
+      if (!gradient.empty()) add(touching_pair, touching_pair.force, gradient);
+    }) || found.degenerate;
+    return found;
+  }
+
+  [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
+
+  /// Projection drops the pull across the normal, -f / r.
+  void tangent(const StateView& at, Tangent& tangent, double projection, Write how) override {
+    if (how == Write::over) tangent.clear();
+    const auto d = std::size_t(points_.dimension);
+    std::vector<double> block(d * d);
+    for_each_touching(at, [&](const TouchingPair& contact) {
+      const double across = stiffness_across(contact, projection);
+      for (std::size_t r = 0; r < d; ++r) {
+        for (std::size_t c = 0; c < d; ++c) {
+          const double along = contact.normal[r] * contact.normal[c];
+          const double entry = contact.stiffness * along + across * ((r == c ? 1.0 : 0.0) - along);
+          block[r * d + c] = -entry;
+          tangent.diagonal[std::size_t(contact.pair.i) * d * d + r * d + c] += entry;
+          tangent.diagonal[std::size_t(contact.pair.j) * d * d + r * d + c] += entry;
+        }
+      }
+      tangent.add_to_block(place(contact.pair), block);
+    });
+  }
+
+  void product(const StateView& at, std::span<const double> v, double projection,
+               std::span<double> product, Write how) override {
+    if (how == Write::over) std::ranges::fill(product, 0.0);
+    const auto d = std::size_t(points_.dimension);
+    for_each_touching(at, [&](const TouchingPair& contact) {
+      const std::size_t i = std::size_t(contact.pair.i) * d, j = std::size_t(contact.pair.j) * d;
+      const double across = stiffness_across(contact, projection);
+      double closing = 0.0;
+      for (std::size_t c = 0; c < d; ++c) closing += contact.normal[c] * (v[j + c] - v[i + c]);
+      for (std::size_t c = 0; c < d; ++c) {
+        const double force = across * (v[j + c] - v[i + c]) +
+                             (contact.stiffness - across) * closing * contact.normal[c];
+        product[i + c] -= force;
+        product[j + c] += force;
+      }
+    });
+  }
+
+  void point_energies(const StateView& at, std::span<double> energies, Write how) override {
+    if (how == Write::over) std::ranges::fill(energies, 0.0);
+    for_each_touching(at, [&](const TouchingPair& contact) {
+      energies[std::size_t(contact.pair.i)] += 0.5 * contact.energy;
+      energies[std::size_t(contact.pair.j)] += 0.5 * contact.energy;
+    });
+  }
+
+  /// The arm of two points that were no neighbours in the reference is the present one.
+  void add_virials(const StateView& at, std::span<double> virials) override {
+    const auto d = std::size_t(points_.dimension);
+    for_each_touching(at, [&](const TouchingPair& contact) {
+      const Coordinates one = points_.position(contact.pair.i),
+                        other = points_.position(contact.pair.j);
+      Coordinates arm{};
+      double squared = 0.0;
+      for (std::size_t c = 0; c < d; ++c) {
+        arm[c] = other[c] - one[c];
+        squared += arm[c] * arm[c];
+      }
+      const double longest = 2.0 * pairs_.reach();
+      for (std::size_t c = 0; c < d && squared > longest * longest; ++c) {
+        arm[c] = contact.distance * contact.normal[c];
+      }
+      for (const Index point : {contact.pair.i, contact.pair.j}) {
+        for (std::size_t r = 0; r < d; ++r) {
+          for (std::size_t c = 0; c < d; ++c) {
+            virials[(std::size_t(point) * d + r) * d + c] -=
+                0.5 * contact.force * contact.normal[r] * arm[c];
+          }
+        }
+      }
+    });
+  }
+
+  [[nodiscard]] bool has_contacts() const override { return true; }
+
+  std::vector<Index> closed_contacts(const StateView& at) override {
+    std::vector<Index> closed;
+    for_each_touching(at, [&](const TouchingPair& contact) {
+      closed.push_back(contact.pair.i);
+      closed.push_back(contact.pair.j);
+    });
+    return closed;
+  }
+
+  double longest_step(const StateView& at, std::span<const double> step) override {
+    return longest_swept_share(pairs_, at, step, near_);
+  }
+
+  void add_contact_row_sums(const StateView& at, std::span<double> sums) override {
+    const auto d = std::size_t(points_.dimension);
+    for_each_touching(at, [&](const TouchingPair& contact) {
+      double of_normal = 0.0;
+      for (std::size_t c = 0; c < d; ++c) of_normal += std::abs(contact.normal[c]);
+      const double across = std::abs(contact.force / contact.distance);
+      for (const Index point : {contact.pair.i, contact.pair.j}) {
+        for (std::size_t c = 0; c < d; ++c) {
+          sums[std::size_t(point) * d + c] +=
+              2.0 *
+              (contact.stiffness * std::abs(contact.normal[c]) * of_normal + across * double(d));
+        }
+      }
+    });
+  }
+
+  /// A predictor, which begins a search, looks anew, so that what follows does not depend on
+  /// earlier searches; later states keep what covers them.
+  std::optional<Couplings> contact_couplings(const StateView& at) override {
+    if (!is_finite(at.displacement)) return rows();
+    std::vector<std::pair<Index, Index>> wanted;
+    const auto want = [&](std::span<const NearPairs::Open> open) {
+      for (const NearPairs::Open& one : open) {
+        if (one.pair.bond < 0) wanted.emplace_back(one.pair.i, one.pair.j);
+      }
+    };
+    const bool is_new = !at.foreseen.empty();
+    if (!is_new) {
+      bool are_covered = true;
+      for_each_touching(at, [&](const TouchingPair& contact) {
+        are_covered &= contact.pair.bond >= 0 || has_row(contact.pair);
+      });
+      if (are_covered) return rows();
+      for (Index i = 0; i < points_.count(); ++i) {
+        for (Offset k = offset_[std::size_t(i)]; k < offset_[std::size_t(i) + 1]; ++k) {
+          wanted.emplace_back(i, partner_[std::size_t(k)]);
+        }
+      }
+    }
+    want(near_.found_at(at.displacement, at.history));
+    if (is_new && is_finite(at.foreseen)) {
+      want(near_foreseen_.found_at(at.foreseen, at.history));
+    }
+    take_rows(std::move(wanted));
+    return rows();
+  }
+
+ private:
+  /// Calls visit(TouchingPair) for all contacts that have an energy; a predictor's are springs.
+  /// @return false if the displacement is not finite
+  template <class Visit>
+  bool for_each_touching(const StateView& at, const Visit& visit) {
+    const bool foresees = !at.foreseen.empty();
+    const std::span<const double> deciding = foresees ? at.foreseen : at.displacement;
+    if (!is_finite(at.displacement) || !is_finite(deciding)) return false;
+    NearPairs& near = foresees ? near_foreseen_ : near_;
+    for (const NearPairs::Open& open : near.at(deciding, at.history)) {
+      const ContactPair& pair = open.pair;
+      const PairContactRule& rule = pairs_.rules()[std::size_t(pair.rule)];
+      const double deepest = rule.depth * pair.distance;
+      const auto [distance, normal] = gap(pair, deciding);
+      const double depth = (pair.distance - distance) / deepest;
+      if (foresees ? !(depth > touching) : !(depth > 0.0)) continue;
+      TouchingPair contact{pair, distance, normal, depth};
+      contact.is_foreseen = foresees;
+      if (foresees) {
+        std::tie(contact.distance, contact.normal) = gap(pair, at.displacement);
+        contact.depth = (pair.distance - contact.distance) / deepest;
+      }
+      const ContactLaw::Value of_law =
+          foresees ? closed_contact(contact.depth) : rule.law(contact.depth);
+      const double stiffness = open.share * pair.stiffness;
+      contact.energy = stiffness * deepest * deepest * of_law.value;
+      contact.force = stiffness * deepest * of_law.first;
+      contact.stiffness = stiffness * of_law.second;
+      visit(std::as_const(contact));
+    }
+    return true;
+  }
+
+  /// Distance of a pair, and the unit vector from i to j.
+  [[nodiscard]] std::pair<double, Coordinates> gap(const ContactPair& pair,
+                                                   std::span<const double> displacement) const {
+    const auto d = std::size_t(points_.dimension);
+    Coordinates arm{};
+    double squared = 0.0;
+    for (std::size_t c = 0; c < d; ++c) {
+      const std::size_t i = std::size_t(pair.i) * d + c, j = std::size_t(pair.j) * d + c;
+      arm[c] = points_.reference[j] - points_.reference[i] + (displacement[j] - displacement[i]);
+      squared += arm[c] * arm[c];
+    }
+    const double distance = std::sqrt(squared);
+    // Two points at one place push each other along x: the state is rejected.
+    if (!(distance > 0.0)) return {0.0, {1.0, 0.0, 0.0}};
+    for (double& component : arm) component /= distance;
+    return {distance, arm};
+  }
+
+  /// A foreseen spring is straight: its predictor is a linear problem.
+  [[nodiscard]] static double stiffness_across(const TouchingPair& contact, double projection) {
+    if (contact.is_foreseen || !(contact.distance > 0.0)) return 0.0;
+    return -(1.0 - projection) * contact.force / contact.distance;
+  }
+
+  void add(const TouchingPair& contact, double force, std::span<double> gradient) const {
+    const auto d = std::size_t(points_.dimension);
+    for (std::size_t c = 0; c < d; ++c) {
+      gradient[std::size_t(contact.pair.i) * d + c] += force * contact.normal[c];
+      gradient[std::size_t(contact.pair.j) * d + c] -= force * contact.normal[c];
+    }
+  }
+
+  [[nodiscard]] bool is_finite(std::span<const double> displacement) const {
+    const auto of_points = displacement.first(points_.reference.size());
+    return std::ranges::all_of(of_points, [](double u) { return std::isfinite(u); });
+  }
+
+  [[nodiscard]] Offset place(const ContactPair& pair) const {
+    const std::span<const Index> row = pattern_.of(pair.i);
+    const auto found = std::lower_bound(row.begin(), row.end(), pair.j);
+    if (found == row.end() || *found != pair.j) {
+      throw std::logic_error("the pattern of the tangent lacks points in contact");
+    }
+    return pattern_.offset[std::size_t(pair.i)] + (found - row.begin());
+  }
+
+  [[nodiscard]] std::optional<Couplings> rows() const {
+    if (partner_.empty()) return std::nullopt;
+    return Couplings(offset_, partner_);
+  }
+  [[nodiscard]] bool has_row(const ContactPair& pair) const {
+    if (offset_.empty()) return false;
+    const auto first = partner_.begin() + offset_[std::size_t(pair.i)],
+               last = partner_.begin() + offset_[std::size_t(pair.i) + 1];
+    return std::binary_search(first, last, pair.j);
+  }
+  void take_rows(std::vector<std::pair<Index, Index>> wanted) {
+    std::ranges::sort(wanted);
+    wanted.erase(std::ranges::unique(wanted).begin(), wanted.end());
+    offset_.assign(std::size_t(points_.count()) + 1, 0);
+    partner_.clear();
+    for (const auto& [i, j] : wanted) {
+      ++offset_[std::size_t(i) + 1];
+      partner_.push_back(j);
+    }
+    for (std::size_t i = 1; i < offset_.size(); ++i) offset_[i] += offset_[i - 1];
+  }
+
+  const ContactPairs& pairs_;
+  const Points& points_;
+  const BlockPattern& pattern_;
+  int threads_;
+  NearPairs near_, near_foreseen_;
+  std::vector<Offset> offset_;  // rows of contact_couplings
+  std::vector<Index> partner_;
+};
+
+}  // namespace
+
+std::unique_ptr<TermPasses> PairContactTerm::passes(const TermSetting& setting) const {
+  return std::make_unique<PairContactPasses>(*this, setting);
+}
+
+}  // namespace peristat

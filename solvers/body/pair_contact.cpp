@@ -1,0 +1,65 @@
+#include "solvers/body/pair_contact.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "assembly/terms/contact/pair_contact_term.hpp"
+#include "solvers/formulations/materials/point_materials.hpp"
+#include "src/core/input_error.hpp"
+#include "src/geometry/point_sizes.hpp"
+
+namespace peristat {
+namespace {
+
+PairContactRule rule_of(const ContactSpecification& of, const Points& points) {
+  PairContactRule rule{.law = {of.softness / of.depth},
+                       .depth = of.depth,
+                       .stiffness = of.stiffness,
+                       .distance = of.distance,
+                       .side = {},
+                       .has_two_sides = !of.with.empty()};
+  if (of.set.empty()) return rule;
+  rule.side.assign(std::size_t(points.count()), 0);
+  for (const Index point : points.sets.at(of.set)) rule.side[std::size_t(point)] = 1;
+  if (of.with.empty()) return rule;
+  for (const Index point : points.sets.at(of.with)) rule.side[std::size_t(point)] = 2;
+  return rule;
+}
+
+}  // namespace
+
+std::shared_ptr<Term> make_pair_contact(const Body& body) {
+  const BodySpecification& of = body.specification;
+  if (of.contacts.empty()) return nullptr;
+  const Points& points = body.points;
+  std::vector<PairContactRule> rules;
+  for (const ContactSpecification& contact : of.contacts) rules.push_back(rule_of(contact, points));
+  const PointMaterials materials(of, points);
+  std::vector<double> moduli;
+  for (const auto& [material, key, name] : materials.all()) {
+    moduli.push_back(formulation_of(*material)
+                         .moduli(*material, key, body.setting, points.spacing)
+                         .youngs_modulus);
+  }
+  std::vector<double> size, modulus;
+  for (Index i = 0; i < points.count(); ++i) {
+    size.push_back(size_of_point(points, i, body.setting.cross_section));
+    modulus.push_back(moduli[materials.of(i)]);
+  }
+  return std::make_shared<PairContactTerm>(
+      ContactPairs(points, body.model.bonds(), std::move(rules), std::move(size),
+                   std::move(modulus), body.model.failing_bonds() != nullptr));
+}
+
+void refuse_contacts_with_constraints(const BodySpecification& of) {
+  if (of.contacts.empty()) return;
+  const ConstraintSpecification& by = of.constraints;
+  const bool couples = !by.rigid_sets.empty() || !by.rollers.empty() || !by.linear.empty() ||
+                       !by.symmetries.empty() || !by.periods.empty();
+  if (!couples) return;
+  throw InputError("contacts", "",
+                   "contact of points is not for bodies with rigid sets, rollers, linear "
+                   "constraints, planes of symmetry and periods yet; take supports");
+}
+
+}  // namespace peristat

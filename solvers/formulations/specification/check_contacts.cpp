@@ -1,0 +1,74 @@
+#include "solvers/formulations/specification/check_contacts.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "solvers/formulations/specification/require.hpp"
+#include "src/conditions/points_of_set.hpp"
+
+namespace peristat {
+namespace {
+
+/// Points of a set, ascending; all without a name.
+std::vector<Index> members_of(const Points& points, const std::string& set,
+                              const std::string& key) {
+  if (!set.empty()) return points_of_set(points, set, key);
+  std::vector<Index> all(std::size_t(points.count()));
+  for (Index i = 0; i < points.count(); ++i) all[std::size_t(i)] = i;
+  return all;
+}
+
+bool have_a_common_point(const std::vector<Index>& a, const std::vector<Index>& b) {
+  std::vector<Index> common;
+  std::ranges::set_intersection(a, b, std::back_inserter(common));
+  return !common.empty();
+}
+
+struct Sides {
+  std::vector<Index> one, other;
+};
+
+}  // namespace
+
+void check_contacts(const BodySpecification& of, const Points& points) {
+  std::vector<Sides> before;
+  for (std::size_t k = 0; k < of.contacts.size(); ++k) {
+    const ContactSpecification& contact = of.contacts[k];
+    const std::string table = indexed("contacts", k);
+    const auto [stiffness_low, stiffness_high] = std::pair(1e-3, 1e3);
+    require_within(contact.stiffness, stiffness_low, stiffness_high, table + ".stiffness");
+    require_within(contact.depth, 0.01, 0.5, table + ".depth");
+    require(contact.softness >= 1e-9 && contact.softness <= 0.5 * contact.depth,
+            table + ".softness", number_text(contact.softness),
+            "must be from 1e-9 to half of the depth, " + number_text(0.5 * contact.depth));
+    require(contact.distance >= 0.0 && contact.distance <= of.horizon, table + ".distance",
+            number_text(contact.distance),
+            "must be positive and no longer than the horizon, " + number_text(of.horizon) + " m");
+    require_absent(!contact.with.empty() && contact.set.empty(), table + ".with",
+                   "needs the other set, " + table + ".set");
+    Sides sides{members_of(points, contact.set, table + ".set"), {}};
+    if (!contact.with.empty()) {
+      sides.other = members_of(points, contact.with, table + ".with");
+      require(!have_a_common_point(sides.one, sides.other), table + ".with",
+              '"' + contact.with + '"',
+              "shares points with set \"" + contact.set +
+                  "\"; give two sets without common points, or one set for contact within it");
+    } else {
+      sides.other = sides.one;
+    }
+    for (std::size_t other = 0; other < before.size(); ++other) {
+      const Sides& earlier = before[other];
+      const bool overlaps = (have_a_common_point(sides.one, earlier.one) &&
+                             have_a_common_point(sides.other, earlier.other)) ||
+                            (have_a_common_point(sides.one, earlier.other) &&
+                             have_a_common_point(sides.other, earlier.one));
+      require(!overlaps, table, "",
+              "overlaps with " + indexed("contacts", other) +
+                  ": two contacts have pairs of points in common");
+    }
+    before.push_back(std::move(sides));
+  }
+}
+
+}  // namespace peristat

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+namespace peristat {
+
+/// Contact of points that no whole bond joins, see PairContactTerm.
+struct ContactSpecification {
+  std::string set{};       ///< whose points touch; empty: all
+  std::string with{};      ///< another set, that they touch; empty: one another
+  double distance = 0.0;   ///< d_c, gap at which two points touch [m]; 0: the mean of their sizes
+  double stiffness = 1.0;  ///< alpha, over that of the bar between two points
+  double depth = 0.25;     ///< a, largest depth over the distance of contact
+  double softness = 1e-4;  ///< e0, strain of the gap over which the stiffness sets in
+};
+
+}  // namespace peristat
