@@ -5,6 +5,7 @@ import itertools
 import numpy
 
 from tests.reference.body import arms_of, measure
+from tests.reference.contact import PairContact
 from tests.reference.laws import Law
 
 STEP = 1e-30  # of complex steps: its square vanishes relative to 1, so there is no truncation error
@@ -67,6 +68,7 @@ class Mechanics:
         self.law = law.spread(len(body.bonds))
         # If any bond can fail, bonds without a law get one that never fails.
         self.fails = (self.law.name != "none") | ~numpy.full(len(body.bonds), self.case.has_damage and not elastic)
+        self.contact = PairContact(body) if self.case.get("contact") else None
         self.told_history, self.told_work = numpy.zeros((2, len(body.bonds)))  # moments of the law at written histories
 
     def spare(self, sets):
@@ -174,7 +176,13 @@ class Mechanics:
 
     def energy(self, u, history=None, held=False):
         history = self.no_history() if history is None else history
-        return self.sum_of(self.energies(u, history, held))
+        return self.sum_of(self.energies(u, history, held)) + self.contact_energies(u, history).sum()
+
+    def contact_energies(self, u, history):
+        """Energy of contact, an equal share for each of its points [J]."""
+        if self.contact is None:
+            return numpy.zeros(len(self.body.volume))
+        return self.contact.point_energies(u, self.integrity(history))
 
     def sum_of(self, energies):
         """The part of the energy of interactions that belongs to the body [J], by order."""
@@ -245,6 +253,10 @@ class Mechanics:
                     force = -numpy.abs(force)
                 add_at(total, tuples[:, k], force)
                 add_at(total, tuples[:, 0], -force)
+        if self.contact is not None:
+            i, j, _, force = self.contact.touching(u, self.integrity(history))
+            add_at(total, i, -numpy.abs(force) if absolute else force)
+            add_at(total, j, -numpy.abs(force) if absolute else -force)
         return numpy.abs(total) if absolute else total
 
     def tangent(self, u, history=None):

@@ -25,6 +25,7 @@ def virials(mechanics, u, history=None):
                 for k in range(order + 1):
                     share = energy.imag / STEP / (order + 1)
                     total[:, r, c] += numpy.bincount(tuples[:, k], share, minlength=len(body.volume))
+            total[:, r, c] += mechanics.contact_energies(moved, history).imag / STEP
     return total
 
 

@@ -424,7 +424,8 @@ class Verification:
     def judge_energies(self, mechanics, step, row, old, history):
         energies = mechanics.energies(step.everywhere, history)
         of_springs = self.foundations.energy(step.displacement, step.loads)
-        stored = mechanics.sum_of(energies) + of_springs.sum()
+        of_contacts = mechanics.contact_energies(step.everywhere, history)
+        stored = mechanics.sum_of(energies) + of_springs.sum() + of_contacts.sum()
         scale = max(abs(stored), abs(row["external_work"]), abs(row["dissipated_energy"]))
         scale += 1e-5 * self.whole_forces(mechanics, step) * numpy.abs(step.everywhere).max()
         self.compare(step, "stored energy", row["stored_energy"], stored, scale)
@@ -437,7 +438,7 @@ class Verification:
             self.complain(step, f"dissipated {row['dissipated_energy']:.6g} J, its bonds alone {dissipated:.6g} J")
         if row["dissipated_energy"] < old.dissipated - AGREEMENT * scale:
             self.complain(step, f"dissipated energy falls from {old.dissipated:.6g} to {row['dissipated_energy']:.6g} J")
-        density = of_springs
+        density = of_springs + of_contacts[: len(of_springs)]
         for order, part in energies.items():
             for k in range(order + 1):
                 on_points = numpy.bincount(mechanics.body.tuples[order][:, k], part / (order + 1), minlength=len(density))

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 #include "assembly/terms/contact/near_pairs.hpp"
@@ -17,11 +17,18 @@ namespace {
 /// Depth over the largest from which a contact counts as touching: rest is at 0 to round-off.
 constexpr double touching = -1e-9;
 
+/// How two points stand to each other.
+struct Gap {
+  double distance = 0.0;   ///< r [m]
+  Coordinates normal{};    ///< from i to j
+  double overlap = 0.0;    ///< d - r [m]
+  double round_off = 0.0;  ///< of that [m]
+};
+
 /// A contact at a state.
 struct TouchingPair {
   const ContactPair& pair;
-  double distance = 0.0;     ///< r [m]
-  Coordinates normal{};      ///< from i to j
+  Gap gap{};
   double depth = 0.0;        ///< x
   double energy = 0.0;       ///< [J]
   double force = 0.0;        ///< that presses [N]; below 0 only where it is foreseen
@@ -37,15 +44,17 @@ class PairContactPasses : public TermPasses, BlockTangent {
         pattern_(setting.pattern),
         threads_(setting.workspace.threads()),
         near_(pairs_, setting.model, threads_),
-        near_foreseen_(pairs_, setting.model, threads_) {}
+        near_foreseen_(pairs_, setting.model, threads_),
+        offset_(std::size_t(points_.count()) + 1, 0) {}
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
     if (how == Write::over) std::ranges::fill(gradient, 0.0);
     Evaluation found;
-    found.degenerate = !for_each_touching(at, [&](const TouchingPair& touching_pair) {
-      found.energy += touching_pair.energy;
-      found.degenerate |= !touching_pair.is_foreseen && !(touching_pair.depth < 1.0);
-      if (!gradient.empty()) add(touching_pair, touching_pair.force, gradient);
+    found.degenerate = !for_each_touching(at, [&](const TouchingPair& contact) {
+      found.energy += contact.energy;
+      found.round_off += std::abs(contact.force) * contact.gap.round_off;
+      found.degenerate |= !contact.is_foreseen && !(contact.depth < 1.0);
+      if (!gradient.empty()) add(contact, contact.force, gradient);
     }) || found.degenerate;
     return found;
   }
@@ -61,7 +70,7 @@ class PairContactPasses : public TermPasses, BlockTangent {
       const double across = stiffness_across(contact, projection);
       for (std::size_t r = 0; r < d; ++r) {
         for (std::size_t c = 0; c < d; ++c) {
-          const double along = contact.normal[r] * contact.normal[c];
+          const double along = contact.gap.normal[r] * contact.gap.normal[c];
           const double entry = contact.stiffness * along + across * ((r == c ? 1.0 : 0.0) - along);
           block[r * d + c] = -entry;
           tangent.diagonal[std::size_t(contact.pair.i) * d * d + r * d + c] += entry;
@@ -80,10 +89,10 @@ class PairContactPasses : public TermPasses, BlockTangent {
       const std::size_t i = std::size_t(contact.pair.i) * d, j = std::size_t(contact.pair.j) * d;
       const double across = stiffness_across(contact, projection);
       double closing = 0.0;
-      for (std::size_t c = 0; c < d; ++c) closing += contact.normal[c] * (v[j + c] - v[i + c]);
+      for (std::size_t c = 0; c < d; ++c) closing += contact.gap.normal[c] * (v[j + c] - v[i + c]);
       for (std::size_t c = 0; c < d; ++c) {
         const double force = across * (v[j + c] - v[i + c]) +
-                             (contact.stiffness - across) * closing * contact.normal[c];
+                             (contact.stiffness - across) * closing * contact.gap.normal[c];
         product[i + c] -= force;
         product[j + c] += force;
       }
@@ -112,13 +121,13 @@ class PairContactPasses : public TermPasses, BlockTangent {
       }
       const double longest = 2.0 * pairs_.reach();
       for (std::size_t c = 0; c < d && squared > longest * longest; ++c) {
-        arm[c] = contact.distance * contact.normal[c];
+        arm[c] = contact.gap.distance * contact.gap.normal[c];
       }
       for (const Index point : {contact.pair.i, contact.pair.j}) {
         for (std::size_t r = 0; r < d; ++r) {
           for (std::size_t c = 0; c < d; ++c) {
             virials[(std::size_t(point) * d + r) * d + c] -=
-                0.5 * contact.force * contact.normal[r] * arm[c];
+                0.5 * contact.force * contact.gap.normal[r] * arm[c];
           }
         }
       }
@@ -144,13 +153,13 @@ class PairContactPasses : public TermPasses, BlockTangent {
     const auto d = std::size_t(points_.dimension);
     for_each_touching(at, [&](const TouchingPair& contact) {
       double of_normal = 0.0;
-      for (std::size_t c = 0; c < d; ++c) of_normal += std::abs(contact.normal[c]);
-      const double across = std::abs(contact.force / contact.distance);
+      for (std::size_t c = 0; c < d; ++c) of_normal += std::abs(contact.gap.normal[c]);
+      const double across = std::abs(contact.force / contact.gap.distance);
       for (const Index point : {contact.pair.i, contact.pair.j}) {
         for (std::size_t c = 0; c < d; ++c) {
           sums[std::size_t(point) * d + c] +=
-              2.0 *
-              (contact.stiffness * std::abs(contact.normal[c]) * of_normal + across * double(d));
+              2.0 * (contact.stiffness * std::abs(contact.gap.normal[c]) * of_normal +
+                     across * double(d));
         }
       }
     });
@@ -200,15 +209,12 @@ class PairContactPasses : public TermPasses, BlockTangent {
       const ContactPair& pair = open.pair;
       const PairContactRule& rule = pairs_.rules()[std::size_t(pair.rule)];
       const double deepest = rule.depth * pair.distance;
-      const auto [distance, normal] = gap(pair, deciding);
-      const double depth = (pair.distance - distance) / deepest;
+      const Gap decides = gap(pair, deciding);
+      const double depth = decides.overlap / deepest;
       if (foresees ? !(depth > touching) : !(depth > 0.0)) continue;
-      TouchingPair contact{pair, distance, normal, depth};
+      TouchingPair contact{pair, foresees ? gap(pair, at.displacement) : decides};
+      contact.depth = contact.gap.overlap / deepest;
       contact.is_foreseen = foresees;
-      if (foresees) {
-        std::tie(contact.distance, contact.normal) = gap(pair, at.displacement);
-        contact.depth = (pair.distance - contact.distance) / deepest;
-      }
       const ContactLaw::Value of_law =
           foresees ? closed_contact(contact.depth) : rule.law(contact.depth);
       const double stiffness = open.share * pair.stiffness;
@@ -220,35 +226,44 @@ class PairContactPasses : public TermPasses, BlockTangent {
     return true;
   }
 
-  /// Distance of a pair, and the unit vector from i to j.
-  [[nodiscard]] std::pair<double, Coordinates> gap(const ContactPair& pair,
-                                                   std::span<const double> displacement) const {
+  /// Gap of a pair. d - r follows from the change of the squared distance, whose difference from
+  /// L^2 is exact for small displacements: energies of light contacts would drown in round-off.
+  [[nodiscard]] Gap gap(const ContactPair& pair, std::span<const double> displacement) const {
     const auto d = std::size_t(points_.dimension);
-    Coordinates arm{};
-    double squared = 0.0;
+    Gap found;
+    double squared = 0.0, length = 0.0, change = 0.0;
     for (std::size_t c = 0; c < d; ++c) {
       const std::size_t i = std::size_t(pair.i) * d + c, j = std::size_t(pair.j) * d + c;
-      arm[c] = points_.reference[j] - points_.reference[i] + (displacement[j] - displacement[i]);
-      squared += arm[c] * arm[c];
+      const double arm = points_.reference[j] - points_.reference[i];
+      const double moved = displacement[j] - displacement[i];
+      found.normal[c] = arm + moved;
+      squared += found.normal[c] * found.normal[c];
+      length += arm * arm;
+      change += moved * (2.0 * arm + moved);
     }
-    const double distance = std::sqrt(squared);
-    // Two points at one place push each other along x: the state is rejected.
-    if (!(distance > 0.0)) return {0.0, {1.0, 0.0, 0.0}};
-    for (double& component : arm) component /= distance;
-    return {distance, arm};
+    found.distance = std::sqrt(squared);
+    const double excess = pair.distance * pair.distance - length;
+    found.overlap = (excess - change) / (pair.distance + found.distance);
+    found.round_off = std::numeric_limits<double>::epsilon() * std::abs(change) / pair.distance;
+    if (found.distance > 0.0) {
+      for (double& component : found.normal) component /= found.distance;
+    } else {  // the state is rejected: x = 1 / a
+      found.normal = {1.0, 0.0, 0.0};
+    }
+    return found;
   }
 
   /// A foreseen spring is straight: its predictor is a linear problem.
   [[nodiscard]] static double stiffness_across(const TouchingPair& contact, double projection) {
-    if (contact.is_foreseen || !(contact.distance > 0.0)) return 0.0;
-    return -(1.0 - projection) * contact.force / contact.distance;
+    if (contact.is_foreseen || !(contact.gap.distance > 0.0)) return 0.0;
+    return -(1.0 - projection) * contact.force / contact.gap.distance;
   }
 
   void add(const TouchingPair& contact, double force, std::span<double> gradient) const {
     const auto d = std::size_t(points_.dimension);
     for (std::size_t c = 0; c < d; ++c) {
-      gradient[std::size_t(contact.pair.i) * d + c] += force * contact.normal[c];
-      gradient[std::size_t(contact.pair.j) * d + c] -= force * contact.normal[c];
+      gradient[std::size_t(contact.pair.i) * d + c] += force * contact.gap.normal[c];
+      gradient[std::size_t(contact.pair.j) * d + c] -= force * contact.gap.normal[c];
     }
   }
 
@@ -271,7 +286,6 @@ class PairContactPasses : public TermPasses, BlockTangent {
     return Couplings(offset_, partner_);
   }
   [[nodiscard]] bool has_row(const ContactPair& pair) const {
-    if (offset_.empty()) return false;
     const auto first = partner_.begin() + offset_[std::size_t(pair.i)],
                last = partner_.begin() + offset_[std::size_t(pair.i) + 1];
     return std::binary_search(first, last, pair.j);

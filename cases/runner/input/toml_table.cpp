@@ -173,7 +173,8 @@ TomlTable::TomlTable(const TomlValue& value, std::string path, const std::string
         *first, this->path(unknown),
         "unknown key" + suggestion(path_, unknown, known) + "  (allowed: " + listed(known) + ")");
   }
-  if (in_array && value.entries.empty())
+  // Contact alone may have defaults for all its keys.
+  if (in_array && value.entries.empty() && without_indices(path_) != "contact")
     refuse(value, path_, "is empty (allowed: " + listed(known) + ")");
 }
 

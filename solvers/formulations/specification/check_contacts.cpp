@@ -11,8 +11,8 @@ namespace peristat {
 namespace {
 
 /// Points of a set, ascending; all without a name.
-std::vector<Index> members_of(const Points& points, const std::string& set,
-                              const std::string& key) {
+std::vector<Index> points_that_touch(const Points& points, const std::string& set,
+                                     const std::string& key) {
   if (!set.empty()) return points_of_set(points, set, key);
   std::vector<Index> all(std::size_t(points.count()));
   for (Index i = 0; i < points.count(); ++i) all[std::size_t(i)] = i;
@@ -47,9 +47,9 @@ void check_contacts(const BodySpecification& of, const Points& points) {
             "must be positive and no longer than the horizon, " + number_text(of.horizon) + " m");
     require_absent(!contact.with.empty() && contact.set.empty(), table + ".with",
                    "needs the other set, " + table + ".set");
-    Sides sides{members_of(points, contact.set, table + ".set"), {}};
+    Sides sides{points_that_touch(points, contact.set, table + ".set"), {}};
     if (!contact.with.empty()) {
-      sides.other = members_of(points, contact.with, table + ".with");
+      sides.other = points_that_touch(points, contact.with, table + ".with");
       require(!have_a_common_point(sides.one, sides.other), table + ".with",
               '"' + contact.with + '"',
               "shares points with set \"" + contact.set +
