@@ -6,6 +6,7 @@
 #include "solvers/body/require_memory_for.hpp"
 #include "solvers/body/unheld_body.hpp"
 #include "solvers/body/without_equation.hpp"
+#include "solvers/formulations/specification/for_each_material.hpp"
 #include "solvers/motion/stable_step.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"
@@ -94,6 +95,42 @@ void refuse_modes_of_failing_points(const Body& body, const StudyOptions& option
                    "\"fft\" take newton, relaxation or dynamics");
 }
 
+/// Refuses what has no search for contacts.
+void refuse_obstacles(const Body& body, const StudyOptions& options) {
+  if (body.conditions->obstacles().none()) return;
+  const BodySpecification& of = body.specification;
+  const auto is_finite = [](const MaterialSpecification& material) {
+    return material.kinematics == Kinematics::finite && material.model != MaterialModel::lps;
+  };
+  bool all_finite = !of.is_convolved();
+  for_each_material(of, [&](const MaterialSpecification& material, const std::string&) {
+    all_finite = all_finite && is_finite(material);
+  });
+  if (!all_finite) {
+    throw InputError("obstacles", "",
+                     "needs bonds that follow the present positions: not kinematics \"linear\", "
+                     "model \"lps\" or operator \"fft\"");
+  }
+  const Mode mode = options.loading.mode;
+  if (mode == Mode::path || mode == Mode::arc_length) {
+    throw InputError("loading.mode", std::string(mode.name),
+                     "has no search for contacts with an [[obstacle]]; take newton, adaptive, "
+                     "relaxation or dynamics");
+  }
+  const bool is_explicit =
+      mode == Mode::dynamics && options.loading.dynamics.scheme == MotionScheme::verlet;
+  if (is_explicit && options.loading.dynamics.time_step > 0.0) {
+    throw InputError("dynamics.time_step", number_text(options.loading.dynamics.time_step),
+                     "is constant, while an [[obstacle]] makes the stable step shorter where it "
+                     "touches; take dynamics.step_share");
+  }
+  if (body.conditions->control()) {
+    throw InputError("controls", "",
+                     "has no search for contacts with an [[obstacle]]; prescribe the obstacle's "
+                     "displacement");
+  }
+}
+
 /// Refuses initial displacements for a motion that begins in equilibrium, which determines them.
 void refuse_initial_displacements(const Body& body) {
   const auto& initial = body.specification.initial;
@@ -138,6 +175,7 @@ void check_study(const Body& body, const StudyOptions& options) {
   refuse_events_of_states(body, options);
   refuse_modes_with_struts(body, options);
   refuse_modes_of_failing_points(body, options);
+  refuse_obstacles(body, options);
   const bool is_implicit = moves && options.loading.dynamics.scheme == MotionScheme::newmark;
   if (is_implicit != body.specification.has_inertia) {
     throw InputError("has_inertia", "",
@@ -194,8 +232,9 @@ const Stiffness& Study::find_initial_stiffness() {
   conditions.prescribe(0.0, displacement);
   conditions.constraints().move(displacement);
   const History history = assembler.initial_history();
-  tangent.linearise(assembler, {displacement, history, Damage::grows, conditions.environment(0.0)},
-                    projection_for_stiffness(assembler));
+  StateView at_start(displacement, history, Damage::grows, conditions.environment(0.0));
+  at_start.has_contacts = false;  // see Dynamics::step_with_contacts
+  tangent.linearise(assembler, at_start, projection_for_stiffness(assembler));
   motion_->at_start =
       find_stiffness(tangent, free, motion_->mass, motion_->most_points, assembler.index_map());
   const double step = options_.loading.dynamics.time_step;

@@ -81,6 +81,7 @@ const std::map<std::string, std::string>& keys_of_members() {
       {"regions", "region"},
       {"interfaces", "interface"},
       {"foundations", "foundation"},
+      {"obstacles", "obstacle"},
       {"crack_tips", "crack_tip"},
       {"rigid_sets", "rigid"},
       {"rollers", "roller"},

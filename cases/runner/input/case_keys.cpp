@@ -93,6 +93,8 @@ Table<Case> all_keys() {
        K("foundation", &Case::foundations, foundation_keys(),
          "tables: springs between a part of the body and the ground")
            .on_ranks(),
+       K("obstacle", &Case::obstacles, obstacle_keys(), "tables: rigid bodies that press on points")
+           .on_ranks(),
        K("eigenstrain", in(&Case::eigenstrains, &Eigenstrains::given), eigenstrain_keys(),
          "tables: strains without stored energy, such as growth or drying")
            .on_ranks(),

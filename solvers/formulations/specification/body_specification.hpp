@@ -88,6 +88,7 @@ struct BodySpecification {
   std::vector<SupportSpecification> supports{};
   std::vector<LoadSpecification> loads{};
   std::vector<FoundationSpecification> foundations{};
+  std::vector<ObstacleSpecification> obstacles{};
   ConstraintSpecification constraints{};
   Eigenstrains eigenstrains{};
   /// Terms of the displacement that is controlled in the place of `load`, see DisplacementControl;
