@@ -302,8 +302,32 @@ double Assembler::longest_step(const StateView& at, std::span<const double> step
   return has_contacts() ? -index_map_.ranks().max(-longest) : longest;
 }
 
-void Assembler::add_contact_row_sums(const StateView& at, std::span<double> sums) {
-  for_each_term([&](TermPasses& term, Write) { term.add_contact_row_sums(at, sums); });
+double Assembler::largest_closing(const StateView& from, const StateView& to) {
+  double largest = 0.0;
+  for_each_term([&](TermPasses& term, Write) {
+    largest = std::max(largest, term.largest_closing(from, to));
+  });
+  return index_map_.ranks().max(largest);
+}
+
+bool Assembler::has_passed(const StateView& from, const StateView& to) {
+  if (!has_contacts()) return false;
+  double passed = 0.0;
+  for_each_term([&](TermPasses& term, Write) {
+    if (term.has_passed(from, to)) passed = 1.0;
+  });
+  return index_map_.ranks().max(passed) > 0.0;
+}
+
+double Assembler::work_of_obstacles(const StateView& from, const StateView& to) {
+  if (!has_contacts()) return 0.0;
+  double work = 0.0;
+  for_each_term([&](TermPasses& term, Write) { work += term.work_of_obstacles(from, to); });
+  return index_map_.ranks().sum(work);
+}
+
+void Assembler::add_contact_stiffness(const StateView& at, std::span<double> stiffness) {
+  for_each_term([&](TermPasses& term, Write) { term.add_contact_stiffness(at, stiffness); });
 }
 
 int Assembler::cover_contacts(const StateView& at) {

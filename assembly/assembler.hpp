@@ -80,8 +80,12 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   [[nodiscard]] std::vector<Index> closed_contacts(const StateView& at);
   /// Largest share of a step, from 0 to 1, that no contact passes its largest depth within.
   [[nodiscard]] double longest_step(const StateView& at, std::span<const double> step);
-  /// Adds upper bounds of the sums of the absolute entries of the rows of contacts [N/m].
-  void add_contact_row_sums(const StateView& at, std::span<double> sums);
+  /// See TermPasses; of all ranks.
+  [[nodiscard]] double largest_closing(const StateView& from, const StateView& to);
+  [[nodiscard]] bool has_passed(const StateView& from, const StateView& to);
+  [[nodiscard]] double work_of_obstacles(const StateView& from, const StateView& to);
+  /// Of this rank's points.
+  void add_contact_stiffness(const StateView& at, std::span<double> stiffness);
   int cover_contacts(const StateView& at) override;
 
   /// What drives bonds that fail by release.

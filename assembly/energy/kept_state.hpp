@@ -14,11 +14,13 @@ class KeptState {
     history_ = at.history;
     damage_ = at.damage;
     environment_ = at.environment;
+    has_contacts_ = at.has_contacts;
     foreseen_.assign(at.foreseen.begin(), at.foreseen.end());
   }
   [[nodiscard]] StateView view() const {
     StateView view(displacement_, history_, damage_, environment_);
     view.foreseen = foreseen_;
+    view.has_contacts = has_contacts_;
     return view;
   }
   /// Current positions of points with these reference positions.
@@ -33,6 +35,7 @@ class KeptState {
   Damage damage_ = Damage::grows;
   SharedEnvironment environment_;
   std::vector<double> foreseen_;
+  bool has_contacts_ = true;
 };
 
 }  // namespace peristat

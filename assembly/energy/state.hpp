@@ -49,6 +49,7 @@ struct StateView {
   /// For the predictor of a step: the displacement that it is expected to lead to. A contact that
   /// touches here, or is closed there, is then a linear spring. Empty: contacts follow their law.
   std::span<const double> foreseen{};
+  bool has_contacts = true;  ///< false: without the energy of contacts
 
   /// Eigenstretch per point, or empty.
   [[nodiscard]] std::span<const double> eigenstretch() const {

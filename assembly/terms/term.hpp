@@ -90,9 +90,24 @@ class TermPasses {
   [[nodiscard]] virtual double longest_step(const StateView&, std::span<const double> /*step*/) {
     return 1.0;
   }
-  /// Adds upper bounds of the sums of the absolute entries of the rows of contacts [N/m].
-  /// @param sums per degree of freedom
-  virtual void add_contact_row_sums(const StateView&, std::span<double> /*sums*/) {}
+  /// Largest share of the gap to its largest depth that a contact closes from one state to another;
+  /// gaps are those of the first.
+  [[nodiscard]] virtual double largest_closing(const StateView& /*from*/, const StateView& /*to*/) {
+    return 0.0;
+  }
+  /// True if a contact that is open in both states was beyond its largest depth on the straight way
+  /// between them.
+  [[nodiscard]] virtual bool has_passed(const StateView& /*from*/, const StateView& /*to*/) {
+    return false;
+  }
+  /// Adds to each degree of freedom the stiffness of contacts that touch at a state or soon may: it
+  /// is a bound while they close no more than a fifth of their gap [N/m].
+  virtual void add_contact_stiffness(const StateView&, std::span<double> /*stiffness*/) {}
+  /// Work that obstacles do on the body from one state to another by the trapezoidal rule [J].
+  [[nodiscard]] virtual double work_of_obstacles(const StateView& /*from*/,
+                                                 const StateView& /*to*/) {
+    return 0.0;
+  }
   /// Points that contacts couple at a state, beside those of Term::couplings. The passes own the
   /// arrays.
   [[nodiscard]] virtual std::optional<Couplings> contact_couplings(const StateView&) {

@@ -7,6 +7,7 @@
 
 #include <omp.h>
 
+#include "assembly/terms/contact/obstacle_term.hpp"
 #include "assembly/terms/pressure/pressure_term.hpp"
 #include "assembly/terms/springs/foundation_term.hpp"
 #include "assembly/terms/springs/inertia_term.hpp"
@@ -165,13 +166,32 @@ LoadingProgramme programme_of(const BodySpecification& of) {
   return of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme);
 }
 
-LoadSetting load_setting(const BodySpecification& of, const Points& points,
-                         const IndexMap& index_map) {
+/// Young's modulus per point.
+std::vector<double> moduli_of_points(const PointMaterials& materials, const Body& body) {
+  const BodySpecification& of = body.specification;
+  std::vector<double> of_materials, of_points;
+  for (const PointMaterials::Material& material : materials.all()) {
+    of_materials.push_back(
+        formulation_of(of)
+            .moduli(*material.of, material.key, body.setting, body.points.spacing)
+            .youngs_modulus);
+  }
+  for (Index i = 0; i < body.points.count(); ++i) {
+    of_points.push_back(of_materials[materials.of(i)]);
+  }
+  return of_points;
+}
+
+LoadSetting load_setting(const Body& body, const BodySpecification& of) {
+  const Points& points = body.points;
   const PointMaterials materials(of, points);
   const bool has_gravity = std::any_of(
       of.loads.begin(), of.loads.end(),
       [](const LoadSpecification& load) { return load.kind == LoadSpecification::Kind::gravity; });
-  LoadSetting setting{.horizon = of.horizon, .index_map = index_map};
+  LoadSetting setting{.horizon = of.horizon, .index_map = *body.index_map};
+  if (!of.obstacles.empty()) {
+    setting.of_obstacles = {body.setting.cross_section, moduli_of_points(materials, body)};
+  }
   setting.density = of_materials(materials, points, &MaterialSpecification::density, "density",
                                  has_gravity ? "gravity" : "");
   setting.thermal_expansion =
@@ -268,11 +288,11 @@ template <class MakeBonds>
 void complete_body(Body& body, const BodySpecification& of, const MakeBonds& make_bonds,
                    int threads) {
   make_model(body, make_bonds, threads);
-  LoadSetting loads = load_setting(of, body.points, *body.index_map);
+  LoadSetting loads = load_setting(body, of);
   take_surface(body, loads, threads);
-  body.conditions = std::make_unique<Conditions>(body.points, of.supports, of.loads,
-                                                 programme_of(of), of.controls, loads,
-                                                 of.eigenstrains, of.constraints, of.foundations);
+  body.conditions = std::make_unique<Conditions>(
+      body.points, of.supports, of.loads, programme_of(of), of.controls, loads, of.eigenstrains,
+      of.constraints, of.foundations, of.obstacles);
   if (loads.surface) {
     refuse_points_on_faces(body.points, *loads.surface, body.conditions->prescribed());
   }
@@ -330,7 +350,8 @@ void refuse_without_ranks(const BodySpecification& of) {
         key, "",
         "is not for more than one rank yet; supported on several ranks are pre-cracks, supports, "
         "rigid sets, rollers, linear constraints, planes of symmetry, periods, foundations, "
-        "eigenstrains, tractions, pressures, body forces, total forces and gravity, and damage of "
+        "obstacles, eigenstrains, tractions, pressures, body forces, total forces and gravity, and "
+        "damage of "
         "bonds, points, states and triangles");
   };
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
@@ -378,6 +399,8 @@ void add_terms_of_conditions(Model& model, const Body& body) {
   const Foundations& foundations = body.conditions->foundations();
   if (!foundations.none()) model.add(std::make_shared<FoundationTerm>(body.points, foundations));
   if (auto contact = make_pair_contact(body)) model.add(std::move(contact));
+  const Obstacles& obstacles = body.conditions->obstacles();
+  if (!obstacles.none()) model.add(std::make_shared<ObstacleTerm>(body.points, obstacles));
   if (body.specification.has_inertia) model.add(std::make_shared<InertiaTerm>(body.points));
 }
 

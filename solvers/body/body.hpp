@@ -85,7 +85,8 @@ void take_horizons(Points& points, BodySpecification& of, const Communicator& ra
 /// @throws InputError as make_body does
 [[nodiscard]] Model make_elastic_bonds(const Body& body, Bonds bonds, const BondSetting& setting);
 
-/// Adds the pressures and foundations of the body's conditions, its contacts and its inertia to a
+/// Adds the pressures, foundations and obstacles of the body's conditions, its contacts and its
+/// inertia to a
 /// model of its points. The body's own model has them already.
 void add_terms_of_conditions(Model& model, const Body& body);
 

@@ -1,6 +1,7 @@
 #include "solvers/body/describe_body.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
@@ -72,6 +73,11 @@ std::vector<std::string> describe_constraints(const Body& body) {
   for (const Foundations::Summary& of : body.conditions->foundations().summaries()) {
     lines.push_back(fmt::format("{}: {} springs, {} N/m in all", of.name, of.springs,
                                 place_text(of.stiffness, body.points.dimension)));
+  }
+  for (const Obstacles::Obstacle& of : body.conditions->obstacles().all()) {
+    constexpr std::array kinds{"plane", "cylinder", "sphere"};
+    lines.push_back(fmt::format("{}: a {} that {} points may touch", of.name,
+                                kinds[std::size_t(of.surface.kind)], of.last - of.first));
   }
   std::size_t rigid = 0;
   const auto& sets = body.conditions->constraints().rigid_sets();

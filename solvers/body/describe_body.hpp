@@ -11,8 +11,8 @@ namespace peristat {
 /// only by round-off; empty for bonds whose horizon lies between distances of their points.
 [[nodiscard]] std::vector<std::string> describe_interactions(const Body& body);
 
-/// Lines that describe foundations, rigid sets, rollers, linear constraints, planes of symmetry and
-/// periods.
+/// Lines that describe foundations, obstacles, rigid sets, rollers, linear constraints, planes of
+/// symmetry and periods.
 [[nodiscard]] std::vector<std::string> describe_constraints(const Body& body);
 
 }  // namespace peristat

@@ -51,6 +51,8 @@ class Dynamics : public Driver {
   [[nodiscard]] Stiffness stiffness_at(const Trial& state);
   /// Frees the tangent if the motion does not use it and it is quickly computed anew.
   void give_back_tangent();
+  /// Returns the explicit time step that contacts allow, not longer than that of the bonds.
+  [[nodiscard]] double step_with_contacts(const Motion& motion, double dt);
   /// Chooses the time step for the present stiffness.
   /// @return why there is none; empty if there is
   [[nodiscard]] std::string choose_step(const Trial& state, double time);

@@ -136,6 +136,10 @@ std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
                        path.working_force(attempt.state, attempt.external_force),
                        damaged.dissipated_energy, found.energies);
   if (!attempt.has_converged()) return {};
+  if (assembler.has_passed(path.state().accepted, attempt.state.at())) {
+    attempt.outcome = Outcome::degenerate;
+    return "a point has passed through what it was to touch; take shorter steps";
+  }
   if (attempt.iterations == 0) {  // no tangent has been needed so far
     tangent.linearise(assembler, attempt.state.at(), 0.0);
   }

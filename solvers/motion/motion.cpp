@@ -90,12 +90,18 @@ void Motion::change_loads() {
 void Motion::change_environment() {
   if (!problem_.conditions.environment_changes()) return;
   last_environment_ = at_.environment;
+  if (problem_.conditions.obstacles().move()) before_obstacles_move_ = at_.displacement;
   take_on_all_ranks([&] { at_.environment = problem_.conditions.environment(time_); });
   add_half_of_heating();
 }
 
 void Motion::complete_heating() {
-  if (problem_.conditions.environment_changes()) add_half_of_heating();
+  if (!problem_.conditions.environment_changes()) return;
+  add_half_of_heating();
+  if (before_obstacles_move_.empty()) return;
+  const StateView before(before_obstacles_move_, at_.history, Damage::held, last_environment_);
+  const double work = problem_.assembler.work_of_obstacles(before, at_.at());
+  if (problem_.assembler.index_map().is_first_rank()) sums_.work += work;  // of the whole body
 }
 
 void Motion::add_half_of_heating() {
@@ -107,8 +113,9 @@ void Motion::add_half_of_heating() {
 }
 
 double Motion::energy_under(const SharedEnvironment& environment) {
-  return problem_.assembler.energy({at_.displacement, at_.history, Damage::held, environment})
-      .energy;
+  StateView view(at_.displacement, at_.history, Damage::held, environment);
+  view.has_contacts = false;
+  return problem_.assembler.energy(view).energy;
 }
 
 void Motion::add_work_of_supports() {

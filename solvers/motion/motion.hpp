@@ -140,6 +140,7 @@ class Motion {
   std::vector<double> last_reaction_, last_place_;  // of moved_
   std::vector<double> last_displacement_, last_follower_force_;
   SharedEnvironment last_environment_;
+  std::vector<double> before_obstacles_move_;  // displacement; empty: none moves
 };
 
 }  // namespace peristat

@@ -155,22 +155,26 @@ double heating_work(Assembler& assembler, const StateView& from, const StateView
   if (sums.largest_of_all(is_same ? 0.0 : 1.0) == 0.0) return 0.0;
   const auto added_at = [&](const StateView& at) {
     const auto energy_under = [&](const SharedEnvironment& environment) {
-      return assembler.energy({at.displacement, at.history, Damage::held, environment}).energy;
+      StateView view(at.displacement, at.history, Damage::held, environment);
+      view.has_contacts = false;
+      return assembler.energy(view).energy;
     };
     return energy_under(after) - energy_under(before);
   };
-  return 0.5 * (added_at(from) + added_at(to));
+  return 0.5 * (added_at(from) + added_at(to)) + assembler.work_of_obstacles(from, to);
 }
 
 double environment_norm(const EquilibriumProblem& problem, const StateView& at,
                         std::span<const double> gradient) {
-  if (!at.environment) return 0.0;
+  if (!at.environment && !problem.assembler.has_contacts()) return 0.0;
   std::vector<double> with(gradient.begin(), gradient.end()), without(gradient.size());
   if (!problem.conditions.constraints().none()) {  // the gradient is folded
     std::fill(with.begin(), with.end(), 0.0);
     static_cast<void>(problem.assembler.gradient(at, with));
   }
-  static_cast<void>(problem.assembler.gradient({at.displacement, at.history, at.damage}, without));
+  StateView bare(at.displacement, at.history, at.damage);
+  bare.has_contacts = false;
+  static_cast<void>(problem.assembler.gradient(bare, without));
   const Sums sums = problem.sums();
   return sums.norm_of_entries(with.size(),
                               [&](std::size_t dof) { return with[dof] - without[dof]; });

@@ -100,11 +100,12 @@ void fold_followers(const EquilibriumProblem& problem, std::span<const double> e
                     Trial& trial);
 
 /// Work of heating on the way between two states [J], by the trapezoidal rule: the mean of the
-/// energies that the change of the environment would add to either state, with damage held.
+/// energies that the change of the environment would add to either state, with damage held. For
+/// obstacles, within which a contact's energy means nothing, the mean of their forces.
 [[nodiscard]] double heating_work(Assembler& assembler, const StateView& from, const StateView& to);
 
-/// Norm of the environment's contribution to the forces of a state [N]: a scale for residuals,
-/// since a body that expands freely has no other forces.
+/// Norm of what the environment and contacts contribute to the forces of a state [N]: a scale for
+/// residuals, since a body that expands freely, or between obstacles, has no other forces.
 /// @param gradient there
 [[nodiscard]] double environment_norm(const EquilibriumProblem& problem, const StateView& at,
                                       std::span<const double> gradient);

@@ -221,7 +221,7 @@ class Relaxation {
   void make_room_for_contacts() {
     if (row_sums_.empty()) return;
     std::vector<double> sums(row_sums_.size());
-    problem_.assembler.add_contact_row_sums(at_.at(), sums);
+    problem_.assembler.add_contact_stiffness(at_.at(), sums);
     for (std::size_t e = 0; e < dofs_.size(); ++e) {
       const double of_contacts = sums[dofs_[e]];
       if (!(of_contacts > 0.0)) continue;

@@ -53,10 +53,9 @@ class NewtonSearch {
     problem.conditions.prescribe(at, current_.displacement);
     share_out_jump(problem, from.displacement, current_.displacement);
     evaluate(problem, external_force_, current_, damage_);
-    result_.scale = options.scale > 0.0
-                        ? options.scale
-                        : residual_scale(problem, external_force_, start_gradient_, current_);
-    if (current_.environment) {
+    result_.scale = options.scale > 0.0 ? options.scale : scale_after_jump();
+    if (problem.assembler.has_contacts()) foreseen_ = from.displacement;
+    if (current_.environment || !foreseen_.empty()) {
       find_start_gradient();
       if (options.scale <= 0.0) {
         result_.scale =
@@ -67,6 +66,10 @@ class NewtonSearch {
 
   [[nodiscard]] NewtonResult run() {
     result_.outcome = search();
+    if (result_.outcome == Outcome::converged &&
+        problem_.assembler.has_passed(from_, current_.at(damage_))) {
+      result_.outcome = Outcome::degenerate;
+    }
     if (result_.unstable_start && result_.outcome != Outcome::converged &&
         result_.outcome != Outcome::interrupted) {
       result_.outcome = Outcome::not_positive_definite;
@@ -84,6 +87,18 @@ class NewtonSearch {
     view.curvature = start_curvature_;
     view.foreseen = foreseen_;
     return view;
+  }
+
+  /// Scale of residuals. The law of contacts means nothing where a jump drives them together, so
+  /// they count as springs.
+  [[nodiscard]] double scale_after_jump() {
+    if (!problem_.assembler.has_contacts()) {
+      return residual_scale(problem_, external_force_, start_gradient_, current_);
+    }
+    Trial jumped = current_;
+    jumped.foreseen = from_.displacement;
+    evaluate(problem_, external_force_, jumped, damage_);
+    return residual_scale(problem_, external_force_, start_gradient_, jumped);
   }
 
   void find_start_gradient() {
@@ -195,8 +210,8 @@ class NewtonSearch {
     Assembler& assembler = problem_.assembler;
     if (!assembler.has_contacts()) return solve_at_start(projection, use, tolerance);
     // A projected tangent is that of the last exact one.
-    if (projection > 0.0 && !foreseen_.empty()) return solve_at_start(projection, use, tolerance);
-    foreseen_ = from_.displacement;
+    if (has_predicted_) return solve_at_start(projection, use, tolerance);
+    has_predicted_ = true;
     std::vector<Index> closed = assembler.closed_contacts(start());
     LinearOutcome linear = LinearOutcome::solved;
     for (int round = 0; round < most_rounds; ++round) {
@@ -207,9 +222,10 @@ class NewtonSearch {
       add_scaled(next, 1.0, direction_);
       foreseen_.swap(next);
       std::vector<Index> now = assembler.closed_contacts(start());
-      if (now == closed) {
-        foreseen_.swap(next);
-        return linear;
+      const bool stays = problem_.sums().largest_of_all(now == closed ? 0.0 : 1.0) == 0.0;
+      if (stays || round + 1 == most_rounds) {
+        foreseen_.swap(next);  // the one of the tangent
+        break;
       }
       closed = std::move(now);
     }
@@ -253,6 +269,7 @@ class NewtonSearch {
   std::vector<Tensor> start_curvature_;
   std::vector<double> start_gradient_;  // dE/dx at start()
   std::vector<double> foreseen_;        // displacement behind the predictor; empty: no contacts
+  bool has_predicted_ = false;          // foreseen_ is the predictor's
   std::vector<double> direction_;
   std::optional<Inertia> start_inertia_;
   double last_residual_ = 0.0, last_projection_ = 0.0;

@@ -6,6 +6,7 @@
 #include "solvers/body/require_memory_for.hpp"
 #include "solvers/body/unheld_body.hpp"
 #include "solvers/body/without_equation.hpp"
+#include "solvers/formulations/specification/for_each_material.hpp"
 #include "solvers/motion/stable_step.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"
@@ -71,29 +72,31 @@ void refuse_modes_with_struts(const Body& body, const StudyOptions& options) {
                    "\"keep\"");
 }
 
-/// Refuses modes that do not follow contacts that close and open.
+/// Refuses what does not follow contacts that close and open.
 void refuse_modes_with_contacts(const Body& body, const StudyOptions& options) {
-  if (body.specification.contacts.empty()) return;
-  const Mode mode = options.loading.mode;
-  const bool flows = (mode == Mode::relaxation || mode == Mode::adaptive) &&
-                     options.loading.relaxation.method == RelaxationMethod::flow;
-  if (flows) {
-    throw InputError("loading.relaxation.method", "flow",
-                     "does not follow contacts that close and open; take \"dynamic\"");
-  }
-  if (mode == Mode::dynamics && options.loading.dynamics.scheme == MotionScheme::verlet) {
-    throw InputError("dynamics.scheme", "verlet",
-                     "has no step that is stable for contact of points yet; take \"newmark\"");
-  }
+  const bool has_obstacles = !body.conditions->obstacles().none();
+  if (body.specification.contacts.empty() && !has_obstacles) return;
+  const std::string with = has_obstacles ? " with an [[obstacle]]" : " with a [[contact]]";
+  const std::string cannot = "does not follow contacts that close and open," + with + "; take ";
+  const LoadSteppingOptions& loading = options.loading;
+  const Mode mode = loading.mode;
   if (mode == Mode::path || mode == Mode::arc_length) {
     throw InputError("loading.mode", std::string(mode.name),
-                     "does not follow contacts of points that close and open yet; take newton, "
-                     "adaptive, relaxation or dynamics");
+                     cannot + "newton, adaptive, relaxation or dynamics");
+  }
+  const bool relaxes = mode == Mode::relaxation || mode == Mode::adaptive;
+  if (relaxes && loading.relaxation.method == RelaxationMethod::flow) {
+    throw InputError("loading.relaxation.method", "flow", cannot + "\"dynamic\"");
+  }
+  const bool is_explicit =
+      mode == Mode::dynamics && loading.dynamics.scheme == MotionScheme::verlet;
+  if (is_explicit && loading.dynamics.time_step > 0.0) {
+    throw InputError("dynamics.time_step", number_text(loading.dynamics.time_step),
+                     "is constant, while contacts make the stable step shorter," + with +
+                         "; take dynamics.step_share");
   }
   if (body.conditions->control()) {
-    throw InputError("controls", "",
-                     "a control does not follow contacts of points that close and open yet; "
-                     "prescribe displacements");
+    throw InputError("controls", "", cannot + "prescribed displacements");
   }
 }
 
@@ -221,8 +224,9 @@ const Stiffness& Study::find_initial_stiffness() {
   conditions.prescribe(0.0, displacement);
   conditions.constraints().move(displacement);
   const History history = assembler.initial_history();
-  tangent.linearise(assembler, {displacement, history, Damage::grows, conditions.environment(0.0)},
-                    projection_for_stiffness(assembler));
+  StateView at_start(displacement, history, Damage::grows, conditions.environment(0.0));
+  at_start.has_contacts = false;  // see Dynamics::step_with_contacts
+  tangent.linearise(assembler, at_start, projection_for_stiffness(assembler));
   motion_->at_start =
       find_stiffness(tangent, free, motion_->mass, motion_->most_points, assembler.index_map());
   const double step = options_.loading.dynamics.time_step;

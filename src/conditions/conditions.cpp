@@ -67,7 +67,8 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
                        const std::vector<LoadSpecification>& loads, LoadingProgramme programme,
                        const std::vector<ControlTerm>& control, const LoadSetting& setting,
                        const Eigenstrains& eigenstrains, const ConstraintSpecification& constraints,
-                       const std::vector<FoundationSpecification>& foundations)
+                       const std::vector<FoundationSpecification>& foundations,
+                       const std::vector<ObstacleSpecification>& obstacles)
     : points_(points),
       ranks_(setting.index_map.ranks()),
       programme_(std::move(programme)),
@@ -113,6 +114,7 @@ Conditions::Conditions(const Points& points, const std::vector<SupportSpecificat
   }
   add_eigenstrains(eigenstrains, setting);
   foundations_ = Foundations(points, foundations, parameters, setting.index_map.ranks());
+  obstacles_ = Obstacles(points, obstacles, parameters, setting.of_obstacles, ranks_);
   made_ = make_constraints(points, constraints, prescribed_, parameters, setting.index_map);
   refuse_shared_names();
   hold_periodic_cell(constraints, setting);
@@ -141,7 +143,8 @@ void Conditions::find_changes() {
   changes_.supports = changes(prescriptions_, displacement) || changes(made_.prescriptions, value);
   changes_.loads = changes(loads_, value);
   changes_.environment = changes(eigenstretches_, value) || changes(pressures_, value) ||
-                         foundations_.ground_moves() || surface_.changes_with_parameters();
+                         foundations_.ground_moves() || obstacles_.move() ||
+                         surface_.changes_with_parameters();
 }
 
 void Conditions::refuse_shared_names() const {
@@ -150,11 +153,12 @@ void Conditions::refuse_shared_names() const {
   const auto add = [&names](const std::string& name, const std::string& key) {
     if (names.insert(name).second) return;
     throw InputError(key, '"' + name + '"',
-                     "there is already a support, constraint or foundation of this name; their "
-                     "reactions need different names");
+                     "there is already a support, constraint, foundation or obstacle of this name; "
+                     "their reactions need different names");
   };
   for (const Restraint& restraint : made_.restraints) add(restraint.name, restraint.key);
   for (const auto& of : foundations_.summaries()) add(of.name, of.key);
+  for (const auto& of : obstacles_.all()) add(of.name, of.table + ".name");
 }
 
 void Conditions::prescribe_handles() {
@@ -293,15 +297,17 @@ void Conditions::add_eigenstrains(const Eigenstrains& eigenstrains, const LoadSe
 }
 
 SharedEnvironment Conditions::environment(const LoadPoint& at) const {
-  const bool ground_moves = foundations_.ground_moves();
-  if (eigenstretches_.empty() && pressures_.empty() && !ground_moves && surface_.none()) {
+  const bool ground_moves = foundations_.ground_moves(), obstacles_move = obstacles_.move();
+  if (eigenstretches_.empty() && pressures_.empty() && !ground_moves && !obstacles_move &&
+      surface_.none()) {
     return nullptr;
   }
   const std::vector<double> loads = parameters(at);
   auto made = std::make_shared<Environment>();
   if (ground_moves) made->ground = foundations_.ground(loads);
+  if (obstacles_move) made->obstacles = obstacles_.displacements(loads);
   if (!surface_.none()) made->traction = surface_.at(points_, loads);
-  for (auto* const values : {&made->ground, &made->traction}) {
+  for (auto* const values : {&made->ground, &made->obstacles, &made->traction}) {
     for (double& value : *values) value *= at.preload;
   }
   for (const auto& [key, first, last, value] : pressures_) {
@@ -378,6 +384,7 @@ void Conditions::try_stages() {
     }
     for (const double value : values) largest_ = std::max(largest_, std::abs(value));
   };
+  if (!obstacles_.none()) obstacles_.refuse_overlap(ranks_);
   if (control_) return try_at({0.0, 0.0});  // its loads are not known in advance
   const auto try_share = [&](double share) { try_at(share * programme_.end()); };
   // The end first: it sets largest_.
@@ -489,6 +496,9 @@ std::map<std::string, Coordinates> Conditions::reactions(
     sums[restraint.name] = reaction_of(restraint, gradient);
   }
   sums.merge(foundations_.forces(displacement, environment));
+  for (const auto& [name, action] : obstacles_.actions(displacement, environment)) {
+    sums[name] = action.force;
+  }
   return sums;
 }
 

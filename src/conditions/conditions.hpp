@@ -14,6 +14,7 @@
 #include "src/conditions/load_point.hpp"
 #include "src/conditions/loading_programme.hpp"
 #include "src/conditions/make_constraints.hpp"
+#include "src/conditions/obstacles.hpp"
 #include "src/conditions/pressed_boundary.hpp"
 #include "src/conditions/specification.hpp"
 #include "src/conditions/surface_tractions.hpp"
@@ -31,6 +32,7 @@ struct LoadSetting {
   double horizon = 0.0;                        ///< [m], for tractions
   std::vector<double> density = {};            ///< [kg/m3], for gravity
   std::vector<double> thermal_expansion = {};  ///< [1/K], for the temperature
+  ObstacleSetting of_obstacles = {};
   /// Sites at which tractions act on the surface; nothing: tractions are forces on points.
   std::optional<std::vector<SurfaceSite>> surface = std::nullopt;
   const IndexMap& index_map = whole_body();
@@ -59,7 +61,8 @@ class Conditions {
              const std::vector<LoadSpecification>& loads, LoadingProgramme programme = {},
              const std::vector<ControlTerm>& control = {}, const LoadSetting& setting = {},
              const Eigenstrains& eigenstrains = {}, const ConstraintSpecification& constraints = {},
-             const std::vector<FoundationSpecification>& foundations = {});
+             const std::vector<FoundationSpecification>& foundations = {},
+             const std::vector<ObstacleSpecification>& obstacles = {});
 
   [[nodiscard]] int dimension() const { return points_.dimension; }
   [[nodiscard]] const LoadingProgramme& programme() const { return programme_; }
@@ -98,6 +101,7 @@ class Conditions {
   [[nodiscard]] bool environment_changes() const { return changes_.environment; }
 
   [[nodiscard]] const Foundations& foundations() const { return foundations_; }
+  [[nodiscard]] const Obstacles& obstacles() const { return obstacles_; }
 
   [[nodiscard]] bool has_pressures() const { return !pressures_.empty(); }
   /// Faces that pressures act on, in the order of Environment::pressure.
@@ -107,8 +111,8 @@ class Conditions {
   /// prescribed degrees of freedom, which is the force that the supports add. Points of two sets
   /// count in both. Also returns the reactions of restraints: the forces of rigid sets and rollers,
   /// those of the part of the body beyond a plane of symmetry or a period and, in its first
-  /// component, the multiplier of a linear constraint; and the forces of foundations. For a part of
-  /// a body these are this rank's summands.
+  /// component, the multiplier of a linear constraint; and the forces of foundations and obstacles.
+  /// For a part of a body these are this rank's summands.
   /// @param gradient folded, see Constraints
   [[nodiscard]] std::map<std::string, Coordinates> reactions(
       std::span<const double> gradient, std::span<const double> external,
@@ -207,6 +211,7 @@ class Conditions {
   std::vector<Pressure> pressures_;
   SurfaceTractions surface_;
   Foundations foundations_;
+  Obstacles obstacles_;
   std::vector<char> prescribed_;
   MadeConstraints made_;
   std::optional<DisplacementControl> control_;

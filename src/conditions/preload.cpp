@@ -26,7 +26,8 @@ std::string short_text(double value) {
 }  // namespace
 
 bool Preload::acts() const {
-  return std::max({displacement, force_size, eigenstretch, pressure, traction, ground}) > 0.0;
+  return std::max({displacement, force_size, eigenstretch, pressure, traction, ground, obstacles}) >
+         0.0;
 }
 
 std::string Preload::description() const {
@@ -41,6 +42,7 @@ std::string Preload::description() const {
   add(pressure, "pressures up to " + short_text(pressure) + " Pa");
   add(traction, "tractions up to " + short_text(traction) + " Pa");
   add(ground, "ground displacements up to " + short_text(ground) + " m");
+  add(obstacles, "obstacles displaced by up to " + short_text(obstacles) + " m");
   return text;
 }
 
@@ -61,11 +63,12 @@ Preload find_preload(const Conditions& conditions, const Communicator& ranks) {
     preload.pressure = largest_size(environment->pressure);
     preload.traction = largest_size(environment->traction);
     preload.ground = largest_size(environment->ground);
+    preload.obstacles = largest_size(environment->obstacles);
   }
   for (double& component : preload.force) component = ranks.sum(component);
   preload.force_size = ranks.sum(preload.force_size);
   for (double* const size : {&preload.displacement, &preload.eigenstretch, &preload.pressure,
-                             &preload.traction, &preload.ground}) {
+                             &preload.traction, &preload.ground, &preload.obstacles}) {
     *size = ranks.max(*size);
   }
   return preload;

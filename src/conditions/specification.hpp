@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "src/core/types.hpp"
+#include "src/geometry/rigid_surface.hpp"
 #include "src/geometry/side.hpp"
 
 namespace peristat {
@@ -70,6 +71,17 @@ struct FoundationSpecification {
   std::optional<Side> side{};
   Coordinates modulus{}, stiffness{};
   std::array<std::string, 3> displacement{"0", "0", "0"};  ///< of the ground, an expression [m]
+};
+
+/// A rigid body that presses on points without friction: see Obstacles.
+struct ObstacleSpecification {
+  std::string name{};
+  std::string set{};  ///< points that it may touch; empty: all
+  RigidSurface surface{};
+  std::array<std::string, 3> displacement{"0", "0", "0"};  ///< an expression of load alone [m]
+  double stiffness = 1.0;  ///< relative to that of the points' cells
+  double depth = 0.25;     ///< largest depth over half a spacing, between 0 and 1
+  double softness = 1e-4;  ///< depth over half a spacing within which the stiffness sets in
 };
 
 /// Isotropic strain that a set, or without one the body, would have if nothing held it: length over

@@ -14,6 +14,7 @@ from tests.reference.case import Case, Conditions, NotUnderstood
 from tests.reference.events import Events
 from tests.reference.foundations import Foundations
 from tests.reference.mechanics import STEP, Mechanics
+from tests.reference.obstacles import Obstacles
 from tests.reference.pieces import unheld_points
 from tests.reference.results import Results
 from tests.reference.saw_tooth import SAME_STRENGTH, SawTooth
@@ -51,6 +52,7 @@ class Verification:
         self.listed_steps, self.listed_codes = self.listed_bonds()
         self.conditions = Conditions(self.case, reference, volume, sets)
         self.foundations = Foundations(self.case, self.conditions)
+        self.obstacles = Obstacles(self.case, self.conditions)
         self.ties = Ties(self.case, reference, volume, sets, self.conditions.prescribed)
         self.jump_is_free = self.mechanics.body.beyond.given_jump(0.0)[1]
         self.first_real_step = 0
@@ -224,10 +226,10 @@ class Verification:
         return self.conditions.force(load) + self.conditions.follower_force(load, displacement)
 
     def external(self, load, displacement):
-        """Loads, and the springs of foundations, whose energy is stored [N]."""
+        """Loads, and foundations and obstacles, whose energy is stored [N]."""
         if load is UNLOADED:  # nothing has moved
             return numpy.zeros(displacement.shape)
-        return self.loads(load, displacement) + self.foundations.force(displacement, load)
+        return self.loads(load, displacement) + self.foundations.force(displacement, load) + self.obstacles.force(displacement, load)
 
     def whole_force(self, mechanics, step):
         """Force of an intact bond at the largest displacement [N]. Rounding of displacements causes errors of a few
@@ -292,7 +294,8 @@ class Verification:
         # The jump at the start of a step is measured with the damage held.
         jump = numpy.where(self.jump_is_free, old.jump, step.jump)
         everywhere = mechanics.body.beyond.spread(jumped, jump)
-        after_jump = mechanics.gradient(everywhere, past, held=True) - external
+        # The program counts contacts after the jump as springs; the old state's forces are a scale below.
+        after_jump = mechanics.gradient(everywhere, past, held=True) - external + self.obstacles.force(jumped, step.loads)
         along_ties = self.ties.out_of_balance(jumped, after_jump)
         on_points = numpy.concatenate([after_jump[~held], along_ties])
         on_jumps = mechanics.pull_of_periods(everywhere, past, held=True)[self.jump_is_free]
@@ -350,6 +353,7 @@ class Verification:
         added[: mechanics.body.own] -= self.conditions.follower_force(step.loads, old.displacement)
         resting = numpy.zeros(old.displacement.shape)
         added[: mechanics.body.own] -= self.foundations.force(resting, step.loads)  # the ground's part only
+        added[: mechanics.body.own] -= self.obstacles.force(old.displacement, old.loads)
         return added
 
     def judge_pins(self, step, row, on_unheld, allowed):
@@ -382,6 +386,7 @@ class Verification:
             for axis, component in zip("xyz", force.sum(axis=0)):
                 self.compare(step, "reaction", row[f"reaction_{axis}:{name}"], component, scale)
         size = numpy.abs(self.results.reference).max() + numpy.abs(step.displacement).max()
+        self.judge_obstacles(step, row, largest, size)
         for name, about in moments.items():
             for axis, component in zip("z" if len(about) == 1 else "xyz", about):
                 self.compare(step, "moment", row[f"moment_{axis}:{name}"], component, scale * size)
@@ -391,6 +396,20 @@ class Verification:
         allowed = numpy.abs(rest).sum() + AGREEMENT * largest * len(reaction)
         if not abs(total) <= allowed:
             self.complain(step, f"reactions and loads differ by {total:.4g} N")
+
+    def judge_obstacles(self, step, row, largest, size):
+        forces = self.obstacles.forces(step.displacement, step.loads)
+        for table in self.obstacles.tables:
+            name, force = table["name"], forces[table["name"]]
+            scale = max(largest, numpy.abs(force).max()) * len(force)
+            moved = self.obstacles.moved(table, step.loads)
+            moment = self.obstacles.moment(table, force, step.displacement, step.loads)
+            reach = size + numpy.abs(numpy.array(table["point"], float) + moved).max()
+            for c, (axis, component) in enumerate(zip("xyz", force.sum(axis=0))):
+                self.compare(step, "reaction", row[f"reaction_{axis}:{name}"], component, scale)
+                self.compare(step, "obstacle", row[f"displacement_{axis}:{name}"], moved[c], size)
+            for axis in {1: "", 2: "z", 3: "xyz"}[force.shape[1]]:
+                self.compare(step, "moment", row[f"moment_{axis}:{name}"], moment["xyz".index(axis)], scale * reach)
 
     def sum_beyond(self, row):
         """Checks the written forces of planes of symmetry."""
@@ -423,7 +442,7 @@ class Verification:
 
     def judge_energies(self, mechanics, step, row, old, history):
         energies = mechanics.energies(step.everywhere, history)
-        of_springs = self.foundations.energy(step.displacement, step.loads)
+        of_springs = self.foundations.energy(step.displacement, step.loads) + self.obstacles.energy(step.displacement, step.loads)
         of_contacts = mechanics.contact_energies(step.everywhere, history)
         stored = mechanics.sum_of(energies) + of_springs.sum() + of_contacts.sum()
         scale = max(abs(stored), abs(row["external_work"]), abs(row["dissipated_energy"]))
@@ -500,6 +519,7 @@ class Verification:
         pull = (loads_before + loads + numpy.where(prescribed, at_first + now, 0)) / 2
         work = float((pull * (step.displacement - old.displacement)).sum()) + over_periods.sum() + heating
         work += self.ties.work(old, step, at_first, now) + self.foundations.work(old, step)
+        work += self.obstacles.work(old, step)
         scale = max(abs(row["external_work"]), numpy.abs(pull * (step.displacement - old.displacement)).sum())
         scale += numpy.abs(over_periods).sum()
         scale += 1e-5 * self.whole_forces(mechanics, step) * numpy.abs(step.everywhere).max()

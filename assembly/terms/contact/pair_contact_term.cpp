@@ -10,6 +10,7 @@
 #include "assembly/terms/contact/near_pairs.hpp"
 #include "assembly/terms/contact/swept_pairs.hpp"
 #include "assembly/terms/workspace.hpp"
+#include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {
@@ -149,20 +150,51 @@ class PairContactPasses : public TermPasses, BlockTangent {
     return longest_swept_share(pairs_, at, step, near_);
   }
 
-  void add_contact_row_sums(const StateView& at, std::span<double> sums) override {
+  double largest_closing(const StateView& from, const StateView& to) override {
+    std::vector<double> step(to.displacement.begin(), to.displacement.end());
+    add_scaled(step, -1.0, from.displacement);
+    const double approach = longest_approach(points_, step);
+    // Pairs that are not near have at least the skin left.
+    double largest = approach / pairs_.skin();
+    for (const NearPairs::Open& open : near_.at(from.displacement, from.history)) {
+      const Gap before = gap(open.pair, from.displacement), after = gap(open.pair, to.displacement);
+      const double left = deepest(open.pair) - before.overlap;
+      const double closed = after.overlap - before.overlap;
+      if (closed > 0.0 && left > 0.0) largest = std::max(largest, closed / left);
+    }
+    return largest;
+  }
+
+  bool has_passed(const StateView& from, const StateView& to) override {
+    std::vector<double> step(to.displacement.begin(), to.displacement.end());
+    add_scaled(step, -1.0, from.displacement);
+    return passes_through(pairs_, from, step, near_);
+  }
+
+  /// With the depths after a fifth of the gaps has closed. A row of k b'' n n^T has the sum
+  /// 2 k b'' |n_c| sum |n|.
+  void add_contact_stiffness(const StateView& at, std::span<double> stiffness) override {
+    constexpr double closes = 0.2;
+    if (!at.has_contacts || !is_finite(at.displacement)) return;
     const auto d = std::size_t(points_.dimension);
-    for_each_touching(at, [&](const TouchingPair& contact) {
+    for (const NearPairs::Open& open : near_.at(at.displacement, at.history)) {
+      const Gap now = gap(open.pair, at.displacement);
+      const double most = deepest(open.pair);
+      const double depth = (now.overlap + closes * (most - now.overlap)) / most;
+      if (!(depth > 0.0)) continue;
+      const ContactLaw::Value of_law = rule_of(open.pair).law(depth);
+      const double along = open.share * open.pair.stiffness * of_law.second;
+      const double across =
+          open.share * open.pair.stiffness * most * of_law.first / open.pair.distance;
       double of_normal = 0.0;
-      for (std::size_t c = 0; c < d; ++c) of_normal += std::abs(contact.gap.normal[c]);
-      const double across = std::abs(contact.force / contact.gap.distance);
-      for (const Index point : {contact.pair.i, contact.pair.j}) {
+      for (std::size_t c = 0; c < d; ++c) of_normal += std::abs(now.normal[c]);
+      for (const Index point : {open.pair.i, open.pair.j}) {
         for (std::size_t c = 0; c < d; ++c) {
-          sums[std::size_t(point) * d + c] +=
-              2.0 * (contact.stiffness * std::abs(contact.gap.normal[c]) * of_normal +
-                     across * double(d));
+          stiffness[std::size_t(point) * d + c] +=
+              2.0 * (along * std::abs(now.normal[c]) * of_normal + across * double(d));
         }
       }
-    });
+    }
   }
 
   /// A predictor, which begins a search, looks anew, so that what follows does not depend on
@@ -201,29 +233,37 @@ class PairContactPasses : public TermPasses, BlockTangent {
   /// @return false if the displacement is not finite
   template <class Visit>
   bool for_each_touching(const StateView& at, const Visit& visit) {
+    if (!at.has_contacts) return true;
     const bool foresees = !at.foreseen.empty();
     const std::span<const double> deciding = foresees ? at.foreseen : at.displacement;
     if (!is_finite(at.displacement) || !is_finite(deciding)) return false;
     NearPairs& near = foresees ? near_foreseen_ : near_;
     for (const NearPairs::Open& open : near.at(deciding, at.history)) {
       const ContactPair& pair = open.pair;
-      const PairContactRule& rule = pairs_.rules()[std::size_t(pair.rule)];
-      const double deepest = rule.depth * pair.distance;
+      const double most = deepest(pair);
       const Gap decides = gap(pair, deciding);
-      const double depth = decides.overlap / deepest;
+      const double depth = decides.overlap / most;
       if (foresees ? !(depth > touching) : !(depth > 0.0)) continue;
       TouchingPair contact{pair, foresees ? gap(pair, at.displacement) : decides};
-      contact.depth = contact.gap.overlap / deepest;
+      contact.depth = contact.gap.overlap / most;
       contact.is_foreseen = foresees;
       const ContactLaw::Value of_law =
-          foresees ? closed_contact(contact.depth) : rule.law(contact.depth);
+          foresees ? closed_contact(contact.depth) : rule_of(pair).law(contact.depth);
       const double stiffness = open.share * pair.stiffness;
-      contact.energy = stiffness * deepest * deepest * of_law.value;
-      contact.force = stiffness * deepest * of_law.first;
+      contact.energy = stiffness * most * most * of_law.value;
+      contact.force = stiffness * most * of_law.first;
       contact.stiffness = stiffness * of_law.second;
       visit(std::as_const(contact));
     }
     return true;
+  }
+
+  [[nodiscard]] const PairContactRule& rule_of(const ContactPair& pair) const {
+    return pairs_.rules()[std::size_t(pair.rule)];
+  }
+  /// Largest depth of a pair [m].
+  [[nodiscard]] double deepest(const ContactPair& pair) const {
+    return rule_of(pair).depth * pair.distance;
   }
 
   /// Gap of a pair. d - r follows from the change of the squared distance, whose difference from

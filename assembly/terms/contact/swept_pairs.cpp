@@ -21,13 +21,14 @@ struct Group {
   Index first, last;  // places in the cell list
 };
 
-/// First time at which a pair is as near as it may come; beyond 1: never in this step.
+constexpr double never = 2.0;
+
+/// First time at which a pair is at a share of its largest depth; `never`: not in this step.
 double time_of_contact(const ContactPairs& pairs, const ContactPair& pair, const StateView& at,
-                       std::span<const double> step) {
-  constexpr double never = 2.0;
+                       std::span<const double> step, double share) {
   const Points& points = pairs.points();
   const double depth = pairs.rules()[std::size_t(pair.rule)].depth;
-  const double least = (1.0 - share_of_depth * depth) * pair.distance;
+  const double least = (1.0 - share * depth) * pair.distance;
   double squared = -least * least, closing = 0.0, speed = 0.0;
   for (int c = 0; c < points.dimension; ++c) {
     const std::size_t i = std::size_t(pair.i) * points.dimension + c,
@@ -85,9 +86,11 @@ bool may_meet(const Group<D>& a, const Group<D>& b, double reach) {
   return true;
 }
 
-template <int D>
-double first_time(const ContactPairs& pairs, const StateView& at, std::span<const double> step,
-                  const NearPairs& near) {
+/// Visits all pairs that reach a share of their largest depth in a step, with the time.
+template <int D, class Visit>
+void for_each_swept_pair(const ContactPairs& pairs, const StateView& at,
+                         std::span<const double> step, const NearPairs& near, double share,
+                         const Visit& visit) {
   const Points& points = pairs.points();
   std::vector<double> place(points.reference);
   for (std::size_t k = 0; k < place.size(); ++k) place[k] += at.displacement[k];
@@ -104,13 +107,12 @@ double first_time(const ContactPairs& pairs, const StateView& at, std::span<cons
     return of.upper[0] + std::max(0.0, of.most_step[0]) + pairs.reach();
   };
   std::ranges::sort(groups, [&](const auto& a, const auto& b) { return begins(a) < begins(b); });
-  double first = 2.0;
   const auto look_at = [&](Index one, Index other) {
     const auto [i, j] = std::minmax(cells.point[one], cells.point[other]);
     ContactPair pair;
     if (!pairs.find_pair(i, j, pair)) return;
-    const double time = time_of_contact(pairs, pair, at, step);
-    if (time < first && near.share(pair, at.history) > 0.0) first = time;
+    const double time = time_of_contact(pairs, pair, at, step, share);
+    if (time <= 1.0 && near.share(pair, at.history) > 0.0) visit(pair, time);
   };
   for (std::size_t a = 0; a < groups.size(); ++a) {
     for (std::size_t b = a; b < groups.size() && begins(groups[b]) <= ends(groups[a]); ++b) {
@@ -122,10 +124,32 @@ double first_time(const ContactPairs& pairs, const StateView& at, std::span<cons
       }
     }
   }
-  return first;
 }
 
-/// Twice the longest step of a point [m].
+/// The same, by the pairs that are near where the step is short.
+template <class Visit>
+void visit_swept_pairs(const ContactPairs& pairs, const StateView& at, std::span<const double> step,
+                       NearPairs& near, double share, const Visit& visit) {
+  const Points& points = pairs.points();
+  const double approach = longest_approach(points, step);
+  if (approach <= pairs.skin()) {
+    const bool are_found = approach <= near.slack(at.displacement);
+    for (const NearPairs::Open& open : are_found ? near.at(at.displacement, at.history)
+                                                 : near.found_at(at.displacement, at.history)) {
+      const double time = time_of_contact(pairs, open.pair, at, step, share);
+      if (time <= 1.0) visit(open.pair, time);
+    }
+  } else if (points.dimension == 1) {
+    for_each_swept_pair<1>(pairs, at, step, near, share, visit);
+  } else if (points.dimension == 2) {
+    for_each_swept_pair<2>(pairs, at, step, near, share, visit);
+  } else {
+    for_each_swept_pair<3>(pairs, at, step, near, share, visit);
+  }
+}
+
+}  // namespace
+
 double longest_approach(const Points& points, std::span<const double> step) {
   double longest = 0.0;
   for (Index i = 0; i < points.count(); ++i) {
@@ -139,27 +163,29 @@ double longest_approach(const Points& points, std::span<const double> step) {
   return 2.0 * std::sqrt(longest);
 }
 
-}  // namespace
-
 double longest_swept_share(const ContactPairs& pairs, const StateView& at,
                            std::span<const double> step, NearPairs& near) {
-  const Points& points = pairs.points();
-  double first = 2.0;
-  const double approach = longest_approach(points, step);
-  if (approach <= pairs.skin()) {
-    const bool are_found = approach <= near.slack(at.displacement);
-    for (const NearPairs::Open& open : are_found ? near.at(at.displacement, at.history)
-                                                 : near.found_at(at.displacement, at.history)) {
-      first = std::min(first, time_of_contact(pairs, open.pair, at, step));
-    }
-  } else if (points.dimension == 1) {
-    first = first_time<1>(pairs, at, step, near);
-  } else if (points.dimension == 2) {
-    first = first_time<2>(pairs, at, step, near);
-  } else {
-    first = first_time<3>(pairs, at, step, near);
-  }
+  double first = never;
+  visit_swept_pairs(pairs, at, step, near, share_of_depth,
+                    [&](const ContactPair&, double time) { first = std::min(first, time); });
   return first <= 1.0 ? share_of_way * first : 1.0;
+}
+
+bool passes_through(const ContactPairs& pairs, const StateView& at, std::span<const double> step,
+                    NearPairs& near) {
+  bool passes = false;
+  visit_swept_pairs(pairs, at, step, near, 1.0, [&](const ContactPair& pair, double) {
+    double squared = 0.0;
+    const auto d = std::size_t(pairs.points().dimension);
+    for (std::size_t c = 0; c < d; ++c) {
+      const std::size_t i = std::size_t(pair.i) * d + c, j = std::size_t(pair.j) * d + c;
+      const double arm = pairs.points().reference[j] - pairs.points().reference[i] +
+                         (at.displacement[j] - at.displacement[i]) + (step[j] - step[i]);
+      squared += arm * arm;
+    }
+    passes |= squared > pair.distance * pair.distance;
+  });
+  return passes;
 }
 
 }  // namespace peristat

@@ -15,4 +15,12 @@ namespace peristat {
 [[nodiscard]] double longest_swept_share(const ContactPairs& pairs, const StateView& at,
                                          std::span<const double> step, NearPairs& near);
 
+/// True if a pair that is open at both ends of a step, on straight ways, comes nearer than (1 - a)
+/// d between them.
+[[nodiscard]] bool passes_through(const ContactPairs& pairs, const StateView& at,
+                                  std::span<const double> step, NearPairs& near);
+
+/// Twice the longest step of a point, the most that two points approach one another [m].
+[[nodiscard]] double longest_approach(const Points& points, std::span<const double> step);
+
 }  // namespace peristat

@@ -378,9 +378,9 @@ double asymmetry_of(const std::vector<double>& block, std::size_t count) {
   return largest > 0.0 ? difference / largest : 0.0;
 }
 
-/// Eigenstrains, pressures and ground displacements at the end of the load; under displacement
-/// control at the load 1. For implicit time steps also the inertia, which holds the points at this
-/// displacement.
+/// Eigenstrains, pressures, and displacements of grounds and obstacles at the end of the load;
+/// under displacement control at the load 1. For implicit time steps also the inertia, which holds
+/// the points at this displacement.
 SharedEnvironment environment_at_end(const Case& from, const Body& body,
                                      const std::vector<double>& displacement) {
   const Conditions& conditions = *body.conditions;
@@ -430,12 +430,17 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   const Reduced reduced(assembler, constraints, history,
                         goes_by_events ? Damage::held : Damage::grows, environment);
   const StateView at = reduced.at(displacement);
-  std::vector<double> internal_force(dofs);  // not folded, without the force of foundations
+  std::vector<double> internal_force(
+      dofs);  // not folded, without the forces of foundations and obstacles
   static_cast<void>(assembler.gradient(at, internal_force));
   body.conditions->foundations().add_force(displacement, environment, 1.0, internal_force);
+  body.conditions->obstacles().add_force(displacement, environment, 1.0, internal_force);
   const Evaluation found = reduced.gradient(displacement, gradient);
   if (found.degenerate) {
-    throw InputError("--deformation", '"' + text + '"', "collapses a bond to zero length");
+    throw InputError(
+        "--deformation", '"' + text + '"',
+        "collapses a bond to zero length, or presses a point deeper into an obstacle than it "
+        "may go");
   }
   const std::unique_ptr<TangentOperator> made_tangent =
       LinearSystems().make_tangent(assembler, constraints);

@@ -17,8 +17,8 @@ namespace peristat {
 /// dominates round-off; central differences have order 2 exactly when the derivative is right.
 /// Where truncation never does (the energy of a harmonic bar in 1D is quadratic) the order is null.
 ///
-/// Supports and dead loads are ignored. Constraints, eigenstrains, pressures and foundations act as
-/// at the end of the load.
+/// Supports and dead loads are ignored. Constraints, eigenstrains, pressures, foundations and
+/// obstacles act as at the end of the load.
 ///
 /// @param deformation current coordinates as expressions of x, y, z, separated by ';'; empty for a
 ///        fixed asymmetric deformation

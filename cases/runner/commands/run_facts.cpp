@@ -73,6 +73,7 @@ std::vector<std::string> support_sets(const Case& from) {
     if (holds && !known) sets.push_back(support.set);
   }
   for (const auto& foundation : from.foundations) sets.push_back(foundation.name);
+  for (const auto& obstacle : from.obstacles) sets.push_back(obstacle.name);
   const ConstraintSpecification& constraints = from.constraints;
   for (const auto& set : constraints.rigid_sets) sets.push_back(set.set);
   for (const auto& roller : constraints.rollers) sets.push_back(roller.name());

@@ -82,6 +82,7 @@ const std::map<std::string, std::string>& keys_of_members() {
       {"interfaces", "interface"},
       {"foundations", "foundation"},
       {"contacts", "contact"},
+      {"obstacles", "obstacle"},
       {"crack_tips", "crack_tip"},
       {"rigid_sets", "rigid"},
       {"rollers", "roller"},

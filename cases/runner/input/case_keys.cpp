@@ -96,6 +96,8 @@ Table<Case> all_keys() {
            .on_ranks(),
        K("contact", &Case::contacts, contact_keys(),
          "tables: contact of points that no whole bond joins"),
+       K("obstacle", &Case::obstacles, obstacle_keys(), "tables: rigid bodies that press on points")
+           .on_ranks(),
        K("eigenstrain", in(&Case::eigenstrains, &Eigenstrains::given), eigenstrain_keys(),
          "tables: strains without stored energy, such as growth or drying")
            .on_ranks(),

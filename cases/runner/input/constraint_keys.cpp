@@ -120,6 +120,61 @@ Table<FoundationSpecification> foundation_keys() {
       }};
 }
 
+Table<ObstacleSpecification> obstacle_keys() {
+  using Spec = ObstacleSpecification;
+  using K = Key<Spec>;
+  using Surface = RigidSurface;
+  const auto is_plane = [](auto& of, auto&) { return of.surface.kind == Surface::Kind::plane; };
+  const auto is_curved = [](auto& of, auto&) { return of.surface.kind != Surface::Kind::plane; };
+  const auto has_no_axis = [](auto& of, auto& from) {
+    return of.surface.kind != Surface::Kind::cylinder || from.dimension < 3;
+  };
+  return {
+      "obstacle",
+      {K("name", &Spec::name, name(), "name under which its force is reported").required(),
+       K("set", &Spec::set, known_set(), "set of the points that it can touch")
+           .written_if([](auto& of, auto&) { return !of.set.empty(); })
+           .default_words("all points"),
+       K("shape", in(&Spec::surface, &Surface::kind),
+         choice<Surface::Kind>({{"plane", Surface::Kind::plane},
+                                {"cylinder", Surface::Kind::cylinder},
+                                {"sphere", Surface::Kind::sphere}}),
+         "shape of its surface: in 1D a plane, in 2D a plane or a cylinder (a disk)")
+           .early()
+           .required(),
+       K("point", in(&Spec::surface, &Surface::point), coordinates(),
+         "a place on the plane or on the cylinder's axis, or the centre of the sphere; moments are "
+         "reported about it")
+           .required(),
+       K("normal", in(&Spec::surface, &Surface::direction), coordinates(""),
+         "`plane`: direction from it towards the body, a vector of any length")
+           .moreover("not all zero")
+           .unless(is_curved, "is for shape \"plane\"")
+           .required("required for a plane"),
+       K("axis", in(&Spec::surface, &Surface::direction), coordinates(""),
+         "`cylinder` in 3D: direction of its axis, a vector of any length")
+           .moreover("not all zero")
+           .unless(has_no_axis, "is for shape \"cylinder\" in 3D")
+           .required("required for a cylinder in 3D"),
+       K("radius", in(&Spec::surface, &Surface::radius), positive("m"),
+         "`cylinder`, `sphere`: radius, at least two spacings")
+           .unless(is_plane, "is for shapes \"cylinder\" and \"sphere\"")
+           .required("required for these"),
+       K("inside", in(&Spec::surface, &Surface::is_hollow), boolean(),
+         "`cylinder`, `sphere`: the body is inside of it")
+           .unless(is_plane, "is for shapes \"cylinder\" and \"sphere\""),
+       K("displacement", &Spec::displacement, obstacle_displacement(),
+         "displacement of the obstacle, per component"),
+       K("stiffness", &Spec::stiffness, positive(""),
+         "stiffness of the contact relative to that of the point's cell, Young's modulus times its "
+         "section over half a spacing"),
+       K("depth", &Spec::depth, between(0.001, 0.999),
+         "depth that no point may reach, relative to half a spacing"),
+       K("softness", &Spec::softness, between(1e-12, 0.999),
+         "depth over which the stiffness sets in, relative to half a spacing")
+           .moreover("below `depth`")}};
+}
+
 Table<SymmetryPlane> symmetry_keys() {
   using K = Key<SymmetryPlane>;
   return {"symmetry",

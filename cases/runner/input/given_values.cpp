@@ -84,6 +84,12 @@ class Collection {
                       of.name, of.set, true},
                      of.displacement, dimension_);
     }
+    for (std::size_t k = 0; k < from_.obstacles.size(); ++k) {
+      const ObstacleSpecification& of = from_.obstacles[k];
+      add_components(
+          {ValueKind::displacement, indexed("obstacle", k) + ".displacement", "", "m", of.name, ""},
+          of.displacement, dimension_);
+    }
   }
 
   void add_constraints() {

@@ -605,6 +605,11 @@ Kind<std::array<std::string, 3>> displacement_components() {
       "m");
 }
 
+Kind<std::array<std::string, 3>> obstacle_displacement() {
+  return located_components(
+      false, "an obstacle can't be free; its motion is given in all components", "m");
+}
+
 Kind<std::vector<std::string>> stress_components() {
   const auto read = [](const Entry& at) {
     const std::size_t entries = at.so_far.dimension == 2 ? 3 : 6;

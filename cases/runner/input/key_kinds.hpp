@@ -106,6 +106,8 @@ enum class Components { axes, rotations, of_load };
 /// Per component an expression of load, and of place unless it is a total.
 [[nodiscard]] Kind<std::array<std::string, 3>> force_components(bool is_total,
                                                                 const std::string& unit);
+/// Per component an expression of load alone.
+[[nodiscard]] Kind<std::array<std::string, 3>> obstacle_displacement();
 
 /// Per entry of a stress, xx yy xy or xx yy zz xy yz xz, an expression of place and load.
 [[nodiscard]] Kind<std::vector<std::string>> stress_components();

@@ -37,7 +37,7 @@ enum class Option {
   collocation,
   interfaces,
   eigenstrains,
-  contacts,
+  contacts,  ///< of points, and with obstacles
   given_neighbours,
   horizons,  ///< of points, each its own
   convolutions,
@@ -104,7 +104,7 @@ inline constexpr std::array<OptionOfMaterial, 16> options_of_material{{
 
 using OptionOfBody = OptionOf<BodySpecification>;
 inline constexpr CollocationSpecification usual_collocation;
-inline constexpr std::array<OptionOfBody, 13> options_of_body{{
+inline constexpr std::array<OptionOfBody, 14> options_of_body{{
     {Option::horizons, "horizon_per_size", [](auto& of) { return of.horizon_per_size != 0.0; }},
     {Option::volume_correction, "volume_correction",
      [](auto& of) { return of.volume_correction != VolumeCorrection::none; }},
@@ -122,6 +122,7 @@ inline constexpr std::array<OptionOfBody, 13> options_of_body{{
      [](auto& of) { return of.collocation.normals != usual_collocation.normals; }},
     {Option::interfaces, "interfaces", [](auto& of) { return !of.interfaces.empty(); }},
     {Option::contacts, "contacts", [](auto& of) { return !of.contacts.empty(); }},
+    {Option::contacts, "obstacles", [](auto& of) { return !of.obstacles.empty(); }},
     {Option::eigenstrains, "eigenstrains", [](auto& of) { return of.eigenstrains.are_there(); }},
     {Option::convolutions, "force_operator", [](auto& of) { return of.is_convolved(); }},
 }};

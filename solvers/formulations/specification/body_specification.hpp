@@ -90,6 +90,7 @@ struct BodySpecification {
   std::vector<LoadSpecification> loads{};
   std::vector<FoundationSpecification> foundations{};
   std::vector<ContactSpecification> contacts{};  ///< of points
+  std::vector<ObstacleSpecification> obstacles{};
   ConstraintSpecification constraints{};
   Eigenstrains eigenstrains{};
   /// Terms of the displacement that is controlled in the place of `load`, see DisplacementControl;

@@ -27,6 +27,14 @@ std::vector<ProbeColumns> constraint_columns(const Case& from) {
       columns.push_back({column("rotation", axis, set.set), 1, "rad"});
     }
   }
+  for (const ObstacleSpecification& obstacle : from.obstacles) {
+    for (const int axis : axes_of(from.dimension)) {
+      columns.push_back({column("moment", axis, obstacle.name), 1, "N m"});
+    }
+    for (int c = 0; c < from.dimension; ++c) {
+      columns.push_back({column("displacement", c, obstacle.name), 1, "m"});
+    }
+  }
   for (const PeriodSpecification& period : from.constraints.periods) {
     for (int c = 0; c < from.dimension; ++c) {
       columns.push_back({column("gradient", c, name_of_period(period)), 1, "1"});
@@ -46,6 +54,17 @@ void add_constraint_values(const Conditions& conditions, const Trial& state,
     for (const int axis : axes_of(conditions.dimension())) {
       values[column("moment", axis, set)] = {moment[std::size_t(axis)]};
       values[column("rotation", axis, set)] = {rotations.at(set)[std::size_t(axis)]};
+    }
+  }
+  for (const auto& [name, action] :
+       conditions.obstacles().actions(state.displacement, state.environment)) {
+    const std::vector<double> moment =
+        ranks.sum(std::vector<double>(action.moment.begin(), action.moment.end()));
+    for (const int axis : axes_of(conditions.dimension())) {
+      values[column("moment", axis, name)] = {moment[std::size_t(axis)]};
+    }
+    for (int c = 0; c < conditions.dimension(); ++c) {
+      values[column("displacement", c, name)] = {action.displacement[std::size_t(c)]};
     }
   }
   for (const auto& [period, gradient] : conditions.mean_gradients(state.displacement)) {

@@ -1,0 +1,208 @@
+#include "src/conditions/obstacles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "src/conditions/points_of_set.hpp"
+#include "src/conditions/with_key.hpp"
+#include "src/core/coordinates.hpp"
+#include "src/core/input_error.hpp"
+#include "src/core/number_text.hpp"
+#include "src/geometry/expression_at_points.hpp"
+#include "src/geometry/point_sizes.hpp"
+
+namespace peristat {
+namespace {
+
+void require_between(double value, double low, double high, const std::string& key,
+                     const std::string& allowed) {
+  if (value > low && value < high) return;
+  throw InputError(key, number_text(value), allowed);
+}
+
+/// The surface with a unit direction, as the body's dimension needs it.
+RigidSurface checked_surface(RigidSurface surface, int dimension, const std::string& table) {
+  using Kind = RigidSurface::Kind;
+  const bool is_plane = surface.kind == Kind::plane;
+  if (dimension == 1 && !is_plane) {
+    throw InputError(table + ".shape", "", "must be \"plane\" in 1D");
+  }
+  if (dimension == 2 && surface.kind == Kind::sphere) {
+    throw InputError(table + ".shape", "sphere", "is for dimension 3; in 2D a cylinder is a disk");
+  }
+  if (dimension == 2 && surface.kind == Kind::cylinder) surface.direction = {0.0, 0.0, 1.0};
+  if (surface.kind == Kind::sphere) return surface;
+  const double norm = length(surface.direction);
+  if (!(norm > 0.0) || !std::isfinite(norm)) {
+    throw InputError(table + (is_plane ? ".normal" : ".axis"), "",
+                     "must be a vector that is not zero");
+  }
+  surface.direction = unit(surface.direction);
+  return surface;
+}
+
+/// Points that an obstacle may touch and that this rank owns.
+std::vector<Index> touchable_points(const Points& points, const std::string& set,
+                                    const std::string& key) {
+  std::vector<Index> members(std::size_t(points.own()));
+  std::iota(members.begin(), members.end(), Index(0));
+  if (!set.empty()) members = points_of_set(points, set, key);
+  if (points.owned) std::erase_if(members, [&](Index point) { return point >= *points.owned; });
+  return members;
+}
+
+/// A cylinder or sphere below two spacings presses on single points.
+void refuse_small_radius(const RigidSurface& surface, double size, const std::string& table) {
+  if (surface.kind == RigidSurface::Kind::plane) return;
+  constexpr double least = 2.0;  // spacings
+  if (surface.radius >= least * size * (1.0 - 1e-9)) return;
+  throw InputError(table + ".radius", number_text(surface.radius),
+                   "must be at least two spacings, " + number_text(least * size) +
+                       " m here: a smaller obstacle presses on single points, and fits between "
+                       "them; take a finer spacing");
+}
+
+}  // namespace
+
+Obstacles::Obstacles(const Points& points, const std::vector<ObstacleSpecification>& specifications,
+                     const std::vector<std::string>& parameters, const ObstacleSetting& setting,
+                     const Communicator& ranks)
+    : dimension_(points.dimension) {
+  for (std::size_t k = 0; k < specifications.size(); ++k) {
+    const ObstacleSpecification& of = specifications[k];
+    const std::string table = indexed("obstacles", k);
+    if (!points.spacing.is_square()) {
+      throw InputError(table, "", "needs square or cubic cells: one spacing for all axes");
+    }
+    require_between(of.stiffness, 0.0, 1e30, table + ".stiffness", "must be positive");
+    require_between(of.depth, 0.0, 1.0, table + ".depth", "must be between 0 and 1");
+    require_between(of.softness, 0.0, of.depth, table + ".softness",
+                    "must be positive and below depth, " + number_text(of.depth));
+    Obstacle made{of.name,
+                  table,
+                  checked_surface(of.surface, dimension_, table),
+                  of.depth,
+                  ContactLaw{of.softness / of.depth},
+                  contacts_.size(),
+                  0,
+                  {}};
+    double largest = 0.0;
+    for (const Index point : touchable_points(points, of.set, table + ".set")) {
+      // Points of a refined lattice have sizes of their own, as those of a cloud.
+      const bool is_alike = points.lattice && points.horizons.empty();
+      const double size =
+          is_alike ? double(points.spacing) : size_of_point(points, point, setting.cross_section);
+      const double distance = 0.5 * size;
+      const double area = setting.cross_section * std::pow(size, dimension_ - 1);
+      const double modulus = setting.youngs_modulus.at(std::size_t(point));
+      contacts_.push_back({point, distance, of.stiffness * modulus * area / distance});
+      reference_.push_back(minus(points.position(point), made.surface.point));
+      largest = std::max(largest, size);
+    }
+    refuse_small_radius(made.surface, ranks.max(largest), table);
+    made.last = contacts_.size();
+    for (int c = 0; c < dimension_; ++c) {
+      const std::string key = indexed(table + ".displacement", std::size_t(c));
+      made.displacement.push_back(with_key(key, [&] {
+        return Expression(of.displacement[std::size_t(c)], 0, points.spacing, parameters,
+                          points.columns, functions_of(points.functions));
+      }));
+    }
+    obstacles_.push_back(std::move(made));
+  }
+}
+
+bool Obstacles::move() const {
+  return std::ranges::any_of(obstacles_, [](const Obstacle& of) {
+    return std::ranges::any_of(of.displacement,
+                               [](const Expression& along) { return along.text() != "0"; });
+  });
+}
+
+std::vector<double> Obstacles::displacements(std::span<const double> loads) const {
+  std::vector<double> all;
+  for (const Obstacle& of : obstacles_) {
+    for (std::size_t c = 0; c < of.displacement.size(); ++c) {
+      all.push_back(with_key(indexed(of.table + ".displacement", c),
+                             [&] { return of.displacement[c]({}, loads); }));
+    }
+  }
+  return all;
+}
+
+Coordinates Obstacles::moved(std::size_t obstacle, const SharedEnvironment& environment) const {
+  Coordinates moved{};
+  if (!environment || environment->obstacles.empty()) return moved;
+  const auto d = std::size_t(dimension_);
+  for (std::size_t c = 0; c < d; ++c) moved[c] = environment->obstacles[obstacle * d + c];
+  return moved;
+}
+
+Coordinates Obstacles::place(std::size_t contact, std::span<const double> displacement,
+                             const Coordinates& of_obstacle) const {
+  Coordinates place = minus(reference_[contact], of_obstacle);
+  const auto d = std::size_t(dimension_);
+  const double* const own = &displacement[std::size_t(contacts_[contact].point) * d];
+  for (std::size_t c = 0; c < d; ++c) place[c] += own[c];
+  return place;
+}
+
+void Obstacles::refuse_overlap(const Communicator& ranks) const {
+  constexpr double round_off = 1e-9;  // of half a spacing
+  for (const Obstacle& of : obstacles_) {
+    double deepest = 0.0;
+    for (std::size_t c = of.first; c < of.last; ++c) {
+      const double depth = contacts_[c].distance - of.surface.distance(reference_[c]).value;
+      if (depth > round_off * contacts_[c].distance) deepest = std::max(deepest, depth);
+    }
+    deepest = ranks.max(deepest);
+    if (deepest == 0.0) continue;
+    throw InputError(of.table, "",
+                     "begins inside the body: it would press " + number_text(deepest) +
+                         " m deep. The body reaches half a spacing beyond its points; move the "
+                         "obstacle back by this depth or more");
+  }
+}
+
+void Obstacles::add_force(std::span<const double> displacement,
+                          const SharedEnvironment& environment, double factor,
+                          std::span<double> force) const {
+  const auto d = std::size_t(dimension_);
+  for_each_pressed(displacement, {}, environment, [&](const Pressed& contact) {
+    for (std::size_t c = 0; c < d; ++c) {
+      force[std::size_t(contact.point) * d + c] +=
+          factor * contact.force() * contact.depth.distance.gradient[c];
+    }
+  });
+}
+
+std::map<std::string, Obstacles::Action> Obstacles::actions(
+    std::span<const double> displacement, const SharedEnvironment& environment) const {
+  std::map<std::string, Action> actions;
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    actions[obstacles_[k].name].displacement = moved(k, environment);
+  }
+  for_each_pressed(displacement, {}, environment, [&](const Pressed& contact) {
+    Action& action = actions[contact.obstacle.name];
+    const Coordinates force = scaled(contact.force(), contact.depth.distance.gradient);
+    action.force = plus(action.force, force);
+    action.moment = plus(action.moment,
+                         cross(place(contact.contact, displacement, action.displacement), force));
+  });
+  return actions;
+}
+
+double Obstacles::work(std::span<const double> from, const SharedEnvironment& under_from,
+                       std::span<const double> to, const SharedEnvironment& under_to) const {
+  double work = 0.0;
+  auto before = actions(from, under_from), after = actions(to, under_to);
+  for (const Obstacle& of : obstacles_) {
+    const Action &one = before[of.name], &other = after[of.name];
+    work += 0.5 * dot(plus(one.force, other.force), minus(other.displacement, one.displacement));
+  }
+  return work;
+}
+
+}  // namespace peristat

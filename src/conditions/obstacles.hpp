@@ -1,0 +1,172 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "src/conditions/environment.hpp"
+#include "src/conditions/specification.hpp"
+#include "src/core/expression.hpp"
+#include "src/geometry/points.hpp"
+#include "src/parallel/communicator.hpp"
+#include "src/potentials/contact_law.hpp"
+
+namespace peristat {
+
+/// Data of the points that obstacles press on.
+struct ObstacleSetting {
+  double cross_section = 0.0;            ///< h in 2D [m], the area in 1D [m2], 1 in 3D
+  std::vector<double> youngs_modulus{};  ///< E per point [Pa]
+};
+
+/// Rigid obstacles that press on points without friction. A body's surface is half a spacing d =
+/// Delta/2 in front of its outermost points. A point at the signed distance phi from an obstacle
+/// has the relative depth x = (d - phi) / (a d), and the energy
+///
+///   k (a d)^2 b(x),  k = alpha E A / d,  A = h Delta (2D), Delta^2 (3D), the area (1D),
+///
+/// b of ContactLaw. The force on the point is k a d b' along n = grad phi. Delta is the spacing of
+/// a lattice, elsewhere the point's own size.
+class Obstacles {
+ public:
+  /// A point that an obstacle may touch.
+  struct Contact {
+    Index point = 0;
+    double distance = 0.0;   ///< d [m]
+    double stiffness = 0.0;  ///< k [N/m]
+  };
+  struct Obstacle {
+    std::string name, table;
+    RigidSurface surface;
+    double depth = 0.0;  ///< a
+    ContactLaw law;
+    std::size_t first = 0, last = 0;  ///< of its contacts
+    std::vector<Expression> displacement{};
+  };
+  /// A contact in a state.
+  struct Depth {
+    RigidSurface::Distance distance;
+    double relative = 0.0;  ///< x
+  };
+  /// A contact that has an energy.
+  struct Pressed {
+    Index point = 0;
+    std::size_t contact = 0;
+    const Obstacle& obstacle;
+    Depth depth;
+    ContactLaw::Value law;
+    double scale = 0.0;      ///< a d [m]
+    double stiffness = 0.0;  ///< k [N/m]
+    bool is_foreseen = false;
+
+    [[nodiscard]] double energy() const { return stiffness * scale * scale * law.value; }
+    [[nodiscard]] double force() const { return stiffness * scale * law.first; }  ///< along n
+  };
+
+  Obstacles() = default;
+
+  /// @param ranks that have parts of the body: collective, each rank has the contacts of its own
+  ///        points
+  /// @throws InputError ("obstacles[k].…", k from 0) for a bad surface, number or expression, and
+  /// for
+  ///         cells that are no squares or cubes
+  Obstacles(const Points& points, const std::vector<ObstacleSpecification>& specifications,
+            const std::vector<std::string>& parameters, const ObstacleSetting& setting,
+            const Communicator& ranks);
+
+  [[nodiscard]] bool none() const { return obstacles_.empty(); }
+  [[nodiscard]] std::span<const Obstacle> all() const { return obstacles_; }
+  [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
+
+  [[nodiscard]] bool move() const;
+  /// Displacement of all, obstacles x dimension [m].
+  /// @throws InputError if it is not finite
+  [[nodiscard]] std::vector<double> displacements(std::span<const double> loads) const;
+
+  /// @throws InputError if an obstacle that has not moved is inside the undeformed body.
+  /// Collective.
+  void refuse_overlap(const Communicator& ranks) const;
+
+  /// Calls visit(Pressed) for every contact with an energy, in the order of the contacts.
+  /// @param foreseen see StateView
+  template <class Visit>
+  void for_each_pressed(std::span<const double> displacement, std::span<const double> foreseen,
+                        const SharedEnvironment& environment, const Visit& visit) const;
+
+  /// Calls visit(number of the contact, obstacle, relative place, step of the place) for every
+  /// contact.
+  template <class Visit>
+  void for_each_place(std::span<const double> displacement, const SharedEnvironment& environment,
+                      const Visit& visit) const;
+
+  /// Adds factor * the forces on the points [N].
+  void add_force(std::span<const double> displacement, const SharedEnvironment& environment,
+                 double factor, std::span<double> force) const;
+
+  /// Of an obstacle: its force on the body [N], the moment of this about the obstacle's `point`,
+  /// which has moved with it [N m], and its displacement [m].
+  struct Action {
+    Coordinates force{}, moment{}, displacement{};
+  };
+  [[nodiscard]] std::map<std::string, Action> actions(std::span<const double> displacement,
+                                                      const SharedEnvironment& environment) const;
+
+  /// Work that the obstacles do on the body from one state to another by the trapezoidal rule [J].
+  [[nodiscard]] double work(std::span<const double> from, const SharedEnvironment& under_from,
+                            std::span<const double> to, const SharedEnvironment& under_to) const;
+
+ private:
+  [[nodiscard]] Coordinates moved(std::size_t obstacle, const SharedEnvironment& environment) const;
+  [[nodiscard]] static double relative_depth(const Obstacle& of, const Contact& contact,
+                                             double distance) {
+    return (contact.distance - distance) / (of.depth * contact.distance);
+  }
+  [[nodiscard]] Coordinates place(std::size_t contact, std::span<const double> displacement,
+                                  const Coordinates& of_obstacle) const;
+
+  int dimension_ = 0;
+  std::vector<Contact> contacts_;
+  std::vector<Coordinates> reference_;  // of the contacts' points, relative to their obstacle [m]
+  std::vector<Obstacle> obstacles_;
+};
+
+template <class Visit>
+void Obstacles::for_each_place(std::span<const double> displacement,
+                               const SharedEnvironment& environment, const Visit& visit) const {
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const Coordinates of_obstacle = moved(k, environment);
+    for (std::size_t c = obstacles_[k].first; c < obstacles_[k].last; ++c) {
+      visit(c, obstacles_[k], place(c, displacement, of_obstacle));
+    }
+  }
+}
+
+template <class Visit>
+void Obstacles::for_each_pressed(std::span<const double> displacement,
+                                 std::span<const double> foreseen,
+                                 const SharedEnvironment& environment, const Visit& visit) const {
+  // A contact at rest counts as touching in spite of round-off.
+  constexpr double round_off = 1e-9;
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const Obstacle& of = obstacles_[k];
+    const Coordinates of_obstacle = moved(k, environment);
+    for (std::size_t c = of.first; c < of.last; ++c) {
+      const Contact& contact = contacts_[c];
+      const auto depth_at = [&](std::span<const double> at) -> Depth {
+        const auto distance = of.surface.distance(place(c, at, of_obstacle));
+        return {distance, relative_depth(of, contact, distance.value)};
+      };
+      const bool is_foreseen = !foreseen.empty();
+      const Depth depth = depth_at(displacement);
+      const bool is_closed =
+          is_foreseen ? depth_at(foreseen).relative > -round_off : depth.relative > 0.0;
+      if (!is_closed) continue;
+      visit(Pressed{contact.point, c, of, depth,
+                    is_foreseen ? closed_contact(depth.relative) : of.law(depth.relative),
+                    of.depth * contact.distance, contact.stiffness, is_foreseen});
+    }
+  }
+}
+
+}  // namespace peristat

@@ -1,0 +1,100 @@
+"""Rigid obstacles (docs/contact.md): energies of points by their depth, forces as complex steps of these."""
+
+import numpy
+
+from tests.reference.case import evaluate
+
+STEP = 1e-30  # of the complex steps, relative to half a spacing
+
+
+def law(x, bend):
+    """b(x), of which b' is s / (1 - s): s = x^2 / 2 x0 up to x0, x - x0 / 2 beyond. By antiderivatives: with q = sqrt(2 x0),
+    b = q artanh(x / q) - x in the onset."""
+    q = numpy.sqrt(2 * bend)
+
+    def onset(x):
+        t = x / q
+        series = q * (t**3 / 3 + t**5 / 5 + t**7 / 7 + t**9 / 9)
+        small = abs(t) < 0.05
+        return numpy.where(small, series, q * numpy.arctanh(numpy.where(small, 0.01, t)) - x)
+
+    def line(s):
+        series = s**2 / 2 + s**3 / 3 + s**4 / 4 + s**5 / 5 + s**6 / 6 + s**7 / 7
+        small = abs(s) < 0.005
+        return numpy.where(small, series, -s - numpy.log(1 - numpy.where(small, 0.01, s)))
+
+    beyond = onset(bend + 0 * x) + line(x - bend / 2) - line(bend / 2 + 0 * x)
+    return numpy.where(x.real <= 0, 0, numpy.where(x.real <= bend, onset(numpy.where(x.real <= bend, x, 0)), beyond))
+
+
+class Obstacles:
+    def __init__(self, case, conditions):
+        self.case, self.conditions, self.tables = case, conditions, case.get("obstacle")
+        if not self.tables:
+            return
+        dimension = conditions.reference.shape[1]
+        if case.is_lattice and not case.is_refined:
+            size = numpy.full(len(conditions.volume), conditions.spacing)
+        else:
+            size = (conditions.volume / case.cross_section) ** (1 / dimension)
+        self.distance = size / 2
+        modulus = numpy.full(len(size), float(case["material"].get("youngs_modulus", 0)))
+        for region in case.get("region"):
+            modulus[conditions.sets[region["set"]]] = region["material"]["youngs_modulus"]
+        self.stiffness = modulus * case.cross_section * size ** (dimension - 1) / self.distance
+
+    def moved(self, table, load):
+        components = table.get("displacement", [0] * self.conditions.reference.shape[1])
+        place = numpy.zeros((1, self.conditions.reference.shape[1]))
+        return numpy.array([float(numpy.ravel(evaluate(c, place, load, self.conditions.spacing))[0]) for c in components])
+
+    def gap(self, table, displacement, load):
+        """Signed distance of the points."""
+        arm = self.conditions.reference + displacement - numpy.array(table["point"], float) - self.moved(table, load)
+        if table["shape"] == "plane":
+            return arm @ (numpy.array(table["normal"], float) / numpy.linalg.norm(table["normal"]))
+        if table["shape"] == "cylinder" and arm.shape[1] == 3:
+            axis = numpy.array(table["axis"], float) / numpy.linalg.norm(table["axis"])
+            arm = arm - numpy.outer(arm @ axis, axis)
+        rho = numpy.sqrt((arm**2).sum(axis=1))
+        return table["radius"] - rho if table.get("inside") else rho - table["radius"]
+
+    def energies(self, table, displacement, load):
+        """Energy of each point [J]."""
+        depth, softness, alpha = table.get("depth", 0.25), table.get("softness", 1e-4), table.get("stiffness", 1.0)
+        scale = depth * self.distance
+        x = (self.distance - self.gap(table, displacement, load)) / scale
+        members = self.conditions.sets[table["set"]] if "set" in table else numpy.ones(len(x), bool)
+        return numpy.where(members, alpha * self.stiffness * scale**2 * law(x, softness / depth), 0)
+
+    def energy(self, displacement, load):
+        return sum((self.energies(table, displacement, load) for table in self.tables), numpy.zeros(len(displacement)))
+
+    def forces(self, displacement, load):
+        """Force on each point, by name [N]: no difference, but a complex step of its energy."""
+        forces = {}
+        for table in self.tables:
+            force = numpy.zeros(displacement.shape)
+            for c in range(displacement.shape[1]):
+                shifted = displacement.astype(complex)
+                shifted[:, c] += 1j * STEP * self.distance
+                force[:, c] = -self.energies(table, shifted, load).imag / (STEP * self.distance)
+            forces[table["name"]] = force
+        return forces
+
+    def force(self, displacement, load):
+        return sum(self.forces(displacement, load).values(), numpy.zeros(displacement.shape))
+
+    def moment(self, table, force, displacement, load):
+        """About the point of the obstacle, which has moved with it; of all axes [N m]."""
+        arm = self.conditions.reference + displacement - numpy.array(table["point"], float) - self.moved(table, load)
+        pad = [(0, 0), (0, 3 - arm.shape[1])]
+        return numpy.cross(numpy.pad(arm, pad), numpy.pad(force, pad)).sum(axis=0)
+
+    def work(self, old, new):
+        """Mean of the forces in both states times the motion [J]."""
+        if not self.tables:
+            return 0.0
+        before, after = (self.forces(step.displacement, step.loads) for step in (old, new))
+        return sum((before[t["name"]] + after[t["name"]]).sum(axis=0) / 2 @ (self.moved(t, new.loads) - self.moved(t, old.loads))
+                   for t in self.tables)  # fmt: skip
