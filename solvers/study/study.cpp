@@ -6,7 +6,6 @@
 #include "solvers/body/require_memory_for.hpp"
 #include "solvers/body/unheld_body.hpp"
 #include "solvers/body/without_equation.hpp"
-#include "solvers/formulations/specification/for_each_material.hpp"
 #include "solvers/motion/stable_step.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"

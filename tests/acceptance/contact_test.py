@@ -1,0 +1,156 @@
+"""Contact of points, from the command line: beside an independent reference, closed forms, and what is refused."""
+
+import numpy
+
+from tests.acceptance.folder import Folder
+from tests.acceptance.motions import columns
+from tests.reference.verify import Verification
+from tests.same_results import differences
+
+HEAD = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3.015
+thickness = 1e-3
+shape = [{ add = "box", min = [0, 0], max = [0.024, 0.006] }]
+[[set]]
+name = "left"
+where = "x < 0.012"
+[[set]]
+name = "right"
+where = "x > 0.012"
+[[set]]
+name = "left_end"
+where = "x < spacing"
+[[set]]
+name = "right_end"
+where = "x > 0.024 - spacing"
+[quadrature]
+volume_correction = "linear"
+[material]
+model = "bond"
+youngs_modulus = 70e9
+density = 2700
+"""
+CUT = """\
+[[crack]]
+from = [0.012, -1e-3]
+to = [0.012, 7e-3]
+[[contact]]
+softness = 1e-5
+"""
+PRESSED = """\
+[[support]]
+set = "left_end"
+displacement = [0, 0]
+[[support]]
+set = "right_end"
+displacement = ["1e-5*load", "2e-6*load"]
+[loading]
+table = [0, -1, 0.5, -3, 0]
+"""
+BRITTLE = CUT + '[material.damage]\nlaw = "critical_stretch"\ncritical = 2e-4\nno_fail = ["left_end", "right_end"]\n'
+FLYING = """\
+[[initial]]
+set = "left"
+velocity = [10, 0]
+[[initial]]
+set = "right"
+velocity = [-10, 0]
+[solver]
+mode = "dynamics"
+[dynamics]
+end_time = 1.4e-5
+"""
+
+
+class ContactTest(Folder):
+    def assert_verified(self, text, folder):
+        verification = Verification(folder, text)
+        verification.run()
+        self.assertEqual(verification.complaints, [])
+
+    def test_every_state_is_an_equilibrium_of_the_reference(self):
+        for law in (CUT, CUT + "stiffness = 3.0\ndepth = 0.2\ndistance = 0.9e-3\n"):
+            text = HEAD + law + PRESSED
+            folder = self.run_case(text)
+            self.assert_verified(text, folder)
+            rows = columns(folder)
+            self.assertLess(rows["reaction_x:right_end"][1], -1.0)  # pressed
+            self.assertLess(abs(rows["reaction_x:right_end"][2]), 1e-6)  # apart
+            self.assertLessEqual(rows["newton_iterations"].max(), 6)
+
+    def test_a_closed_cut_is_nearly_as_stiff_as_the_whole_bar(self):
+        steps = '[loading]\nsteps = 1\n'
+        pressed = PRESSED.split("[loading]")[0].replace("1e-5*load", "-1e-5*load").replace('"2e-6*load"', "0") + steps
+        force = [columns(self.run_case(HEAD + cut + pressed))["reaction_x:right_end"][1] for cut in (CUT, "")]
+        # The faces of the cut add 2.65 spacings of bar (volumes "linear", three spacings): 24 / (24 - 2 + 2.65) and
+        # less, as the supports hold a row at each end.
+        self.assertGreater(force[0] / force[1], 0.88)
+        self.assertLess(force[0] / force[1], 0.93)
+
+    def test_broken_bonds_close_again(self):
+        text = HEAD + BRITTLE.replace(CUT, "") + "[[contact]]\nsoftness = 1e-5\n" + PRESSED.replace(
+            "[0, -1, 0.5, -3, 0]", "[0, 2, -1]") + '[solver]\nmode = "adaptive"\n'
+        text = text.replace("[loading]\n", "[loading]\nsteps = 20\n")
+        folder = self.run_case(text)
+        self.assert_verified(text, folder)
+        rows = columns(folder)
+        self.assertGreater(rows["broken_bonds"][-1], 50)
+        self.assertLess(rows["reaction_x:right_end"][-1], -5.0)
+        without = self.run_case(text.replace("[[contact]]\nsoftness = 1e-5\n", ""), name="without")
+        self.assertGreater(columns(without)["reaction_x:right_end"][-1], -1.0)
+
+    def test_resumed_runs_and_threads(self):
+        text = HEAD + CUT + PRESSED
+        whole = self.run_case(text)
+        self.run_case(text, "loading.table=[0, -1, 0.5]", name="part")
+        self.resume("part", "loading.table=[0, -1, 0.5, -3, 0]")
+        self.assertEqual(differences(whole, self.folder / "part"), [])
+        two = columns(self.run_case(text, name="two", threads=2))
+        one = columns(whole)
+        numpy.testing.assert_allclose(two["stored_energy"], one["stored_energy"], rtol=1e-9, atol=1e-20)
+
+    def test_bars_that_collide_part_again(self):
+        for scheme, energy in (("verlet", 2e-2), ("newmark", 1e-2)):
+            step = "time_step = 5e-8\n" if scheme == "newmark" else ""
+            text = HEAD + CUT.replace("softness = 1e-5", 'set = "left"\nwith = "right"') + FLYING
+            text += f'scheme = "{scheme}"\n{step}'
+            rows = columns(self.run_case(text, name=scheme))
+            mass = 2700 * 0.024 * 0.006 * 1e-3
+            self.assertLess(abs(rows["momentum_x"]).max(), 1e-12 * mass * 10)
+            total = rows["kinetic_energy"] + rows["stored_energy"]
+            numpy.testing.assert_allclose(total, 0.5 * mass * 100, rtol=energy)
+            # After 2 l / c = 4.7e-6 s and the passage of the faces the halves fly apart with nearly all of the speed.
+            self.assertGreater(rows["kinetic_energy"][-1], 0.9 * 0.5 * mass * 100)
+
+    def test_nothing_passes_through_in_one_long_step(self):
+        text = HEAD + CUT + PRESSED.replace("1e-5*load", "2e-2*load").replace("[0, -1, 0.5, -3, 0]", "[0, -1]")
+        self.run_case(text, code=3)
+        self.assertIn("degenerate", self.ended.output + self.ended.errors)
+
+    def test_refused(self):
+        text = HEAD + CUT + PRESSED
+        for change, words in {
+            "contact[0].depth=0.9": "depth",
+            "contact[0].stiffness=0": "stiffness",
+            "contact[0].softness=0.2": "softness",
+            "contact[0].distance=1": "distance",
+            "contact[0].with=left": "needs the other set",
+            "contact[0].set=nowhere": "nowhere",
+            "solver.mode=path": "does not follow contacts",
+            "solver.mode=arc_length": "does not follow contacts",
+            "material.kinematics=linear": "contact",
+        }.items():
+            self.assertIn(words, self.refusal(text, change))
+        overlapping = text.replace("[[contact]]", '[[contact]]\nset = "left"\n[[contact]]')
+        self.assertIn("overlaps with contact[0]", self.refusal(overlapping))
+        shared = text.replace("[[contact]]", '[[contact]]\nset = "left"\nwith = "left_end"')
+        self.assertIn("shares points", self.refusal(shared))
+        mirrored = text + '[[symmetry]]\naxis = "y"\nat = 0.0\n'
+        self.assertIn("contact", self.refusal(mirrored))
+
+    def test_tangent(self):
+        ended = self.command("check-tangent", HEAD + CUT + PRESSED)
+        self.assert_code(ended, 0)
