@@ -114,17 +114,21 @@ ConstrainedTangent::ConstrainedTangent(const Energy& energy, const Constraints& 
       constraints_(constraints),
       index_map_(index_map),
       whole_(energy),
-      place_(std::size_t(whole_.pattern.blocks()), nowhere),
       reference_(energy.points().reference) {
   for (const Coordinates& handle : constraints.handles()) {
     reference_.insert(reference_.end(), handle.begin(), handle.begin() + dimension);
   }
   reference = reference_;
+  find_places();
+}
+
+void ConstrainedTangent::find_places() {
+  place_.assign(std::size_t(whole_.pattern.blocks()), nowhere);
   for (Index i = 0; i < whole_.pattern.points(); ++i) {
-    if (!constraints.stands_alone(i) || !has_row(index_map, i)) continue;
+    if (!constraints_.stands_alone(i) || !has_row(index_map_, i)) continue;
     for (Offset bond = whole_.pattern.offset[i]; bond < whole_.pattern.offset[i + 1]; ++bond) {
       const Index j = whole_.pattern.partner[bond];
-      if (constraints.stands_alone(j)) place_[std::size_t(bond)] = place_of(pattern, i, j);
+      if (constraints_.stands_alone(j)) place_[std::size_t(bond)] = place_of(pattern, i, j);
     }
   }
 }
@@ -136,6 +140,10 @@ Couplings ConstrainedTangent::in_place() const {
 
 void ConstrainedTangent::linearise(Energy& energy, const StateView& at, double projection) {
   whole_.linearise(energy, at, projection);
+  if (whole_.version != version) {
+    take_pattern(constrained_pattern(whole_.pattern, constraints_, index_map_), whole_.version);
+    find_places();
+  }
   for (std::size_t dof = 0; dof < position.size(); ++dof) {
     position[dof] = reference_[dof] + at.displacement[dof];
   }

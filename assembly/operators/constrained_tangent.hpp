@@ -41,6 +41,7 @@ class ConstrainedTangent final : public Tangent {
   void absolute_row_sums(std::span<double> sums) const override;
 
  private:
+  void find_places();
   void add_blocks_between_free_points();
   void add_blocks_of_followers(std::span<const double> displacement);
   void add_curvature(const StateView& at);

@@ -323,7 +323,7 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& gi
   BodySpecification of = given;
   take_horizons(points, of, SoleRank());
   check_specification(of, points);
-  refuse_contacts_with_constraints(of);
+  refuse_contacts_with_images(of);
   const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
   add_images(points, of.constraints.symmetries, periods, reach_of_images(of, points, SoleRank()));
   auto body = std::make_unique<Body>();

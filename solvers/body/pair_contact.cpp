@@ -51,15 +51,12 @@ std::shared_ptr<Term> make_pair_contact(const Body& body) {
                    std::move(modulus), body.model.failing_bonds() != nullptr));
 }
 
-void refuse_contacts_with_constraints(const BodySpecification& of) {
+void refuse_contacts_with_images(const BodySpecification& of) {
   if (of.contacts.empty()) return;
-  const ConstraintSpecification& by = of.constraints;
-  const bool couples = !by.rigid_sets.empty() || !by.rollers.empty() || !by.linear.empty() ||
-                       !by.symmetries.empty() || !by.periods.empty();
-  if (!couples) return;
+  if (of.constraints.symmetries.empty() && of.constraints.periods.empty()) return;
   throw InputError("contacts", "",
-                   "contact of points is not for bodies with rigid sets, rollers, linear "
-                   "constraints, planes of symmetry and periods yet; take supports");
+                   "contact of points is not for bodies with planes of symmetry and periods yet, "
+                   "whose images it would not see; take the whole body");
 }
 
 }  // namespace peristat

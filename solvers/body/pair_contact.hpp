@@ -11,9 +11,8 @@ namespace peristat {
 /// @return null if it has none
 [[nodiscard]] std::shared_ptr<Term> make_pair_contact(const Body& body);
 
-/// Refuses contacts of bodies that can't have them yet: with planes of symmetry, periods, rigid
-/// sets, rollers and linear constraints.
+/// Refuses contacts of bodies with planes of symmetry and periods.
 /// @throws InputError ("contacts")
-void refuse_contacts_with_constraints(const BodySpecification& of);
+void refuse_contacts_with_images(const BodySpecification& of);
 
 }  // namespace peristat

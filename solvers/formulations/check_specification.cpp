@@ -367,16 +367,23 @@ void check_drives(const BodySpecification& of) {
   });
 }
 
-/// Refuses materials with different rules for struts, which may lie between them.
-void check_struts(const BodySpecification& of) {
-  std::optional<StrutRemedy> first;
+/// Refuses materials with different rules for struts and for compression, which bonds between them
+/// would have to choose from.
+void check_same_rules(const BodySpecification& of) {
+  const DamageSpecification* first = nullptr;
   for_each_material(of, [&](const MaterialSpecification& material, const std::string& key) {
-    if (!material.damage.breaks_bonds()) return;
-    const StrutRemedy remedy = material.damage.struts;
-    require(!first || remedy == *first, key + ".damage.struts",
-            remedy == StrutRemedy::cut ? "cut" : "keep",
-            "must be the same for all materials of a body that can be damaged");
-    first = remedy;
+    const DamageSpecification& damage = material.damage;
+    if (!damage.breaks_bonds()) return;
+    if (!first) first = &damage;
+    const std::string same = "must be the same for all materials of a body that can be damaged";
+    require(damage.struts == first->struts, key + ".damage.struts",
+            damage.struts == StrutRemedy::cut ? "cut" : "keep", same);
+    require(damage.compression == first->compression, key + ".damage.compression",
+            damage.compression == Compression::kept ? "kept" : "lost", same);
+    require_absent(
+        damage.compression == Compression::kept && !of.contacts.empty(), "contacts",
+        "press where bonds with damage.compression = \"kept\" press already; give one of "
+        "the two");
   });
 }
 
@@ -389,7 +396,7 @@ void check_all_materials(const BodySpecification& of, int dimension, const Optio
   }
   check_regions(of, dimension, options);
   check_drives(of);
-  check_struts(of);
+  check_same_rules(of);
   check_mirrored_fibres(of, dimension);
   if (of.horizon_per_size != 0.0) check_for_horizons(of);
 }

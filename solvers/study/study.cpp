@@ -6,6 +6,7 @@
 #include "solvers/body/require_memory_for.hpp"
 #include "solvers/body/unheld_body.hpp"
 #include "solvers/body/without_equation.hpp"
+#include "solvers/formulations/specification/for_each_material.hpp"
 #include "solvers/motion/stable_step.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"
@@ -69,6 +70,18 @@ void refuse_modes_with_struts(const Body& body, const StudyOptions& options) {
   throw InputError("loading.mode", std::string(mode.name),
                    "can't cut struts; take newton, adaptive or relaxation, or damage.struts = "
                    "\"keep\"");
+}
+
+/// Refuses mode path for bonds that close: it follows bonds whose force is proportional to their
+/// stretch.
+void refuse_events_of_closing_bonds(const Body& body, const StudyOptions& options) {
+  if (options.loading.mode != Mode::path) return;
+  for_each_material(
+      body.specification, [](const MaterialSpecification& material, const std::string& key) {
+        if (material.damage.compression == Compression::lost) return;
+        throw InputError(key + ".damage.compression", "kept",
+                         "is not for mode path, whose bonds lose tension and compression alike");
+      });
 }
 
 /// Refuses what does not follow contacts that close and open.
@@ -166,6 +179,7 @@ void check_study(const Body& body, const StudyOptions& options) {
   refuse_events_of_states(body, options);
   refuse_modes_with_struts(body, options);
   refuse_modes_with_contacts(body, options);
+  refuse_events_of_closing_bonds(body, options);
   refuse_modes_of_failing_points(body, options);
   const bool is_implicit = moves && options.loading.dynamics.scheme == MotionScheme::newmark;
   if (is_implicit != body.specification.has_inertia) {

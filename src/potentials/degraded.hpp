@@ -21,13 +21,19 @@ inline constexpr double never_failing = -1.0;
 /// evaluated by itself only if some bond is neither.
 /// @param range of their laws, see DamageRange
 /// @param whole the potential of the undamaged bonds
+/// @param closes see Degraded
 /// @param of_lane(l) density of one of them
 template <class Real, class Whole, class OfLane>
 [[nodiscard, gnu::always_inline]] inline PotentialDensity<Lanes> degraded_batch(
     const Lanes& e, const Lanes& largest_stretch, const DamageRange<Real>& range,
-    const Whole& whole, const OfLane& of_lane) {
-  const auto broken = largest_stretch >= range.critical;
-  const auto degraded = max(e, largest_stretch) > range.onset;
+    const Whole& whole, bool closes, const OfLane& of_lane) {
+  auto broken = largest_stretch >= range.critical;
+  auto degraded = max(e, largest_stretch) > range.onset;
+  if (closes) {
+    const auto is_open = e > Lanes(0.0);
+    broken = broken && is_open;
+    degraded = degraded && is_open;
+  }
   PotentialDensity<Lanes> result;
   if (none_of(degraded && !broken)) {
     result = whole(e);
@@ -76,10 +82,12 @@ struct Degraded {
   Law law;
   Whole shape{1.0};           ///< its potential with the modulus 1
   bool holds_damage = false;  ///< phi' = T(kappa) phi_0'(s) at every stretch, also beyond kappa
+  bool closes = false;        ///< phi = phi_0 where s < 0: damage takes the tension alone
 
   /// @param e stretch s
   /// @param largest_stretch kappa; `never_fails` for a bond that is never damaged
   [[nodiscard]] PotentialDensity<double> operator()(double e, double largest_stretch) const {
+    if (closes && !(e > 0.0)) return whole(modulus)(e);
     if (holds_damage || !is_loading(e, largest_stretch)) {
       return whole(modulus * integrity_after(largest_stretch))(e);
     }
@@ -95,7 +103,7 @@ struct Degraded {
   [[nodiscard, gnu::always_inline]] PotentialDensity<Lanes> operator()(const Lanes& e,
                                                                        const Lanes& largest_stretch,
                                                                        Offset first = 0) const {
-    return degraded_batch(e, largest_stretch, ranges(first), whole(modulus),
+    return degraded_batch(e, largest_stretch, ranges(first), whole(modulus), closes,
                           [&](int l) { return (*this)(double(e[l]), double(largest_stretch[l])); });
   }
 
@@ -181,6 +189,7 @@ struct DegradedByBond {
   std::shared_ptr<const BondLaws> laws;
   Whole shape{1.0};                  ///< their potential with the modulus 1
   bool holds_damage = false;         ///< see Degraded
+  bool closes = false;               ///< likewise
   const double* onset = nullptr;     ///< of the bonds; null: the laws' own
   const double* critical = nullptr;  ///< likewise
 
@@ -188,7 +197,7 @@ struct DegradedByBond {
 
   [[nodiscard]] Degraded<AnyBondLaw, Whole> of_bond(Offset bond) const {
     return {modulus, onset ? laws->at(bond, onset[bond], critical[bond]) : laws->at(bond), shape,
-            holds_damage};
+            holds_damage, closes};
   }
   [[nodiscard]] DamageRange<Lanes> ranges(Offset first) const {
     if (onset) return {Lanes(onset + first), Lanes(critical + first)};
@@ -200,7 +209,7 @@ struct DegradedByBond {
                                                    Offset first) const {
     Whole whole = shape;
     whole.modulus = modulus;
-    return degraded_batch(e, largest_stretch, ranges(first), whole, [&](int l) {
+    return degraded_batch(e, largest_stretch, ranges(first), whole, closes, [&](int l) {
       return of_bond(first + l)(double(e[l]), double(largest_stretch[l]));
     });
   }

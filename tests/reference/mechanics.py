@@ -66,6 +66,8 @@ class Mechanics:
         direction = self.reference_arms[1][0] / body.measure[1][:, None]
         law = Law.elastic() if elastic else body.materials.law(body.bonds, direction)
         self.law = law.spread(len(body.bonds))
+        tables = [self.case["material"]] + [region["material"] for region in self.case.get("region")]
+        self.closes = any(table.get("damage", {}).get("compression") == "kept" for table in tables)
         # If any bond can fail, bonds without a law get one that never fails.
         self.fails = (self.law.name != "none") | ~numpy.full(len(body.bonds), self.case.has_damage and not elastic)
         self.contact = PairContact(body) if self.case.get("contact") else None
@@ -111,9 +113,13 @@ class Mechanics:
         """Whether the bond can damage further; a broken bond can't."""
         return self.fails & ~self.is_broken(history) & (numpy.real(stretch) > numpy.maximum(history, self.law.onset))
 
+    def _is_closed(self, stretch):
+        """Whether a bond bears compression as if it were whole."""
+        return (numpy.real(stretch) < 0) & self.closes
+
     def _bond_potential(self, stretch, history, held=False):
         """phi / C1: energy of the bond."""
-        value = self.integrity(history) * stretch**2 / 2
+        value = numpy.where(self._is_closed(stretch), 1.0, self.integrity(history)) * stretch**2 / 2
         if held:
             return value
         loading = self._is_loading(stretch, history)
@@ -126,7 +132,7 @@ class Mechanics:
 
     def _bond_tension(self, stretch, history, held=False):
         """phi' / C1; with held damage every bond follows its secant."""
-        value = self.integrity(history) * stretch
+        value = numpy.where(self._is_closed(stretch), 1.0, self.integrity(history)) * stretch
         if held:
             return value
         loading = self._is_loading(stretch, history)

@@ -36,8 +36,8 @@ void require_law(const Entry& at, DamageSpecification&) {
   if (at.from.has("law")) return;
   for (const char* key :
        {"fracture_energy", "fracture_toughness", "strength", "critical", "onset", "peak",
-        "hardening", "rate", "stretches", "forces", "drive", "struts", "strength_surface",
-        "compressive_strength", "biaxial_strength", "strength_factor"}) {
+        "hardening", "rate", "stretches", "forces", "drive", "struts", "compression",
+        "strength_surface", "compressive_strength", "biaxial_strength", "strength_factor"}) {
     if (!at.from.has(key)) continue;
     at.from.refuse(key,
                    "needs a law in the same table, such as law = \"linear\"; write law = \"none\" "
@@ -221,6 +221,13 @@ Table<DamageSpecification> damage_keys(const std::string& material) {
          "model `bond`: what becomes of [struts](theory.md#struts), bonds that still join the two "
          "faces of an open crack. `\"keep\"`: their stretch alone decides; `\"cut\"`: they fail "
          "with the bonds around them")
+           .unless(is_whole, "")
+           .by_rules(damage_rules)
+           .moreover("the same for all materials of a body"),
+       K("compression", &Spec::compression,
+         choice<Compression>({{"lost", Compression::lost}, {"kept", Compression::kept}}),
+         "model `bond`: whether damaged bonds bear [compression](contact.md#bonds-that-close). "
+         "`\"lost\"`: as little as tension; `\"kept\"`: as undamaged ones")
            .unless(is_whole, "")
            .by_rules(damage_rules)
            .moreover("the same for all materials of a body"),

@@ -55,6 +55,7 @@ const Formulation& bond_formulation() {
                                                  Option::strength,
                                                  Option::strength_surface,
                                                  Option::struts,
+                                                 Option::compression,
                                                  Option::softening,
                                                  Option::critical_stretch,
                                                  Option::volume_correction,

@@ -28,6 +28,7 @@ enum class Option {
   drive,             ///< of the damage of bonds, where release is possible
   strength_surface,
   struts,
+  compression,  ///< that damaged bonds still bear
   // Of a body
   volume_correction,
   horizon_shape,
@@ -80,7 +81,7 @@ struct OptionOf {
 };
 
 using OptionOfMaterial = OptionOf<MaterialSpecification>;
-inline constexpr std::array<OptionOfMaterial, 16> options_of_material{{
+inline constexpr std::array<OptionOfMaterial, 17> options_of_material{{
     {Option::plane, "plane", [](auto& m) { return m.plane != PlaneState::stress; }},
     {Option::kinematics, "kinematics", [](auto& m) { return m.kinematics != Kinematics::finite; }},
     {Option::potential, "potential", [](auto& m) { return m.potential != Harmonic::name; }},
@@ -100,6 +101,8 @@ inline constexpr std::array<OptionOfMaterial, 16> options_of_material{{
     {Option::strength_surface, "damage.strength_surface",
      [](auto& m) { return m.damage.has_surface(); }},
     {Option::struts, "damage.struts", [](auto& m) { return m.damage.struts != StrutRemedy::keep; }},
+    {Option::compression, "damage.compression",
+     [](auto& m) { return m.damage.compression != Compression::lost; }},
 }};
 
 using OptionOfBody = OptionOf<BodySpecification>;

@@ -16,7 +16,9 @@ BondPotential with_damage(const Whole& whole, const DamageSpecification& damage)
   if (damage.law == DamageLaw::none) return whole;
   return std::visit(
       [&]<class Law>(const Law& law) -> BondPotential {
-        return Degraded<Law, Whole>{whole.modulus, law};
+        Degraded<Law, Whole> degraded{whole.modulus, law};
+        degraded.closes = damage.compression == Compression::kept;
+        return degraded;
       },
       law_of(damage).law);
 }
@@ -69,7 +71,9 @@ BondPotential with_laws(const BondPotential& failing, std::shared_ptr<const Bond
   return std::visit(
       [&]<class P>(const P& potential) -> BondPotential {
         if constexpr (PotentialWithHistory<P>) {
-          return DegradedByBond{potential.modulus, std::move(laws), potential.shape};
+          DegradedByBond by_bond{potential.modulus, std::move(laws), potential.shape};
+          by_bond.closes = potential.closes;
+          return by_bond;
         } else {
           throw std::logic_error("bonds that never fail have no laws of damage");
         }

@@ -27,6 +27,7 @@ bool is_given(const DamageSpecification& damage, std::string_view key) {
   if (key == "stretches") return !damage.stretches.empty();
   if (key == "drive") return damage.drive.has_value();
   if (key == "struts") return damage.struts != StrutRemedy::keep;
+  if (key == "compression") return damage.compression != Compression::lost;
   if (key == "forces") return !damage.forces.empty();
   return key == "peak" && damage.peak != 0.0;
 }
@@ -104,7 +105,7 @@ void check_data(const DamageSpecification& damage, const std::string& table) {
   check_surface(damage, table);
   if (damage.law == DamageLaw::none) {
     for (const std::string key : {"fracture_energy", "fracture_toughness", "strength", "critical",
-                                  "stretches", "drive", "struts", "strength_surface",
+                                  "stretches", "drive", "struts", "compression", "strength_surface",
                                   "compressive_strength", "biaxial_strength", "strength_factor"}) {
       require_absent(is_given(damage, key), table + key, "needs a law");
     }

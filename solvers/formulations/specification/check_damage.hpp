@@ -23,7 +23,7 @@ struct DamageRule {
   bool (*is_idle)(const DamageSpecification&);
   const char* why;
 };
-inline constexpr std::array<DamageRule, 26> damage_rules{
+inline constexpr std::array<DamageRule, 27> damage_rules{
     {{"stretches", [](auto& damage) { return !is_given_by_table(damage); },
       "is for the law \"table\""},
      {"forces", [](auto& damage) { return !is_given_by_table(damage); },
@@ -40,6 +40,8 @@ inline constexpr std::array<DamageRule, 26> damage_rules{
      {"drive", [](auto& damage) { return damage.law == DamageLaw::energy_density; },
       "is for the laws of stretches"},
      {"struts", [](auto& damage) { return damage.law == DamageLaw::energy_density; },
+      "is for the laws of stretches"},
+     {"compression", [](auto& damage) { return damage.law == DamageLaw::energy_density; },
       "is for the laws of stretches"},
      {"critical", [](auto& damage) { return damage.law == DamageLaw::energy_density; },
       "is for the laws of stretches"},

@@ -56,6 +56,9 @@ inline constexpr std::array<double, 2> usual_strength_factor{0.2, 100.0};
 /// What becomes of bonds that still join the faces of an open crack, see Struts.
 enum class StrutRemedy { keep, cut };
 
+/// Whether bonds that are damaged still bear compression.
+enum class Compression { lost, kept };
+
 struct DamageSpecification {
   DamageLaw law = DamageLaw::none;
   double onset = 0.0;                  ///< s_m, of the laws that soften
@@ -87,6 +90,7 @@ struct DamageSpecification {
   /// What drives the damage; none: see Formulation::default_drive.
   std::optional<DamageDrive> drive{};
   StrutRemedy struts = StrutRemedy::keep;
+  Compression compression = Compression::lost;
   /// True if the stretches were computed from a fracture energy: those of a bond then depend on the
   /// horizons of its points, and these are for the body's horizon.
   bool is_by_energy = false;
@@ -102,10 +106,10 @@ struct DamageSpecification {
   /// That surface, where there is one.
   [[nodiscard]] StrengthSurface surface() const {
     const double tension = strength.value_or(strength_of_peak);
-    const double compression = biaxial_strength
+    const double compressive = biaxial_strength
                                    ? peristat::compressive_strength(tension, *biaxial_strength)
                                    : compressive_strength.value_or(0.0);
-    return {strength_surface, tension, compression};
+    return {strength_surface, tension, compressive};
   }
   /// True if some stretches are still to be computed from these data.
   [[nodiscard]] bool is_by_data() const {
