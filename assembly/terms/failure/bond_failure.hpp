@@ -101,6 +101,15 @@ class BondFailure final : public FailureModel {
   [[nodiscard]] bool fails_by_release() const {
     return can_fail() && drive_ == DamageDrive::release;
   }
+  /// True if damaged bonds bear compression like whole ones.
+  [[nodiscard]] bool closes() const {
+    return std::visit(
+        []<class P>(const P& potential) {
+          if constexpr (requires { potential.closes; }) return potential.closes;
+          return false;
+        },
+        potential_);
+  }
   [[nodiscard]] FailingParts parts() const override { return FailingParts::bonds; }
   [[nodiscard]] bool fails_in_avalanches() const override { return drive_ == DamageDrive::release; }
   [[nodiscard]] std::vector<double> initial_history() const override;

@@ -212,6 +212,27 @@ TYPED_TEST(EveryDegradation, BrokenStaysBroken) {
   EXPECT_FALSE(this->potential_.is_broken(std::nextafter(critical, 0.0)));
 }
 
+TYPED_TEST(EveryDegradation, BondsThatCloseLoseTensionAlone) {
+  TypeParam closing = this->potential_;
+  closing.closes = true;
+  const double stretches[] = {-0.01, 0.017, -1e-9, 0.03};
+  for (const double kappa : this->histories_) {
+    const auto lanes = closing(Lanes([&](int l) { return stretches[l]; }), Lanes(kappa));
+    for (int l = 0; l < lane_count; ++l) {
+      const double e = stretches[l];
+      const auto expected = e < 0.0 ? this->whole_(e) : this->potential_(e, kappa);
+      const auto single = closing(e, kappa);
+      EXPECT_DOUBLE_EQ(single.value, expected.value);
+      EXPECT_DOUBLE_EQ(single.first, expected.first);
+      EXPECT_DOUBLE_EQ(single.second, expected.second);
+      EXPECT_DOUBLE_EQ(lanes.value[l], expected.value);
+      EXPECT_DOUBLE_EQ(lanes.first[l], expected.first);
+      EXPECT_DOUBLE_EQ(lanes.second[l], expected.second);
+    }
+    EXPECT_EQ(closing.dissipated(kappa), this->potential_.dissipated(kappa));
+  }
+}
+
 TYPED_TEST(EveryDegradation, ABondThatNeverFailsStaysWhole) {
   const double kappa = TypeParam::never_fails;
   for (const double e : {-0.1, 0.01, 0.018, 0.5}) {
