@@ -30,6 +30,20 @@ std::vector<double> force(Observation& in) {
   return force;
 }
 
+/// Forces of the state less those without contacts.
+std::vector<double> contact_force(Observation& in) {
+  const auto dofs = std::size_t(in.body().conditions->constraints().dofs());
+  std::vector<double> with(dofs, 0.0), without(dofs, 0.0);
+  if (in.assembler().has_contacts()) {
+    StateView view = in.at();
+    static_cast<void>(in.assembler().gradient(view, with));
+    view.has_contacts = false;
+    static_cast<void>(in.assembler().gradient(view, without));
+  }
+  for (std::size_t k = 0; k < dofs; ++k) with[k] = without[k] - with[k];
+  return recorded(in, with);
+}
+
 std::vector<double> damage(Observation& in) {
   const Body& body = in.body();
   std::vector<double> damage(body.points.volume.size());
@@ -118,6 +132,8 @@ const std::vector<PointField>& point_fields() {
       {"stretch", "1",
        "largest stretch of the unbroken bonds of each point: current / reference length - 1",
        scalar, stretch},
+      {"contact_force", "N", "force of contacts with obstacles on each point", vector,
+       contact_force, nothing, ShownBy::probes},
       {"fragment", "1",
        "number of the floating piece that the point belongs to; 0: held by the supports", scalar,
        fragment, nothing, steps},

@@ -395,6 +395,7 @@ class CaseRun {
     warn_of_numerical_work();
     warn_of_overload();
     warn_of_locking();
+    warn_of_idle_obstacles();
     recorder_->finish();
     summary_.costs = costs(result.relaxation_seconds);
     if (numbering_) tell_traffic();
@@ -447,6 +448,17 @@ class CaseRun {
       const auto known = lowest_t_star_.find(tip.name);
       if (known != lowest_t_star_.end() && known->second[0] <= t_star) continue;
       lowest_t_star_[tip.name] = {t_star, k1, k2, record.load_factor};
+    }
+  }
+
+  void warn_of_idle_obstacles() {
+    for (const ObstacleSpecification& obstacle : from_.obstacles) {
+      if (!recorder_->last() || recorder_->has_pressed(obstacle.name)) continue;
+      summary_.warnings.push_back(
+          fmt::format("the obstacle {} has touched nothing in the whole run, so it has had no "
+                      "effect; check its place, its displacement and its set",
+                      obstacle.name));
+      progress_.say("warning: " + summary_.warnings.back());
     }
   }
 

@@ -72,6 +72,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   }
   driven_.add_values(at.displacement, state.external_force, loads, record.probes);
   note_growth(record);
+  note_pressed(record);
   const std::string without_release = add_crack_tip_values(
       case_, crack_tips_, assembler_, state.trial, record.stage, record.probes);
   if (!without_release.empty()) {
@@ -138,6 +139,9 @@ void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier
   if (!earlier.history.empty()) last_ = read_step(earlier.history.back(), support_sets, probes);
   separated_.add_broken(path.accepted.history);
   find_growth(earlier, support_sets, probes);
+  if (!case_.obstacles.empty()) {
+    for (const Row& row : earlier.history) note_pressed(read_step(row, support_sets, probes));
+  }
   const bool is_unwritten =  // a rank may own no point
       recorded_.ranks().max(double(!checkpoint.unwritten.force.empty())) > 0.0;
   written_histories_.tell(is_unwritten ? std::span(checkpoint.unwritten.told_stretches)
@@ -147,6 +151,15 @@ void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier
     accepted.environment = body_.conditions->environment({accepted.stage, accepted.load});
     unwritten_ = fields(StateView(accepted), {checkpoint.unwritten.force, path.pins.found.piece,
                                               path.dynamics.velocity});
+  }
+}
+
+void Recorder::note_pressed(const StepRecord& record) {
+  for (const ObstacleSpecification& obstacle : case_.obstacles) {
+    const auto reaction = record.reactions.find(obstacle.name);
+    if (reaction != record.reactions.end() && reaction->second != Coordinates{}) {
+      pressed_.insert(obstacle.name);
+    }
   }
 }
 

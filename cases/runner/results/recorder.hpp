@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,10 @@ class Recorder {
 
   [[nodiscard]] const std::optional<StepRecord>& last() const { return last_; }
   [[nodiscard]] const std::vector<DecisionRecord>& decisions() const { return decisions_; }
+  /// True if an obstacle has pressed on the body in any recorded state.
+  [[nodiscard]] bool has_pressed(const std::string& obstacle) const {
+    return pressed_.contains(obstacle);
+  }
 
  private:
   /// Fields of a state that are recorded: for steps of the results, and for probes.
@@ -67,6 +72,8 @@ class Recorder {
   [[nodiscard]] bool moves(std::span<const double> displacement) const;
   /// State of the cracks for a probe.
   [[nodiscard]] CrackState crack_state(const StepRecord& record, const std::string& probe) const;
+  /// Updates pressed_ by an accepted step.
+  void note_pressed(const StepRecord& record);
   /// Updates growth_ by an accepted step.
   void note_growth(const StepRecord& record);
   /// Restores growth_ from earlier steps.
@@ -86,6 +93,7 @@ class Recorder {
   SeparatedBonds separated_;
   const DrivenSets driven_;
   std::map<std::string, CrackGrowth> growth_;  // per probe of crack_resistance
+  std::set<std::string> pressed_;              // names of obstacles
   double relative_residual_ = 0.0;
   std::optional<StepRecord> last_;
   std::vector<DecisionRecord> decisions_;
