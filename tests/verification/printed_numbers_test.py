@@ -14,7 +14,7 @@ from benchmarks import specimens
 from tests.acceptance.folder import Folder
 from tests.printed.comparison import PrintedTest
 from tests.printed.page import numbers
-from tests.printed.runs import calibrate, check, run
+from tests.printed.runs import Run, calibrate, check, run
 from tests.reference import elliptical_hole, ring
 from tests.reference.program import ROOT
 from tests.reference.results import table
@@ -59,6 +59,32 @@ class Bar(PrintedTest):
         self.assertAlmostEqual(error(2e-3, "linear") / error(1e-3, "linear"), 2.0, delta=0.2)
         for spacing in (2e-3, 1e-3):  # theory.md: "keeps an error of a quarter at any spacing"
             self.assertAlmostEqual(error(spacing, "none"), 0.25, delta=0.005)
+
+
+class Contact(PrintedTest, Folder):
+    def test_closed_crack(self):
+        def pressed(of):
+            return of.reactions("right", "x")[2]
+
+        self.page = "cases/contact/closed_crack.toml"
+        case = (ROOT / self.page).read_text()
+        uncut = self.write("uncut.toml", case[: case.index("[[crack]]")] + case[case.index("[[support]]") :])
+        closed, whole = run("contact/closed_crack"), pressed(Run(self.run_case(uncut), ""))
+        cut = pressed(closed)
+        self.prints('{} N on "right" at load factor -1, {} of what', -cut, cut / whole)
+        self.assertLess(abs(closed.reaction("right")), 1e-9 * abs(cut))
+        apart = closed.summary["probes"]["behind"][0] - closed.summary["probes"]["before"][0]
+        self.prints("the halves {} m apart", apart)
+        self.page = "docs/contact.md"
+        self.prints("leaves {} of the whole", cut / whole)
+        self.prints("and {} with", pressed(run("contact/closed_crack", "contact[0].stiffness=2")) / whole)
+
+    def test_impact(self):
+        self.page = "cases/contact/impact.toml"
+        impact = run("contact/impact")
+        self.prints("a mean velocity of {} m/s", -impact.summary["probes"]["left"][0])
+        self.prints("energy is {} J at the end", impact.summary["probes"]["modified_energy"])
+        self.prints("it was {} J", 0.5 * 2700 * 0.080 * 0.004 * 1e-3 * 10.0**2)
 
 
 class Regions(PrintedTest):
