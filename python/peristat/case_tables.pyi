@@ -319,6 +319,8 @@ class MaterialDamage(Table):
     """`cpd`, `state`, and `lps` as an energy: what drives the damage of a bond. `'stretch'`: its stretch; `'release'`: what its loss would set free with all that depends on it, as an equivalent stretch that the law takes. `state` has `'release'` alone. Default: `'release'` with `state`, and with `fracture_energy` or `fracture_toughness`; otherwise `'stretch'`. Allowed: `'stretch'`, `'release'`; the same for all materials of a body"""
     struts: Literal["keep", "cut"]
     """model `bond`: what becomes of struts, bonds that still join the two faces of an open crack. `'keep'`: their stretch alone decides; `'cut'`: they fail with the bonds around them. Default: `'keep'`. Allowed: `'keep'`, `'cut'`; the same for all materials of a body"""
+    compression: Literal["lost", "kept"]
+    """model `bond`: whether damaged bonds bear compression. `'lost'`: as little as tension; `'kept'`: as undamaged ones. Default: `'lost'`. Allowed: `'lost'`, `'kept'`; the same for all materials of a body"""
     no_fail: List
     """sets of points whose bonds stay elastic at any stretch, including bonds to points outside the sets. Default: none. Allowed: list of names of sets and layers"""
 
@@ -498,6 +500,46 @@ class Foundation(Table):
     displacement: List
     """displacement of the ground, per component [m]. Default: `['0', '0']`. Allowed: number or expression of place and `load` (mode `dynamics`: `t`)"""
 
+class Contact(Table):
+    set: str
+    """set whose points touch. Default: all points. Allowed: name of a set or layer"""
+    with_: str
+    """another set, which the points of `set` touch, and not one another. Default: the points of `set` touch one another. Allowed: name of a set or layer"""
+    distance: Quantity
+    """distance at which two points touch [m]. Default: the mean of the two points' sizes, on a lattice the spacing. Allowed: positive"""
+    stiffness: float
+    """stiffness over that of the bar of material between two points. Default: 1. Allowed: 0.001 to 1000"""
+    depth: float
+    """largest depth of the contact over its distance; the force grows without limit towards it. Default: 0.25. Allowed: 0.01 to 0.5"""
+    softness: float
+    """strain of the gap over which the stiffness sets in; at most a tenth of the strains of interest. Default: 1e-4. Allowed: 1e-9 to 0.25"""
+
+class Obstacle(Table):
+    name: str
+    """name under which its force is reported. required. Allowed: letters, digits, `_`, `-`; at most 100 characters"""
+    set: str
+    """set of the points that it can touch. Default: all points. Allowed: name of a set or layer"""
+    shape: Literal["plane", "cylinder", "sphere"]
+    """shape of its surface: in 1D a plane, in 2D a plane or a cylinder (a disk). required. Allowed: `'plane'`, `'cylinder'`, `'sphere'`"""
+    point: List
+    """a place on the plane or on the cylinder's axis, or the centre of the sphere; moments are reported about it [m]. required. Allowed: a number per dimension"""
+    normal: List
+    """`plane`: direction from it towards the body, a vector of any length. required for a plane. Allowed: a number per dimension; not all zero"""
+    axis: List
+    """`cylinder` in 3D: direction of its axis, a vector of any length. required for a cylinder in 3D. Allowed: a number per dimension; not all zero"""
+    radius: Quantity
+    """`cylinder`, `sphere`: radius, at least two spacings [m]. required for these. Allowed: positive"""
+    inside: bool
+    """`cylinder`, `sphere`: the body is inside of it. Default: false. Allowed: true, false"""
+    displacement: List
+    """displacement of the obstacle, per component [m]. Default: `['0', '0']`. Allowed: number or expression of `load` (`t`) alone"""
+    stiffness: float
+    """stiffness of the contact relative to that of the point's cell, Young's modulus times its section over half a spacing. Default: 1. Allowed: positive"""
+    depth: float
+    """depth that no point may reach, relative to half a spacing. Default: 0.25. Allowed: 0.001 to 0.999"""
+    softness: float
+    """depth over which the stiffness sets in, relative to half a spacing. Default: 1e-4. Allowed: 1e-12 to 0.999; below `depth`"""
+
 class Eigenstrain(Table):
     set: str
     """set with the strain. Default: all points. Allowed: name of a set or layer"""
@@ -651,8 +693,8 @@ class Probe(Table):
     """position; the nearest point gives the value [m]. exactly one of `set`, `at`, `from`. Allowed: a number per dimension"""
     from_: List
     """start of a line. The points within half a spacing of the line are written to `line_NAME.csv` [m]. exactly one of `set`, `at`, `from`. Allowed: a number per dimension"""
-    field: Literal["displacement", "force", "damage", "energy_density", "stretch", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"]
-    """field. Units: displacement, opening, length and position in m, area in m², force in N, energy densities in J/m³, velocity in m/s, stress in Pa, angles in degrees, work of fracture and crack resistance in J/m²; `stress` is the Cauchy stress, `strain` the Green–Lagrange strain. Default: `'displacement'`. Allowed: `'displacement'`, `'force'`, `'damage'`, `'energy_density'`, `'stretch'`, `'deformation_gradient'`, `'divergence'`, `'first_piola_stress'`, `'strain'`, `'stress'`, `'von_mises'`, `'principal_stress'`, `'missing_neighbourhood'`, `'velocity'`, `'kinetic_energy_density'`, `'poisson_ratio'`, `'opening'`, `'crack_length'`, `'crack_begin'`, `'crack_end'`, `'crack_angle'`, `'crack_area'`, `'work_of_fracture'`, `'crack_resistance'`"""
+    field: Literal["displacement", "force", "damage", "energy_density", "stretch", "contact_force", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"]
+    """field. Units: displacement, opening, length and position in m, area in m², force in N, energy densities in J/m³, velocity in m/s, stress in Pa, angles in degrees, work of fracture and crack resistance in J/m²; `stress` is the Cauchy stress, `strain` the Green–Lagrange strain. Default: `'displacement'`. Allowed: `'displacement'`, `'force'`, `'damage'`, `'energy_density'`, `'stretch'`, `'contact_force'`, `'deformation_gradient'`, `'divergence'`, `'first_piola_stress'`, `'strain'`, `'stress'`, `'von_mises'`, `'principal_stress'`, `'missing_neighbourhood'`, `'velocity'`, `'kinetic_energy_density'`, `'poisson_ratio'`, `'opening'`, `'crack_length'`, `'crack_begin'`, `'crack_end'`, `'crack_angle'`, `'crack_area'`, `'work_of_fracture'`, `'crack_resistance'`"""
     to: List
     """end of the line [m]. required with `from`. Allowed: a number per dimension"""
     component: Literal["x", "y", "z", "1", "2", "3", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"]
@@ -731,6 +773,12 @@ class CaseTable(Table):
     def add_foundation(self, *, name: str = ..., set: str = ..., side: Literal["x-", "x+", "y-", "y+", "z-", "z+"] = ..., modulus: List = ..., stiffness: List = ..., displacement: List = ...) -> Foundation: ...
     foundation: Array[Foundation]
     """tables: springs between a part of the body and the ground. Default: none"""
+    def add_contact(self, *, set: str = ..., with_: str = ..., distance: Quantity = ..., stiffness: float = ..., depth: float = ..., softness: float = ...) -> Contact: ...
+    contact: Array[Contact]
+    """tables: contact of points that no whole bond joins. Default: none"""
+    def add_obstacle(self, *, name: str = ..., set: str = ..., shape: Literal["plane", "cylinder", "sphere"] = ..., point: List = ..., normal: List = ..., axis: List = ..., radius: Quantity = ..., inside: bool = ..., displacement: List = ..., stiffness: float = ..., depth: float = ..., softness: float = ...) -> Obstacle: ...
+    obstacle: Array[Obstacle]
+    """tables: rigid bodies that press on points. Default: none"""
     def add_eigenstrain(self, *, set: str = ..., strain: Expression = ...) -> Eigenstrain: ...
     eigenstrain: Array[Eigenstrain]
     """tables: strains without stored energy, such as growth or drying. Default: none"""
@@ -757,7 +805,7 @@ class CaseTable(Table):
     """table: the motion in time. required in mode `dynamics`"""
     output: Inner[Output]
     """table: results folder. Default: all defaults"""
-    def add_probe(self, *, name: str = ..., set: str = ..., at: List = ..., from_: List = ..., field: Literal["displacement", "force", "damage", "energy_density", "stretch", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"] = ..., to: List = ..., component: Literal["x", "y", "z", "1", "2", "3", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"] = ..., statistic: Literal["mean", "max", "min", "rms_error", "max_error"] = ..., expected: List = ..., axis: Literal["x", "y", "z"] = ..., other: str = ...) -> Probe: ...
+    def add_probe(self, *, name: str = ..., set: str = ..., at: List = ..., from_: List = ..., field: Literal["displacement", "force", "damage", "energy_density", "stretch", "contact_force", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"] = ..., to: List = ..., component: Literal["x", "y", "z", "1", "2", "3", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"] = ..., statistic: Literal["mean", "max", "min", "rms_error", "max_error"] = ..., expected: List = ..., axis: Literal["x", "y", "z"] = ..., other: str = ...) -> Probe: ...
     probe: Array[Probe]
     """tables: values that are recorded in the history. Default: none"""
     def add_crack_tip(self, *, name: str = ..., at: List = ..., direction: List = ..., front: List = ..., inner: Quantity = ..., outer: Quantity = ..., cut: Quantity = ...) -> CrackTip: ...
