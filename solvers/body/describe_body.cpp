@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "assembly/terms/contact/pair_contact_term.hpp"
 #include "assembly/terms/points/point_term.hpp"
 #include "solvers/linear/available_memory.hpp"
 #include "src/core/number_text.hpp"
@@ -78,6 +79,16 @@ std::vector<std::string> describe_constraints(const Body& body) {
     constexpr std::array kinds{"plane", "cylinder", "sphere"};
     lines.push_back(fmt::format("{}: a {} that {} points may touch", of.name,
                                 kinds[std::size_t(of.surface.kind)], of.last - of.first));
+  }
+  if (const auto* const contact = body.model.find<PairContactTerm>()) {
+    const std::vector<ContactPair> near =
+        contact->pairs().near(std::vector<double>(body.points.reference.size()), 1);
+    const auto faces = std::ranges::count_if(near, [](const ContactPair& pair) {
+      return pair.bond < 0 && pair.reference <= pair.distance * (1.0 + horizon_tolerance);
+    });
+    lines.push_back(fmt::format("contact: {} pairs of points face each other without a bond{}",
+                                faces,
+                                body.model.has_history() ? "; bonds that break add theirs" : ""));
   }
   std::size_t rigid = 0;
   const auto& sets = body.conditions->constraints().rigid_sets();

@@ -132,7 +132,7 @@ const std::vector<PointField>& point_fields() {
       {"stretch", "1",
        "largest stretch of the unbroken bonds of each point: current / reference length - 1",
        scalar, stretch},
-      {"contact_force", "N", "force of contacts with obstacles on each point", vector,
+      {"contact_force", "N", "force of contacts with points and obstacles on each point", vector,
        contact_force, nothing, ShownBy::probes},
       {"fragment", "1",
        "number of the floating piece that the point belongs to; 0: held by the supports", scalar,

@@ -1,9 +1,12 @@
 """Contact of points, from the command line: beside an independent reference, closed forms, and what is refused."""
 
+import h5py
 import numpy
 
 from tests.acceptance.folder import Folder
 from tests.acceptance.motions import columns
+from tests.reference import stress
+from tests.reference.results import Results
 from tests.reference.verify import Verification
 from tests.same_results import differences
 
@@ -62,6 +65,87 @@ velocity = [-10, 0]
 mode = "dynamics"
 [dynamics]
 end_time = 1.4e-5
+"""
+IN_SPACE = """\
+dimension = 3
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3.015
+shape = [{ add = "box", min = [0, 0, 0], max = [0.012, 0.005, 0.005] }]
+[[set]]
+name = "left_end"
+where = "x < 2*spacing"
+[[set]]
+name = "right_end"
+where = "x > 0.012 - 2*spacing"
+[material]
+model = "bond"
+youngs_modulus = 70e9
+[[crack]]
+vertices = [[0.006, -1e-3, -1e-3], [0.006, 6e-3, -1e-3], [0.006, 6e-3, 6e-3], [0.006, -1e-3, 6e-3]]
+[[contact]]
+softness = 1e-5
+[[support]]
+set = "left_end"
+displacement = [0, 0, 0]
+[[support]]
+set = "right_end"
+displacement = ["1e-5*load", "2e-6*load", 0]
+[loading]
+table = [0, -1, 0.5, -3]
+"""
+# A block hits a layer two points thick at 0.6 of the wave speed.
+LAYER = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3.015
+thickness = 1e-3
+shape = [{ add = "box", min = [0, 0], max = [0.010, 0.012] }, { add = "box", min = [0.011, 0], max = [0.013, 0.012] }]
+[[set]]
+name = "block"
+where = "x < 0.0105"
+[[crack]]
+from = [0.0105, -1e-3]
+to = [0.0105, 13e-3]
+[material]
+youngs_modulus = 70e9
+density = 2700
+[[contact]]
+[[initial]]
+set = "block"
+velocity = [3055, 0]
+[solver]
+mode = "dynamics"
+[dynamics]
+end_time = 2e-6
+[output]
+every = 1
+"""
+CUTS = "".join(
+    f"[[crack]]\nfrom = {begin}\nto = {end}\n"
+    for begin, end in [([x, -1e-3], [x, 26e-3]) for x in (0.006, 0.012, 0.018)]
+    + [([-1e-3, y], [25e-3, y]) for y in (0.005, 0.010, 0.015, 0.020)]
+)
+FRAGMENTS = f"""\
+dimension = 2
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3.015
+thickness = 1e-3
+shape = [{{ add = "box", min = [0, 0], max = [0.024, 0.025] }}]
+{CUTS}[material]
+youngs_modulus = 70e9
+density = 2700
+[[contact]]
+[[initial]]
+velocity = ["200*sin(900*y) - 2e4*(x - 0.012)", "200*sin(1100*x + 1) - 2e4*(y - 0.0125)"]
+[solver]
+mode = "dynamics"
+[dynamics]
+end_time = 6e-5
+[output]
+every = 20
 """
 
 
@@ -131,6 +215,57 @@ class ContactTest(Folder):
         one = columns(whole)
         numpy.testing.assert_allclose(two["stored_energy"], one["stored_energy"], rtol=1e-9, atol=1e-20)
 
+    def test_a_bar_in_space_and_its_stress(self):
+        text = IN_SPACE + "[output]\nstress = true\n"
+        folder = self.run_case(text)
+        self.assert_verified(text, folder)
+        verification = Verification(folder, text)
+        mechanics, last = verification.mechanics, verification.results.steps[-1]
+        with h5py.File(folder / "results.h5") as file:
+            written = list(file["steps"].values())[-1]["first_piola_stress"][...]
+        for has_contact in (True, False):
+            if not has_contact:
+                mechanics.contact = None
+            right = stress.fields(mechanics, last.displacement, mechanics.no_history())["first_piola_stress"]
+            error = abs(written - right.reshape(written.shape)).max() / abs(written).max()
+            self.assertEqual(error < 1e-11, has_contact, error)
+
+    def test_models(self):
+        for model in ("state", "cpd"):
+            changes = f"material.model={model}", "material.poisson_ratio=0.3", "lattice.horizon_ratio=2.015"
+            rows = columns(self.run_case(IN_SPACE, *changes, name=model))
+            self.assertLess(rows["reaction_x:right_end"][-1], -1.0)
+            self.assertLess(abs(rows["reaction_x:right_end"][2]), 1e-6)
+            self.assertLessEqual(rows["newton_iterations"].max(), 6)
+            ended = self.command("check-tangent", IN_SPACE, *changes)
+            self.assert_code(ended, 0)
+
+    def test_a_thin_layer_is_not_passed(self):
+        results = Results(self.run_case(LAYER))
+        block = results.reference[:, 0] < 0.0105
+        nearest = min(
+            numpy.linalg.norm(place[block][:, None] - place[~block], axis=2).min()
+            for place in (results.reference + step.displacement for step in results.steps)
+        )
+        self.assertGreater(nearest, 0.75e-3)
+        self.assertLess(nearest, 0.85e-3)
+        rows = columns(results.folder)
+        numpy.testing.assert_allclose(rows["kinetic_energy"] + rows["stored_energy"], rows["kinetic_energy"][0], rtol=1e-2)
+
+    def test_fragments_that_are_pushed_together_and_apart(self):
+        results = Results(self.run_case(FRAGMENTS))
+        piece = results.reference[:, 0] // 0.006 * 10 + results.reference[:, 1] // 0.005
+        others = piece[:, None] != piece
+        nearest = min(
+            numpy.linalg.norm(place[:, None] - place, axis=2)[others].min()
+            for place in (results.reference + step.displacement for step in results.steps)
+        )
+        self.assertGreater(nearest, 0.75e-3)
+        self.assertLess(nearest, 0.95e-3)
+        rows = columns(results.folder)
+        numpy.testing.assert_allclose(rows["momentum_x"], rows["momentum_x"][0], rtol=1e-12)
+        numpy.testing.assert_allclose(rows["kinetic_energy"] + rows["stored_energy"], rows["kinetic_energy"][0], rtol=1e-2)
+
     def test_bars_that_collide_part_again(self):
         for scheme, energy in (("verlet", 1e-2), ("newmark", 1e-2)):
             step = "time_step = 5e-8\n" if scheme == "newmark" else ""
@@ -164,7 +299,7 @@ class ContactTest(Folder):
         one_line = text.replace("[0, -1, 0.5, -3, -2]", "[0, -1]")
         self.assertIn("does not follow contacts", self.refusal(one_line, "solver.mode=arc_length"))
         overlapping = text.replace("[[contact]]", '[[contact]]\nset = "left"\n[[contact]]')
-        self.assertIn("overlaps with contact[0]", self.refusal(overlapping))
+        self.assertIn("in common with another contact", self.refusal(overlapping))
         shared = text.replace("[[contact]]", '[[contact]]\nset = "left"\nwith = "left_end"')
         self.assertIn("shares points", self.refusal(shared))
         mirrored = text + '[[symmetry]]\naxis = "y"\nat = 0.0\n'

@@ -32,7 +32,10 @@ ContactPairs::ContactPairs(const Points& points, const Bonds& bonds,
 }
 
 double ContactPairs::bytes() const {
+  // Of the points of a lattice within one and a half spacings; twice, for a predictor.
+  const double near = points_.dimension == 3 ? 9.0 : points_.dimension == 2 ? 4.0 : 1.0;
   double bytes = double(size_.size() + modulus_.size()) * sizeof(double);
+  if (bonds_fail_) bytes += 2.0 * near * double(size_.size()) * sizeof(ContactPair);
   for (const PairContactRule& rule : rules_) bytes += double(rule.side.size());
   return bytes;
 }
@@ -57,7 +60,8 @@ bool ContactPairs::find_pair(Index i, Index j, ContactPair& pair) const {
   pair.i = i;
   pair.j = j;
   pair.rule = std::int32_t(rule - rules_.begin());
-  pair.distance = std::min(std::sqrt(squared), rule->distance > 0.0 ? rule->distance : mean);
+  pair.reference = std::sqrt(squared);
+  pair.distance = std::min(pair.reference, rule->distance > 0.0 ? rule->distance : mean);
   pair.stiffness = rule->stiffness * 2.0 * one * other / (one + other) * section / pair.distance;
   pair.bond = bond.value_or(-1);
   return true;

@@ -35,6 +35,7 @@ struct PairContactRule {
 struct ContactPair {
   Index i = 0, j = 0;  ///< i < j
   std::int32_t rule = 0;
+  double reference = 0.0;  ///< L [m]
   double distance = 0.0;   ///< d_ij [m]
   double stiffness = 0.0;  ///< k_ij [N/m]
   Offset bond = -1;        ///< between them; -1: none
@@ -62,6 +63,7 @@ class ContactPairs {
   /// The longest d [m].
   [[nodiscard]] double reach() const { return reach_; }
   [[nodiscard]] const Points& points() const { return points_; }
+  /// Memory of it, and of the pairs that are kept near a state where bonds can fail [bytes].
   [[nodiscard]] double bytes() const;
 
   /// The pair i < j.

@@ -36,8 +36,7 @@ void check_contacts(const BodySpecification& of, const Points& points) {
   for (std::size_t k = 0; k < of.contacts.size(); ++k) {
     const ContactSpecification& contact = of.contacts[k];
     const std::string table = indexed("contacts", k);
-    const auto [stiffness_low, stiffness_high] = std::pair(1e-3, 1e3);
-    require_within(contact.stiffness, stiffness_low, stiffness_high, table + ".stiffness");
+    require_within(contact.stiffness, 1e-3, 1e3, table + ".stiffness");
     require_within(contact.depth, 0.01, 0.5, table + ".depth");
     require(contact.softness >= 1e-9 && contact.softness <= 0.5 * contact.depth,
             table + ".softness", number_text(contact.softness),
@@ -57,15 +56,12 @@ void check_contacts(const BodySpecification& of, const Points& points) {
     } else {
       sides.other = sides.one;
     }
-    for (std::size_t other = 0; other < before.size(); ++other) {
-      const Sides& earlier = before[other];
+    for (const Sides& earlier : before) {
       const bool overlaps = (have_a_common_point(sides.one, earlier.one) &&
                              have_a_common_point(sides.other, earlier.other)) ||
                             (have_a_common_point(sides.one, earlier.other) &&
                              have_a_common_point(sides.other, earlier.one));
-      require(!overlaps, table, "",
-              "overlaps with " + indexed("contacts", other) +
-                  ": two contacts have pairs of points in common");
+      require(!overlaps, table, "", "has pairs of points in common with another contact");
     }
     before.push_back(std::move(sides));
   }
