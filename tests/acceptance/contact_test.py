@@ -165,6 +165,13 @@ class ContactTest(Folder):
             self.assertLess(abs(rows["reaction_x:right_end"][2]), 1e-6)  # apart
             self.assertLessEqual(rows["newton_iterations"].max(), 6)
 
+    def test_beside_a_rigid_set(self):
+        platen = '[[rigid]]\nset = "right_end"\ncentre = [0.0235, 0.003]\ndisplacement = ["1e-5*load", "2e-6*load"]\n'
+        head, tail = PRESSED.split('[[support]]\nset = "right_end"')
+        text = HEAD + CUT + head + platen + 'rotation = ["1e-3*load"]\n[loading]' + tail.split("[loading]")[1]
+        self.assert_verified(text, self.run_case(text))
+        self.assert_code(self.command("check-tangent", text), 0)
+
     def test_a_closed_cut_is_nearly_as_stiff_as_the_whole_bar(self):
         steps = '[loading]\nsteps = 1\n'
         pressed = PRESSED.split("[loading]")[0].replace("1e-5*load", "-1e-5*load").replace('"2e-6*load"', "0") + steps
@@ -293,6 +300,7 @@ class ContactTest(Folder):
             "contact[0].with=left": "needs the other set",
             "contact[0].set=nowhere": "nowhere",
             "material.kinematics=linear": "contact",
+            "solver.tangent=matrix_free": "[[contact]]",
         }.items():
             self.assertIn(words, self.refusal(text, change))
         self.assertIn("does not follow contacts", self.refusal(HEAD + BRITTLE + PRESSED, "solver.mode=path"))

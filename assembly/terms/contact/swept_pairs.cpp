@@ -23,19 +23,17 @@ struct Group {
 
 constexpr double never = 2.0;
 
-/// First time at which a pair is at a share of its largest depth; `never`: not in this step.
-double time_of_contact(const ContactPairs& pairs, const ContactPair& pair, const StateView& at,
-                       std::span<const double> step, double share) {
-  const Points& points = pairs.points();
-  const double depth = pairs.rules()[std::size_t(pair.rule)].depth;
-  const double least = (1.0 - share * depth) * pair.distance;
-  double squared = -least * least, closing = 0.0, speed = 0.0;
+/// First time at which two points that are farther apart are at a distance; `never`: not in this
+/// step.
+double time_until(const Points& points, Index i, Index j, const StateView& at,
+                  std::span<const double> step, double distance) {
+  double squared = -distance * distance, closing = 0.0, speed = 0.0;
   for (int c = 0; c < points.dimension; ++c) {
-    const std::size_t i = std::size_t(pair.i) * points.dimension + c,
-                      j = std::size_t(pair.j) * points.dimension + c;
-    const double arm =
-        points.reference[j] - points.reference[i] + (at.displacement[j] - at.displacement[i]);
-    const double v = step[j] - step[i];
+    const std::size_t of_i = std::size_t(i) * points.dimension + c,
+                      of_j = std::size_t(j) * points.dimension + c;
+    const double arm = points.reference[of_j] - points.reference[of_i] +
+                       (at.displacement[of_j] - at.displacement[of_i]);
+    const double v = step[of_j] - step[of_i];
     squared += arm * arm;
     closing -= arm * v;
     speed += v * v;
@@ -43,6 +41,14 @@ double time_of_contact(const ContactPairs& pairs, const ContactPair& pair, const
   if (!(squared > 0.0) || !(closing > 0.0)) return never;
   const double under_root = closing * closing - speed * squared;
   return under_root >= 0.0 ? squared / (closing + std::sqrt(under_root)) : never;
+}
+
+/// First time at which a pair is at a share of its largest depth.
+double time_of_contact(const ContactPairs& pairs, const ContactPair& pair, const StateView& at,
+                       std::span<const double> step, double share) {
+  const double depth = pairs.rules()[std::size_t(pair.rule)].depth;
+  return time_until(pairs.points(), pair.i, pair.j, at, step,
+                    (1.0 - share * depth) * pair.distance);
 }
 
 template <int D>
@@ -109,6 +115,14 @@ void for_each_swept_pair(const ContactPairs& pairs, const StateView& at,
   std::ranges::sort(groups, [&](const auto& a, const auto& b) { return begins(a) < begins(b); });
   const auto look_at = [&](Index one, Index other) {
     const auto [i, j] = std::minmax(cells.point[one], cells.point[other]);
+    double squared = 0.0;
+    for (int c = 0; c < D; ++c) {
+      const double arm = cells.position[other][c] - cells.position[one][c];
+      squared += arm * arm;
+    }
+    // Most pairs are not even within the longest distance of contact on their ways.
+    const bool is_far = squared > pairs.reach() * pairs.reach();
+    if (is_far && time_until(points, i, j, at, step, pairs.reach()) > 1.0) return;
     ContactPair pair;
     if (!pairs.find_pair(i, j, pair)) return;
     const double time = time_of_contact(pairs, pair, at, step, share);

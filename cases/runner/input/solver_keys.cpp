@@ -54,6 +54,8 @@ void check_tangent(const Entry& at, const SolverSpecification& solver) {
         "tangent");
   if (!at.so_far.foundations.empty())
     at.refuse("is not allowed with a [[foundation]], which needs the stored tangent");
+  if (!at.so_far.contacts.empty())
+    at.refuse("is not allowed with a [[contact]], which needs the stored tangent");
   if (!at.so_far.obstacles.empty())
     at.refuse("is not allowed with an [[obstacle]], which needs the stored tangent");
   for (const LoadSpecification& load : at.so_far.loads) {
