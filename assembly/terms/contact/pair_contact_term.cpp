@@ -236,7 +236,7 @@ class PairContactPasses : public TermPasses, BlockTangent {
     if (!at.has_contacts) return true;
     const bool foresees = !at.foreseen.empty();
     const std::span<const double> deciding = foresees ? at.foreseen : at.displacement;
-    if (!is_finite(at.displacement) || !is_finite(deciding)) return false;
+    if (!is_finite(at.displacement) || (foresees && !is_finite(deciding))) return false;
     NearPairs& near = foresees ? near_foreseen_ : near_;
     for (const NearPairs::Open& open : near.at(deciding, at.history)) {
       const ContactPair& pair = open.pair;
