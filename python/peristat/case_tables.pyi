@@ -498,6 +498,32 @@ class Foundation(Table):
     displacement: List
     """displacement of the ground, per component [m]. Default: `['0', '0']`. Allowed: number or expression of place and `load` (mode `dynamics`: `t`)"""
 
+class Obstacle(Table):
+    name: str
+    """name under which its force is reported. required. Allowed: letters, digits, `_`, `-`; at most 100 characters"""
+    set: str
+    """set of the points that it can touch. Default: all points. Allowed: name of a set or layer"""
+    shape: Literal["plane", "cylinder", "sphere"]
+    """shape of its surface: in 1D a plane, in 2D a plane or a cylinder (a disk). required. Allowed: `'plane'`, `'cylinder'`, `'sphere'`"""
+    point: List
+    """a place on the plane or on the cylinder's axis, or the centre of the sphere; moments are reported about it [m]. required. Allowed: a number per dimension"""
+    normal: List
+    """`plane`: direction from it towards the body, a vector of any length. required for a plane. Allowed: a number per dimension; not all zero"""
+    axis: List
+    """`cylinder` in 3D: direction of its axis, a vector of any length. required for a cylinder in 3D. Allowed: a number per dimension; not all zero"""
+    radius: Quantity
+    """`cylinder`, `sphere`: radius, at least two spacings [m]. required for these. Allowed: positive"""
+    inside: bool
+    """`cylinder`, `sphere`: the body is inside of it. Default: false. Allowed: true, false"""
+    displacement: List
+    """displacement of the obstacle, per component [m]. Default: `['0', '0']`. Allowed: number or expression of `load` (`t`) alone"""
+    stiffness: float
+    """stiffness of the contact relative to that of the point's cell, Young's modulus times its section over half a spacing. Default: 1. Allowed: positive"""
+    depth: float
+    """depth that no point may reach, relative to half a spacing. Default: 0.25. Allowed: 0.001 to 0.999"""
+    softness: float
+    """depth over which the stiffness sets in, relative to half a spacing. Default: 1e-4. Allowed: 1e-12 to 0.999; below `depth`"""
+
 class Eigenstrain(Table):
     set: str
     """set with the strain. Default: all points. Allowed: name of a set or layer"""
@@ -651,8 +677,8 @@ class Probe(Table):
     """position; the nearest point gives the value [m]. exactly one of `set`, `at`, `from`. Allowed: a number per dimension"""
     from_: List
     """start of a line. The points within half a spacing of the line are written to `line_NAME.csv` [m]. exactly one of `set`, `at`, `from`. Allowed: a number per dimension"""
-    field: Literal["displacement", "force", "damage", "energy_density", "stretch", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"]
-    """field. Units: displacement, opening, length and position in m, area in m², force in N, energy densities in J/m³, velocity in m/s, stress in Pa, angles in degrees, work of fracture and crack resistance in J/m²; `stress` is the Cauchy stress, `strain` the Green–Lagrange strain. Default: `'displacement'`. Allowed: `'displacement'`, `'force'`, `'damage'`, `'energy_density'`, `'stretch'`, `'deformation_gradient'`, `'divergence'`, `'first_piola_stress'`, `'strain'`, `'stress'`, `'von_mises'`, `'principal_stress'`, `'missing_neighbourhood'`, `'velocity'`, `'kinetic_energy_density'`, `'poisson_ratio'`, `'opening'`, `'crack_length'`, `'crack_begin'`, `'crack_end'`, `'crack_angle'`, `'crack_area'`, `'work_of_fracture'`, `'crack_resistance'`"""
+    field: Literal["displacement", "force", "damage", "energy_density", "stretch", "contact_force", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"]
+    """field. Units: displacement, opening, length and position in m, area in m², force in N, energy densities in J/m³, velocity in m/s, stress in Pa, angles in degrees, work of fracture and crack resistance in J/m²; `stress` is the Cauchy stress, `strain` the Green–Lagrange strain. Default: `'displacement'`. Allowed: `'displacement'`, `'force'`, `'damage'`, `'energy_density'`, `'stretch'`, `'contact_force'`, `'deformation_gradient'`, `'divergence'`, `'first_piola_stress'`, `'strain'`, `'stress'`, `'von_mises'`, `'principal_stress'`, `'missing_neighbourhood'`, `'velocity'`, `'kinetic_energy_density'`, `'poisson_ratio'`, `'opening'`, `'crack_length'`, `'crack_begin'`, `'crack_end'`, `'crack_angle'`, `'crack_area'`, `'work_of_fracture'`, `'crack_resistance'`"""
     to: List
     """end of the line [m]. required with `from`. Allowed: a number per dimension"""
     component: Literal["x", "y", "z", "1", "2", "3", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"]
@@ -731,6 +757,9 @@ class CaseTable(Table):
     def add_foundation(self, *, name: str = ..., set: str = ..., side: Literal["x-", "x+", "y-", "y+", "z-", "z+"] = ..., modulus: List = ..., stiffness: List = ..., displacement: List = ...) -> Foundation: ...
     foundation: Array[Foundation]
     """tables: springs between a part of the body and the ground. Default: none"""
+    def add_obstacle(self, *, name: str = ..., set: str = ..., shape: Literal["plane", "cylinder", "sphere"] = ..., point: List = ..., normal: List = ..., axis: List = ..., radius: Quantity = ..., inside: bool = ..., displacement: List = ..., stiffness: float = ..., depth: float = ..., softness: float = ...) -> Obstacle: ...
+    obstacle: Array[Obstacle]
+    """tables: rigid bodies that press on points. Default: none"""
     def add_eigenstrain(self, *, set: str = ..., strain: Expression = ...) -> Eigenstrain: ...
     eigenstrain: Array[Eigenstrain]
     """tables: strains without stored energy, such as growth or drying. Default: none"""
@@ -757,7 +786,7 @@ class CaseTable(Table):
     """table: the motion in time. required in mode `dynamics`"""
     output: Inner[Output]
     """table: results folder. Default: all defaults"""
-    def add_probe(self, *, name: str = ..., set: str = ..., at: List = ..., from_: List = ..., field: Literal["displacement", "force", "damage", "energy_density", "stretch", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"] = ..., to: List = ..., component: Literal["x", "y", "z", "1", "2", "3", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"] = ..., statistic: Literal["mean", "max", "min", "rms_error", "max_error"] = ..., expected: List = ..., axis: Literal["x", "y", "z"] = ..., other: str = ...) -> Probe: ...
+    def add_probe(self, *, name: str = ..., set: str = ..., at: List = ..., from_: List = ..., field: Literal["displacement", "force", "damage", "energy_density", "stretch", "contact_force", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"] = ..., to: List = ..., component: Literal["x", "y", "z", "1", "2", "3", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"] = ..., statistic: Literal["mean", "max", "min", "rms_error", "max_error"] = ..., expected: List = ..., axis: Literal["x", "y", "z"] = ..., other: str = ...) -> Probe: ...
     probe: Array[Probe]
     """tables: values that are recorded in the history. Default: none"""
     def add_crack_tip(self, *, name: str = ..., at: List = ..., direction: List = ..., front: List = ..., inner: Quantity = ..., outer: Quantity = ..., cut: Quantity = ...) -> CrackTip: ...
