@@ -48,6 +48,7 @@ GROUPS = {
     "cantilever": "Cantilevers",
     "buckling": "Stability",
     "pressure": "Pressure",
+    "contact": "Contact",
     "thermal": "Temperature",
     "bar": "One dimension",
 }
@@ -109,6 +110,9 @@ SHOWS = {
     "buckling/arch": "A shallow arch that snaps through, by arc length.",
     "buckling/column": "A column that buckles, and its path beyond the bifurcation.",
     "pressure/ring": "A ring under a pressure that follows the deformation, compared with Lamé.",
+    "contact/brazilian_disk": "A flattened disk between platens: the stresses at its centre.",
+    "contact/four_point_bending": "A beam on four rollers: pure bending between the inner ones.",
+    "contact/hertz": "A cylinder on a flat block, compared with Hertz.",
     "thermal/bimetal": "A heated strip of two metals that bends, compared with Timoshenko.",
     "bar/tension": "A bar in one dimension, compared with its closed form.",
 }

@@ -16,7 +16,7 @@ def law(x, bend):
         t = x / q
         series = q * (t**3 / 3 + t**5 / 5 + t**7 / 7 + t**9 / 9)
         small = abs(t) < 0.05
-        return numpy.where(small, series, q * numpy.arctanh(numpy.where(small | (x.real >= q), 0.01, t)) - x)
+        return numpy.where(small, series, q * numpy.arctanh(numpy.where(small | (abs(t) >= 1), 0.01, t)) - x)
 
     def line(s):
         series = s**2 / 2 + s**3 / 3 + s**4 / 4 + s**5 / 5 + s**6 / 6 + s**7 / 7

@@ -8,7 +8,7 @@ import numpy as np
 AXES = "xyz"
 TABLES = {  # of the case: words for its entries
     "support": "support", "rigid": "rigid set", "roller": "roller", "constraint": "constraint", "load": "load",
-    "foundation": "foundation", "symmetry": "plane of symmetry", "period": "period", "eigenstrain": "eigenstrain",
+    "foundation": "foundation", "obstacle": "obstacle", "symmetry": "plane of symmetry", "period": "period", "eigenstrain": "eigenstrain",
     "initial": "initial state", "absorbing": "absorbing layer", "control": "control",
 }  # fmt: skip
 PLACES = ("set", "side", "name", "axis")  # keys that say where an entry acts

@@ -31,9 +31,6 @@ std::vector<ProbeColumns> constraint_columns(const Case& from) {
     for (const int axis : axes_of(from.dimension)) {
       columns.push_back({column("moment", axis, obstacle.name), 1, "N m"});
     }
-    for (int c = 0; c < from.dimension; ++c) {
-      columns.push_back({column("displacement", c, obstacle.name), 1, "m"});
-    }
   }
   for (const PeriodSpecification& period : from.constraints.periods) {
     for (int c = 0; c < from.dimension; ++c) {
@@ -62,9 +59,6 @@ void add_constraint_values(const Conditions& conditions, const Trial& state,
         ranks.sum(std::vector<double>(action.moment.begin(), action.moment.end()));
     for (const int axis : axes_of(conditions.dimension())) {
       values[column("moment", axis, name)] = {moment[std::size_t(axis)]};
-    }
-    for (int c = 0; c < conditions.dimension(); ++c) {
-      values[column("displacement", c, name)] = {action.displacement[std::size_t(c)]};
     }
   }
   for (const auto& [period, gradient] : conditions.mean_gradients(state.displacement)) {

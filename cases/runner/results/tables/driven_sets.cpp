@@ -115,6 +115,13 @@ std::vector<Driven> driven_by(const Case& from) {
     if (is_number_zero(linear.displacement)) continue;
     list.add({.name = linear.name, .value = linear.displacement});  // its multiplier is reaction_x
   }
+  for (const ObstacleSpecification& obstacle : from.obstacles) {
+    for (int c = 0; c < from.dimension; ++c) {
+      const std::string& displacement = obstacle.displacement[std::size_t(c)];
+      if (is_number_zero(displacement)) continue;
+      list.add({.name = obstacle.name, .component = c, .value = displacement});
+    }
+  }
   const bool is_on_surface = takes(from, Option::surface_loads);
   for (const LoadSpecification& load : from.loads) {
     add_load(list, load, from.dimension, is_on_surface);

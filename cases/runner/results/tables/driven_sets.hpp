@@ -27,8 +27,8 @@ struct Driven {
   Coordinates place{};  ///< at which `value` is evaluated [m]
 };
 
-/// Returns what a case drives, each name and component once: supports, rigid sets, rollers and
-/// linear constraints whose displacement is not the number 0, then loads on sets and sides in the
+/// Returns what a case drives, each name and component once: supports, rigid sets, rollers,
+/// linear constraints and obstacles whose displacement is not the number 0, then loads on sets and sides in the
 /// components that are not the number 0. Pressures count with a side. The case must outlive them.
 [[nodiscard]] std::vector<Driven> driven_by(const Case& from);
 
