@@ -330,6 +330,20 @@ void Assembler::add_contact_stiffness(const StateView& at, std::span<double> sti
   for_each_term([&](TermPasses& term, Write) { term.add_contact_stiffness(at, stiffness); });
 }
 
+bool Assembler::has_friction() const {
+  return std::ranges::any_of(terms_, [](const auto& term) { return term->has_friction(); });
+}
+
+double Assembler::lag_friction(const StateView& at, const StateView& start, History& history) {
+  double change = 0.0, largest = 0.0;
+  for_each_term([&](TermPasses& term, Write) {
+    const auto [of_term, force] = term.lag_friction(at, start, history);
+    change = std::max(change, of_term);
+    largest = std::max(largest, force);
+  });
+  return change > 0.0 ? change / std::max(change, largest) : 0.0;
+}
+
 int Assembler::cover_contacts(const StateView& at) {
   std::vector<Couplings> in_contact;
   for_each_term([&](TermPasses& term, Write) {

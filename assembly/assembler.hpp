@@ -86,6 +86,10 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   [[nodiscard]] double work_of_obstacles(const StateView& from, const StateView& to);
   /// Of this rank's points.
   void add_contact_stiffness(const StateView& at, std::span<double> stiffness);
+  [[nodiscard]] bool has_friction() const;
+  /// Takes the normal forces of friction from a state of a search that began at another. Returns
+  /// their largest change over the largest of them.
+  double lag_friction(const StateView& at, const StateView& start, History& history);
   int cover_contacts(const StateView& at) override;
 
   /// What drives bonds that fail by release.

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "src/conditions/slip.hpp"
+
 namespace peristat {
 
 /// Internal variables that the terms of a model keep from committed states: one array of numbers
@@ -42,6 +44,13 @@ class History {
     note_damage();
   }
 
+  /// Contacts with friction.
+  [[nodiscard]] const Slips& slips() const {
+    static const Slips none;
+    return slips_ ? *slips_ : none;
+  }
+  void replace_slips(Slips slips) { slips_ = std::make_shared<const Slips>(std::move(slips)); }
+
  private:
   static std::uint64_t next_version() {
     static std::atomic<std::uint64_t> last = 0;
@@ -50,6 +59,7 @@ class History {
 
   std::uint64_t version_ = 0;
   std::vector<std::shared_ptr<std::vector<double>>> terms_;
+  std::shared_ptr<const Slips> slips_;  // null: none
 };
 
 }  // namespace peristat

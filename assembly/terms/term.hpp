@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -107,6 +108,14 @@ class TermPasses {
   [[nodiscard]] virtual double work_of_obstacles(const StateView& /*from*/,
                                                  const StateView& /*to*/) {
     return 0.0;
+  }
+  /// True if contacts rub: their friction depends on a normal force that the history has.
+  [[nodiscard]] virtual bool has_friction() const { return false; }
+  /// Takes the normal forces of friction from a state of a search that began at another. Returns
+  /// the largest change and the largest of them [N].
+  virtual std::array<double, 2> lag_friction(const StateView& /*at*/, const StateView& /*start*/,
+                                             History& /*history*/) {
+    return {};
   }
   /// Points that contacts couple at a state, beside those of Term::couplings. The passes own the
   /// arrays.

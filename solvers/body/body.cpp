@@ -357,6 +357,9 @@ void refuse_without_ranks(const BodySpecification& of) {
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.controls.empty()) refuse("controls");
   if (!of.contacts.empty()) refuse("contacts");
+  for (std::size_t k = 0; k < of.obstacles.size(); ++k) {
+    if (of.obstacles[k].friction > 0.0) refuse("obstacles[" + std::to_string(k) + "].friction");
+  }
   if (cuts_struts(of)) refuse("damage.struts");
   for (std::size_t k = 0; k < of.loads.size(); ++k) {
     const LoadSpecification::Kind kind = of.loads[k].kind;

@@ -88,7 +88,7 @@ void complete_record(const Path& path, const Attempt& attempt, FoundStep& found)
 std::map<std::string, Coordinates> reactions(const Path& path, const Trial& state,
                                              const std::vector<double>& external_force) {
   std::map<std::string, Coordinates> found = path.setting().conditions.reactions(
-      state.gradient, external_force, state.displacement, state.environment);
+      state.gradient, external_force, state.displacement, state.environment, state.history.slips());
   const Sums sums = path.problem().sums();
   for (auto& [set, reaction] : found) {
     const std::vector<double> all =

@@ -15,6 +15,27 @@ void transfer_optional(StateArchive& archive, const std::string& name,
   value = is_there ? std::optional(held) : std::nullopt;
 }
 
+void transfer_slips(StateArchive& archive, const std::string& name, History& history) {
+  std::vector<double> values;
+  for (const auto& [contact, normal_force, normal, elastic, start] : history.slips()) {
+    values.insert(values.end(), {double(contact), normal_force});
+    for (const Coordinates& vector : {normal, elastic, start}) {
+      values.insert(values.end(), vector.begin(), vector.end());
+    }
+  }
+  archive.transfer(name + "/slips", values, Rows::whole);
+  constexpr std::size_t numbers = 11;
+  Slips slips;
+  for (std::size_t k = 0; k + numbers <= values.size(); k += numbers) {
+    const auto vector_at = [&](std::size_t first) {
+      return Coordinates{values[k + first], values[k + first + 1], values[k + first + 2]};
+    };
+    slips.push_back(
+        {std::size_t(values[k]), values[k + 1], vector_at(2), vector_at(5), vector_at(8)});
+  }
+  if (!slips.empty()) history.replace_slips(std::move(slips));
+}
+
 void transfer_history(StateArchive& archive, const std::string& name, History& history) {
   int terms = static_cast<int>(history.terms());
   archive.transfer(name + "/terms", terms);
@@ -24,6 +45,7 @@ void transfer_history(StateArchive& archive, const std::string& name, History& h
     archive.transfer(name + "/history_" + std::to_string(k), values, Rows::histories);
     history.replace(term, std::move(values));
   }
+  transfer_slips(archive, name, history);
 }
 
 void transfer_ledger(StateArchive& archive, PathLedger& ledger) {

@@ -36,6 +36,8 @@ Motion::Motion(const EquilibriumProblem& problem, const MotionSetting& setting, 
 }
 
 bool Motion::find_forces() {
+  // The slip of the step is the incremental one of a force that is taken here.
+  static_cast<void>(problem_.assembler.lag_friction(at_.at(), at_.at(), at_.history));
   const Evaluation found = problem_.assembler.commit_forces(at_.displacement, at_.history,
                                                             at_.gradient, at_.environment);
   if (at_.environment && at_.environment->has_follower_force()) {
@@ -90,7 +92,10 @@ void Motion::change_loads() {
 void Motion::change_environment() {
   if (!problem_.conditions.environment_changes()) return;
   last_environment_ = at_.environment;
-  if (problem_.conditions.obstacles().move()) before_obstacles_move_ = at_.displacement;
+  if (problem_.conditions.obstacles().move()) {
+    before_obstacles_move_ = at_.displacement;
+    slips_before_.replace_slips(at_.history.slips());
+  }
   take_on_all_ranks([&] { at_.environment = problem_.conditions.environment(time_); });
   add_half_of_heating();
 }
@@ -99,7 +104,7 @@ void Motion::complete_heating() {
   if (!problem_.conditions.environment_changes()) return;
   add_half_of_heating();
   if (before_obstacles_move_.empty()) return;
-  const StateView before(before_obstacles_move_, at_.history, Damage::held, last_environment_);
+  const StateView before(before_obstacles_move_, slips_before_, Damage::held, last_environment_);
   const double work = problem_.assembler.work_of_obstacles(before, at_.at());
   if (problem_.assembler.index_map().is_first_rank()) sums_.work += work;  // of the whole body
 }

@@ -141,6 +141,7 @@ class Motion {
   std::vector<double> last_displacement_, last_follower_force_;
   SharedEnvironment last_environment_;
   std::vector<double> before_obstacles_move_;  // displacement; empty: none moves
+  History slips_before_;                       // with these alone
 };
 
 }  // namespace peristat

@@ -45,7 +45,8 @@ std::vector<double> internal_forces(const EquilibriumProblem& problem, const Tri
     static_cast<void>(problem.assembler.gradient(trial.at(), gradient));
   }
   problem.conditions.foundations().add_force(trial.displacement, trial.environment, 1.0, gradient);
-  problem.conditions.obstacles().add_force(trial.displacement, trial.environment, 1.0, gradient);
+  problem.conditions.obstacles().add_force(trial.displacement, trial.environment,
+                                           trial.history.slips(), 1.0, gradient);
   return gradient;
 }
 

@@ -39,6 +39,9 @@ class Relaxation {
         velocity_(velocity),
         result_(result),
         at_(result.state),
+        start_(problem.assembler.has_friction() ? result.state.displacement
+                                                : std::vector<double>()),
+        start_environment_(result.state.environment),
         partial_(std::size_t(problem.assembler.threads())),
         inverse_density_(dofs_.size()),
         residual_(dofs_.size()),
@@ -68,6 +71,10 @@ class Relaxation {
   void evaluate() {
     Assembler& assembler = problem_.assembler;
     add_work_on_followers();
+    if (assembler.has_friction()) {
+      const StateView start(start_, at_.history, Damage::held, start_environment_);
+      static_cast<void>(assembler.lag_friction(at_.at(), start, at_.history));
+    }
     const Evaluation found =
         options_.breaking == Breaking::transient
             ? assembler.commit(at_.displacement, at_.history, at_.gradient, at_.environment)
@@ -314,6 +321,8 @@ class Relaxation {
   std::vector<double>& velocity_;  // V^(n-1/2), and after `accelerate` V^(n+1/2)
   RelaxationResult& result_;
   Trial& at_;
+  const std::vector<double> start_;  // displacement; empty without friction
+  const SharedEnvironment start_environment_;
   std::vector<FourSums> partial_;        // per thread
   std::vector<double> inverse_density_;  // 1/lambda; 0 where nothing resists
   std::vector<double> row_sums_;         // without contacts that close later; empty: there are none

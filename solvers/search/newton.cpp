@@ -21,8 +21,12 @@ std::int64_t told_negative_pivots(LinearOutcome linear, const std::optional<Iner
 /// True if the direction of a projected tangent may succeed where the exact one's failed.
 bool projection_may_help(Outcome outcome) {
   return outcome == Outcome::not_positive_definite || outcome == Outcome::no_descent ||
-         outcome == Outcome::line_search_failed || outcome == Outcome::degenerate;
+         outcome == Outcome::line_search_failed || outcome == Outcome::degenerate ||
+         outcome == Outcome::singular_tangent;
 }
+
+/// Rounds in which the normal forces of friction are taken anew.
+constexpr int most_rounds_of_friction = 60;
 
 /// One search, from the jump of supports and loads on.
 class NewtonSearch {
@@ -66,6 +70,9 @@ class NewtonSearch {
 
   [[nodiscard]] NewtonResult run() {
     result_.outcome = search();
+    for (int round = 1; result_.outcome == Outcome::converged && lags_friction(); ++round) {
+      result_.outcome = round < most_rounds_of_friction ? search() : Outcome::iteration_limit;
+    }
     if (result_.outcome == Outcome::converged &&
         problem_.assembler.has_passed(from_, current_.at(damage_))) {
       result_.outcome = Outcome::degenerate;
@@ -101,6 +108,20 @@ class NewtonSearch {
     return residual_scale(problem_, external_force_, start_gradient_, jumped);
   }
 
+  /// Takes the normal forces of friction from the present state, unless they are those of the
+  /// search already.
+  [[nodiscard]] bool lags_friction() {
+    constexpr double same = 1e-6;
+    Assembler& assembler = problem_.assembler;
+    if (!assembler.has_friction()) return false;
+    History history = current_.history;
+    const double change = assembler.lag_friction(current_.at(damage_), from_, history);
+    if (!(change > same)) return false;
+    current_.history = std::move(history);
+    evaluate(problem_, external_force_, current_, damage_);
+    return true;
+  }
+
   void find_start_gradient() {
     Trial there;
     there.displacement = from_.displacement;
@@ -120,7 +141,8 @@ class NewtonSearch {
       release_damage();
       if (has_converged()) return Outcome::converged;
     }
-    for (int iteration = 1; iteration <= options_.max_iterations; ++iteration) {
+    const int first = result_.iterations + 1;
+    for (int iteration = first; iteration < first + options_.max_iterations; ++iteration) {
       IterationRecord row;
       row.iteration = iteration;
       const Outcome outcome = advance(row);

@@ -479,9 +479,11 @@ void Conditions::add_loads_of_all(const std::function<void()>& add_loads) const 
     throw InputError(loads_.front().key, "", "has no value at a point on another rank");
 }
 
-std::map<std::string, Coordinates> Conditions::reactions(
-    std::span<const double> gradient, std::span<const double> external,
-    std::span<const double> displacement, const SharedEnvironment& environment) const {
+std::map<std::string, Coordinates> Conditions::reactions(std::span<const double> gradient,
+                                                         std::span<const double> external,
+                                                         std::span<const double> displacement,
+                                                         const SharedEnvironment& environment,
+                                                         const Slips& slips) const {
   std::map<std::string, Coordinates> sums;
   std::set<std::pair<std::string, int>> summed;  // two supports may hold one set in one component
   for (const Prescription& prescription : prescriptions_) {
@@ -496,7 +498,7 @@ std::map<std::string, Coordinates> Conditions::reactions(
     sums[restraint.name] = reaction_of(restraint, gradient);
   }
   sums.merge(foundations_.forces(displacement, environment));
-  for (const auto& [name, action] : obstacles_.actions(displacement, environment)) {
+  for (const auto& [name, action] : obstacles_.actions(displacement, environment, slips)) {
     sums[name] = action.force;
   }
   return sums;

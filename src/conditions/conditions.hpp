@@ -114,9 +114,11 @@ class Conditions {
   /// component, the multiplier of a linear constraint; and the forces of foundations and obstacles.
   /// For a part of a body these are this rank's summands.
   /// @param gradient folded, see Constraints
-  [[nodiscard]] std::map<std::string, Coordinates> reactions(
-      std::span<const double> gradient, std::span<const double> external,
-      std::span<const double> displacement, const SharedEnvironment& environment) const;
+  [[nodiscard]] std::map<std::string, Coordinates> reactions(std::span<const double> gradient,
+                                                             std::span<const double> external,
+                                                             std::span<const double> displacement,
+                                                             const SharedEnvironment& environment,
+                                                             const Slips& slips = {}) const;
 
   /// Moment of each rigid set's constraint about the set's present centre [N m]; for a part of a
   /// body this rank's summand.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -80,11 +81,16 @@ Obstacles::Obstacles(const Points& points, const std::vector<ObstacleSpecificati
     require_between(of.depth, 0.0, 1.0, table + ".depth", "must be between 0 and 1");
     require_between(of.softness, 0.0, of.depth, table + ".softness",
                     "must be positive and below depth, " + number_text(of.depth));
+    require_between(of.friction, -1e-300, 1e3, table + ".friction", "must be from 0 to 1000");
+    require_between(of.tangential_stiffness, 0.0, 1e3, table + ".tangential_stiffness",
+                    "must be positive and at most 1000");
     Obstacle made{of.name,
                   table,
                   checked_surface(of.surface, dimension_, table),
                   of.depth,
                   ContactLaw{of.softness / of.depth},
+                  of.friction,
+                  of.tangential_stiffness,
                   contacts_.size(),
                   0,
                   {}};
@@ -119,6 +125,98 @@ bool Obstacles::move() const {
     return std::ranges::any_of(of.displacement,
                                [](const Expression& along) { return along.text() != "0"; });
   });
+}
+
+bool Obstacles::rub() const {
+  return std::ranges::any_of(obstacles_, [](const Obstacle& of) { return of.friction > 0.0; });
+}
+
+const Obstacles::Obstacle& Obstacles::obstacle_of(std::size_t contact) const {
+  return *std::ranges::upper_bound(obstacles_, contact, {}, &Obstacle::last);
+}
+
+Coordinates Obstacles::place_of(std::size_t contact, std::span<const double> displacement,
+                                const SharedEnvironment& environment) const {
+  const auto obstacle = std::size_t(&obstacle_of(contact) - obstacles_.data());
+  return place(contact, displacement, moved(obstacle, environment));
+}
+
+namespace {
+
+/// The slip of a contact; null: it has none.
+const Slip* slip_of(const Slips& slips, std::size_t contact) {
+  const auto found = std::ranges::lower_bound(slips, contact, {}, &Slip::contact);
+  return found == slips.end() || found->contact != contact ? nullptr : &*found;
+}
+
+}  // namespace
+
+Obstacles::CommittedSlips Obstacles::committed(std::span<const double> displacement,
+                                               const SharedEnvironment& environment,
+                                               const Slips& before) const {
+  CommittedSlips result;
+  Slips kept, fresh;
+  for (const Slip& slip : before) {
+    const double stiffness = tangential_stiffness(slip.contact);
+    if (!(slip.normal_force > 0.0)) {  // nothing is left of a contact that has opened
+      result.dissipated += 0.5 * stiffness * dot(slip.elastic, slip.elastic);
+      continue;
+    }
+    const Coordinates place = place_of(slip.contact, displacement, environment);
+    const Coordinates y = slipped(slip, place);
+    const double size = length(y);
+    const double bearable = obstacle_of(slip.contact).friction * slip.normal_force / stiffness;
+    const double share = size > bearable ? bearable / size : 1.0;
+    result.dissipated += stiffness * bearable * std::max(0.0, size - bearable);
+    kept.push_back({slip.contact, slip.normal_force, slip.normal, scaled(share, y), place});
+  }
+  for_each_pressed(displacement, {}, environment, [&](const Pressed& contact) {
+    if (contact.obstacle.friction == 0.0 || slip_of(kept, contact.contact)) return;
+    fresh.push_back({contact.contact,
+                     contact.force(),
+                     contact.depth.distance.gradient,
+                     {},
+                     place_of(contact.contact, displacement, environment)});
+  });
+  std::ranges::merge(kept, fresh, std::back_inserter(result.slips), {}, &Slip::contact,
+                     &Slip::contact);
+  return result;
+}
+
+Obstacles::LaggedSlips Obstacles::lagged(std::span<const double> displacement,
+                                         const SharedEnvironment& environment,
+                                         std::span<const double> at_start,
+                                         const SharedEnvironment& environment_at_start,
+                                         const Slips& before) const {
+  LaggedSlips result;
+  for (const Slip& slip : before) {  // one that has opened may close again within the step
+    result.slips.push_back(slip);
+    result.slips.back().normal_force = 0.0;
+  }
+  Slips pressed;
+  for_each_pressed(displacement, {}, environment, [&](const Pressed& contact) {
+    if (contact.obstacle.friction == 0.0) return;
+    const Slip* const old = slip_of(before, contact.contact);
+    Slip now = old ? *old : Slip{};
+    if (!old) now.start = place_of(contact.contact, at_start, environment_at_start);
+    now.contact = contact.contact;
+    now.normal_force = contact.force();
+    now.normal = contact.depth.distance.gradient;
+    result.change =
+        std::max(result.change, std::abs(now.normal_force - (old ? old->normal_force : 0.0)));
+    result.largest = std::max(result.largest, now.normal_force);
+    pressed.push_back(now);
+  });
+  for (const Slip& slip : before) {
+    if (!slip_of(pressed, slip.contact)) {
+      result.change = std::max(result.change, slip.normal_force);
+    }
+  }
+  Slips all;
+  std::ranges::set_union(pressed, result.slips, std::back_inserter(all), {}, &Slip::contact,
+                         &Slip::contact);
+  result.slips = std::move(all);
+  return result;
 }
 
 std::vector<double> Obstacles::displacements(std::span<const double> loads) const {
@@ -167,9 +265,14 @@ void Obstacles::refuse_overlap(const Communicator& ranks) const {
 }
 
 void Obstacles::add_force(std::span<const double> displacement,
-                          const SharedEnvironment& environment, double factor,
+                          const SharedEnvironment& environment, const Slips& slips, double factor,
                           std::span<double> force) const {
   const auto d = std::size_t(dimension_);
+  for_each_rubbing(displacement, environment, slips, [&](const Rubbing& friction) {
+    for (std::size_t c = 0; c < d; ++c) {
+      force[std::size_t(friction.point) * d + c] += factor * friction.force[c];
+    }
+  });
   for_each_pressed(displacement, {}, environment, [&](const Pressed& contact) {
     for (std::size_t c = 0; c < d; ++c) {
       force[std::size_t(contact.point) * d + c] +=
@@ -178,26 +281,34 @@ void Obstacles::add_force(std::span<const double> displacement,
   });
 }
 
-std::map<std::string, Obstacles::Action> Obstacles::actions(
-    std::span<const double> displacement, const SharedEnvironment& environment) const {
+std::map<std::string, Obstacles::Action> Obstacles::actions(std::span<const double> displacement,
+                                                            const SharedEnvironment& environment,
+                                                            const Slips& slips) const {
   std::map<std::string, Action> actions;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     actions[obstacles_[k].name].displacement = moved(k, environment);
   }
-  for_each_pressed(displacement, {}, environment, [&](const Pressed& contact) {
-    Action& action = actions[contact.obstacle.name];
-    const Coordinates force = scaled(contact.force(), contact.depth.distance.gradient);
+  const auto add = [&](const Obstacle& of, std::size_t contact, const Coordinates& force) {
+    Action& action = actions[of.name];
     action.force = plus(action.force, force);
-    action.moment = plus(action.moment,
-                         cross(place(contact.contact, displacement, action.displacement), force));
+    action.moment =
+        plus(action.moment, cross(place(contact, displacement, action.displacement), force));
+  };
+  for_each_pressed(displacement, {}, environment, [&](const Pressed& contact) {
+    add(contact.obstacle, contact.contact,
+        scaled(contact.force(), contact.depth.distance.gradient));
+  });
+  for_each_rubbing(displacement, environment, slips, [&](const Rubbing& friction) {
+    add(friction.obstacle, friction.contact, friction.force);
   });
   return actions;
 }
 
 double Obstacles::work(std::span<const double> from, const SharedEnvironment& under_from,
-                       std::span<const double> to, const SharedEnvironment& under_to) const {
+                       const Slips& slips_from, std::span<const double> to,
+                       const SharedEnvironment& under_to, const Slips& slips_to) const {
   double work = 0.0;
-  auto before = actions(from, under_from), after = actions(to, under_to);
+  auto before = actions(from, under_from, slips_from), after = actions(to, under_to, slips_to);
   for (const Obstacle& of : obstacles_) {
     const Action &one = before[of.name], &other = after[of.name];
     work += 0.5 * dot(plus(one.force, other.force), minus(other.displacement, one.displacement));

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "src/conditions/environment.hpp"
+#include "src/conditions/slip.hpp"
 #include "src/conditions/specification.hpp"
+#include "src/core/coordinates.hpp"
 #include "src/core/expression.hpp"
 #include "src/geometry/points.hpp"
 #include "src/parallel/communicator.hpp"
@@ -20,7 +22,7 @@ struct ObstacleSetting {
   std::vector<double> youngs_modulus{};  ///< E per point [Pa]
 };
 
-/// Rigid obstacles that press on points without friction. A body's surface is half a spacing d =
+/// Rigid obstacles that press on points. A body's surface is half a spacing d =
 /// Delta/2 in front of its outermost points. A point at the signed distance phi from an obstacle
 /// has the relative depth x = (d - phi) / (a d), and the energy
 ///
@@ -28,6 +30,16 @@ struct ObstacleSetting {
 ///
 /// b of ContactLaw. The force on the point is k a d b' along n = grad phi. Delta is the spacing of
 /// a lattice, elsewhere the point's own size.
+///
+/// Friction is Coulomb's, with an elastic slip e by which contacts stick without creep. With the
+/// place X of the point relative to the obstacle, P = I - n n^T, and lambda, n, e, X0 of its Slip,
+///
+///   y = e + P (X - X0),   k_t = beta k,   R = mu lambda / k_t,
+///   D = k_t |y|^2 / 2 if |y| <= R, otherwise mu lambda (|y| - R / 2)
+///
+/// is an incremental potential: a search holds lambda and n, and takes them anew until they are
+/// those of the state. Then e becomes y min(1, R / |y|), D keeps k_t |e|^2 / 2, and
+/// mu lambda (|y| - R) is dissipated.
 class Obstacles {
  public:
   /// A point that an obstacle may touch.
@@ -41,6 +53,8 @@ class Obstacles {
     RigidSurface surface;
     double depth = 0.0;  ///< a
     ContactLaw law;
+    double friction = 0.0;            ///< mu
+    double tangential = 0.0;          ///< beta
     std::size_t first = 0, last = 0;  ///< of its contacts
     std::vector<Expression> displacement{};
   };
@@ -64,6 +78,30 @@ class Obstacles {
     [[nodiscard]] double force() const { return stiffness * scale * law.first; }  ///< along n
   };
 
+  /// Friction of a contact.
+  struct Rubbing {
+    Index point = 0;
+    std::size_t contact = 0;
+    const Obstacle& obstacle;
+    Coordinates force{};  ///< on the point, -dD/dX [N]
+    double energy = 0.0;  ///< D [J]
+    /// d2D/dX2 = stiffness (P - sliding y y^T / |y|^2)
+    double stiffness = 0.0;             ///< [N/m]
+    double sliding = 0.0;               ///< 1 if it slides, otherwise 0
+    Coordinates normal{}, direction{};  ///< n, y / |y|
+  };
+  /// Slips at the end of a step.
+  struct CommittedSlips {
+    Slips slips;
+    double dissipated = 0.0;  ///< [J]
+  };
+  /// Slips with the normal forces of a state.
+  struct LaggedSlips {
+    Slips slips;
+    double change = 0.0;   ///< largest change of a normal force [N]
+    double largest = 0.0;  ///< largest normal force [N]
+  };
+
   Obstacles() = default;
 
   /// @param ranks that have parts of the body: collective, each rank has the contacts of its own
@@ -80,6 +118,8 @@ class Obstacles {
   [[nodiscard]] std::span<const Contact> contacts() const { return contacts_; }
 
   [[nodiscard]] bool move() const;
+  /// True if any has friction.
+  [[nodiscard]] bool rub() const;
   /// Displacement of all, obstacles x dimension [m].
   /// @throws InputError if it is not finite
   [[nodiscard]] std::vector<double> displacements(std::span<const double> loads) const;
@@ -100,9 +140,26 @@ class Obstacles {
   void for_each_place(std::span<const double> displacement, const SharedEnvironment& environment,
                       const Visit& visit) const;
 
+  /// Calls visit(Rubbing) for every contact whose friction has an energy.
+  template <class Visit>
+  void for_each_rubbing(std::span<const double> displacement, const SharedEnvironment& environment,
+                        const Slips& slips, const Visit& visit) const;
+
+  /// Slips that a state leaves behind it.
+  [[nodiscard]] CommittedSlips committed(std::span<const double> displacement,
+                                         const SharedEnvironment& environment,
+                                         const Slips& before) const;
+  /// Slips before with the normal forces and directions of a state; contacts that are new begin
+  /// where they were at the start of the step.
+  [[nodiscard]] LaggedSlips lagged(std::span<const double> displacement,
+                                   const SharedEnvironment& environment,
+                                   std::span<const double> at_start,
+                                   const SharedEnvironment& environment_at_start,
+                                   const Slips& before) const;
+
   /// Adds factor * the forces on the points [N].
   void add_force(std::span<const double> displacement, const SharedEnvironment& environment,
-                 double factor, std::span<double> force) const;
+                 const Slips& slips, double factor, std::span<double> force) const;
 
   /// Of an obstacle: its force on the body [N], the moment of this about the obstacle's `point`,
   /// which has moved with it [N m], and its displacement [m].
@@ -110,14 +167,29 @@ class Obstacles {
     Coordinates force{}, moment{}, displacement{};
   };
   [[nodiscard]] std::map<std::string, Action> actions(std::span<const double> displacement,
-                                                      const SharedEnvironment& environment) const;
+                                                      const SharedEnvironment& environment,
+                                                      const Slips& slips) const;
 
   /// Work that the obstacles do on the body from one state to another by the trapezoidal rule [J].
   [[nodiscard]] double work(std::span<const double> from, const SharedEnvironment& under_from,
-                            std::span<const double> to, const SharedEnvironment& under_to) const;
+                            const Slips& slips_from, std::span<const double> to,
+                            const SharedEnvironment& under_to, const Slips& slips_to) const;
 
  private:
+  [[nodiscard]] const Obstacle& obstacle_of(std::size_t contact) const;
+  /// k_t [N/m]
+  [[nodiscard]] double tangential_stiffness(std::size_t contact) const {
+    return obstacle_of(contact).tangential * contacts_[contact].stiffness;
+  }
+  /// Place of a contact's point relative to its obstacle's `point` [m].
+  [[nodiscard]] Coordinates place_of(std::size_t contact, std::span<const double> displacement,
+                                     const SharedEnvironment& environment) const;
   [[nodiscard]] Coordinates moved(std::size_t obstacle, const SharedEnvironment& environment) const;
+  /// y of a slip [m].
+  [[nodiscard]] static Coordinates slipped(const Slip& slip, const Coordinates& place) {
+    const Coordinates moved = minus(place, slip.start);
+    return plus(slip.elastic, minus(moved, scaled(dot(moved, slip.normal), slip.normal)));
+  }
   [[nodiscard]] static double relative_depth(const Obstacle& of, const Contact& contact,
                                              double distance) {
     return (contact.distance - distance) / (of.depth * contact.distance);
@@ -139,6 +211,26 @@ void Obstacles::for_each_place(std::span<const double> displacement,
     for (std::size_t c = obstacles_[k].first; c < obstacles_[k].last; ++c) {
       visit(c, obstacles_[k], place(c, displacement, of_obstacle));
     }
+  }
+}
+
+template <class Visit>
+void Obstacles::for_each_rubbing(std::span<const double> displacement,
+                                 const SharedEnvironment& environment, const Slips& slips,
+                                 const Visit& visit) const {
+  for (const Slip& slip : slips) {
+    const Obstacle& of = obstacle_of(slip.contact);
+    const double limit = of.friction * slip.normal_force;
+    if (!(limit > 0.0)) continue;
+    const Coordinates y = slipped(slip, place_of(slip.contact, displacement, environment));
+    const double size = length(y), stiffness = tangential_stiffness(slip.contact);
+    const double bearable = limit / stiffness;
+    const bool slides = size > bearable;
+    const Coordinates direction = size > 0.0 ? scaled(1.0 / size, y) : Coordinates{};
+    visit(Rubbing{contacts_[slip.contact].point, slip.contact, of,
+                  scaled(-(slides ? limit : stiffness * size), direction),
+                  slides ? limit * (size - 0.5 * bearable) : 0.5 * stiffness * size * size,
+                  slides ? limit / size : stiffness, slides ? 1.0 : 0.0, slip.normal, direction});
   }
 }
 

@@ -73,7 +73,7 @@ struct FoundationSpecification {
   std::array<std::string, 3> displacement{"0", "0", "0"};  ///< of the ground, an expression [m]
 };
 
-/// A rigid body that presses on points without friction: see Obstacles.
+/// A rigid body that presses on points: see Obstacles.
 struct ObstacleSpecification {
   std::string name{};
   std::string set{};  ///< points that it may touch; empty: all
@@ -82,6 +82,8 @@ struct ObstacleSpecification {
   double stiffness = 1.0;  ///< relative to that of the points' cells
   double depth = 0.25;     ///< largest depth over half a spacing, between 0 and 1
   double softness = 1e-4;  ///< depth over half a spacing within which the stiffness sets in
+  double friction = 0.0;   ///< mu, of Coulomb
+  double tangential_stiffness = 0.5;  ///< of contacts that stick, over that along the normal
 };
 
 /// Isotropic strain that a set, or without one the body, would have if nothing held it: length over

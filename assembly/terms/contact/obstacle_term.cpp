@@ -1,6 +1,7 @@
 #include "assembly/terms/contact/obstacle_term.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "src/core/coordinates.hpp"
@@ -9,6 +10,7 @@ namespace peristat {
 namespace {
 
 using Pressed = Obstacles::Pressed;
+using Rubbing = Obstacles::Rubbing;
 
 class ObstaclePasses : public TermPasses, BlockTangent {
  public:
@@ -27,7 +29,39 @@ class ObstaclePasses : public TermPasses, BlockTangent {
         own[c] -= contact.force() * contact.depth.distance.gradient[c];
       }
     });
+    for_each_rubbing(at, [&](const Rubbing& friction) {
+      found.energy += friction.energy;
+      if (gradient.empty()) return;
+      double* const own = &gradient[std::size_t(friction.point) * dimension_];
+      for (std::size_t c = 0; c < dimension_; ++c) own[c] -= friction.force[c];
+    });
     return found;
+  }
+
+  Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
+                    History& history, std::span<double> gradient, Write how) override {
+    double dissipated = 0.0;
+    if (obstacles_.rub()) {
+      Obstacles::CommittedSlips now =
+          obstacles_.committed(displacement, environment, history.slips());
+      dissipated = now.dissipated;
+      history.replace_slips(std::move(now.slips));
+    }
+    Evaluation found =
+        this->gradient({displacement, history, Damage::grows, environment}, gradient, how);
+    found.released += dissipated;
+    return found;
+  }
+
+  [[nodiscard]] bool has_friction() const override { return obstacles_.rub(); }
+
+  std::array<double, 2> lag_friction(const StateView& at, const StateView& start,
+                                     History& history) override {
+    if (!obstacles_.rub()) return {};
+    Obstacles::LaggedSlips now = obstacles_.lagged(
+        at.displacement, at.environment, start.displacement, start.environment, history.slips());
+    history.replace_slips(std::move(now.slips));
+    return {now.change, now.largest};
   }
 
   [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
@@ -41,19 +75,31 @@ class ObstaclePasses : public TermPasses, BlockTangent {
         for (std::size_t c = 0; c < dimension_; ++c) own[r * dimension_ + c] += block[r][c];
       }
     });
+    for_each_rubbing(at, [&](const Rubbing& friction) {
+      const Tensor block = block_of(friction, projection);
+      double* const own = &tangent.diagonal[std::size_t(friction.point) * dimension_ * dimension_];
+      for (std::size_t r = 0; r < dimension_; ++r) {
+        for (std::size_t c = 0; c < dimension_; ++c) own[r * dimension_ + c] += block[r][c];
+      }
+    });
   }
 
   void product(const StateView& at, std::span<const double> v, double projection,
                std::span<double> product, Write how) override {
     if (how == Write::over) std::fill(product.begin(), product.end(), 0.0);
-    for_each(at, [&](const Pressed& contact) {
-      const Tensor block = block_of(contact, projection);
-      const std::size_t first = std::size_t(contact.point) * dimension_;
+    const auto multiply = [&](Index point, const Tensor& block) {
+      const std::size_t first = std::size_t(point) * dimension_;
       for (std::size_t r = 0; r < dimension_; ++r) {
         for (std::size_t c = 0; c < dimension_; ++c) {
           product[first + r] += block[r][c] * v[first + c];
         }
       }
+    };
+    for_each(at, [&](const Pressed& contact) {
+      multiply(contact.point, block_of(contact, projection));
+    });
+    for_each_rubbing(at, [&](const Rubbing& friction) {
+      multiply(friction.point, block_of(friction, projection));
     });
   }
 
@@ -61,6 +107,9 @@ class ObstaclePasses : public TermPasses, BlockTangent {
     if (how == Write::over) std::fill(energies.begin(), energies.end(), 0.0);
     for_each(at, [&](const Pressed& contact) {
       energies[std::size_t(contact.point)] += contact.energy();
+    });
+    for_each_rubbing(at, [&](const Rubbing& friction) {
+      energies[std::size_t(friction.point)] += friction.energy;
     });
   }
 
@@ -125,13 +174,14 @@ class ObstaclePasses : public TermPasses, BlockTangent {
           const double bent = std::max(1.0, of.law(depth).second);
           for (std::size_t k = 0; k < dimension_; ++k) {
             stiffness[std::size_t(contact.point) * dimension_ + k] +=
-                after_a_fifth * bent * contact.stiffness;
+                after_a_fifth * (bent + of.tangential) * contact.stiffness;
           }
         });
   }
 
   [[nodiscard]] double work_of_obstacles(const StateView& from, const StateView& to) override {
-    return obstacles_.work(from.displacement, from.environment, to.displacement, to.environment);
+    return obstacles_.work(from.displacement, from.environment, from.history.slips(),
+                           to.displacement, to.environment, to.history.slips());
   }
 
  private:
@@ -139,6 +189,27 @@ class ObstaclePasses : public TermPasses, BlockTangent {
   void for_each(const StateView& at, const Visit& visit) const {
     if (!at.has_contacts) return;
     obstacles_.for_each_pressed(at.displacement, at.foreseen, at.environment, visit);
+  }
+
+  template <class Visit>
+  void for_each_rubbing(const StateView& at, const Visit& visit) const {
+    if (!at.has_contacts) return;
+    obstacles_.for_each_rubbing(at.displacement, at.environment, at.history.slips(), visit);
+  }
+
+  /// k (P - s y y^T / |y|^2), s = 1 where the contact slides. The projection takes its share of the
+  /// second part away: where all points slide nothing else resists.
+  [[nodiscard]] static Tensor block_of(const Rubbing& friction, double projection) {
+    const double share = (1.0 - projection) * friction.sliding;
+    Tensor block{};
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        block[r][c] =
+            friction.stiffness * ((r == c ? 1.0 : 0.0) - friction.normal[r] * friction.normal[c] -
+                                  share * friction.direction[r] * friction.direction[c]);
+      }
+    }
+    return block;
   }
 
   /// Calls visit(number, obstacle, place, step of the place relative to the obstacle).

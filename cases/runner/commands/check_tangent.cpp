@@ -434,7 +434,8 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
       dofs);  // not folded, without the forces of foundations and obstacles
   static_cast<void>(assembler.gradient(at, internal_force));
   body.conditions->foundations().add_force(displacement, environment, 1.0, internal_force);
-  body.conditions->obstacles().add_force(displacement, environment, 1.0, internal_force);
+  body.conditions->obstacles().add_force(displacement, environment, history.slips(), 1.0,
+                                         internal_force);
   const Evaluation found = reduced.gradient(displacement, gradient);
   if (found.degenerate) {
     throw InputError(

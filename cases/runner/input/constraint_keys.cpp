@@ -172,7 +172,12 @@ Table<ObstacleSpecification> obstacle_keys() {
          "depth that no point may reach, relative to half a spacing"),
        K("softness", &Spec::softness, between(1e-12, 0.999),
          "depth over which the stiffness sets in, relative to half a spacing")
-           .moreover("below `depth`")}};
+           .moreover("below `depth`"),
+       K("friction", &Spec::friction, between(0.0, 1000.0),
+         "coefficient of Coulomb's [friction](contact.md#friction)"),
+       K("tangential_stiffness", &Spec::tangential_stiffness, between(0.001, 1000.0),
+         "stiffness of contacts that stick, relative to `stiffness`")
+           .unless([](auto& of, auto&) { return of.friction == 0.0; }, "needs friction")}};
 }
 
 Table<SymmetryPlane> symmetry_keys() {

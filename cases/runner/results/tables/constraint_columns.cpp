@@ -53,8 +53,8 @@ void add_constraint_values(const Conditions& conditions, const Trial& state,
       values[column("rotation", axis, set)] = {rotations.at(set)[std::size_t(axis)]};
     }
   }
-  for (const auto& [name, action] :
-       conditions.obstacles().actions(state.displacement, state.environment)) {
+  for (const auto& [name, action] : conditions.obstacles().actions(
+           state.displacement, state.environment, state.history.slips())) {
     const std::vector<double> moment =
         ranks.sum(std::vector<double>(action.moment.begin(), action.moment.end()));
     for (const int axis : axes_of(conditions.dimension())) {
