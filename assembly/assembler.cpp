@@ -334,6 +334,10 @@ bool Assembler::has_friction() const {
   return std::ranges::any_of(terms_, [](const auto& term) { return term->has_friction(); });
 }
 
+void Assembler::stick(const StateView& at, History& history) {
+  for_each_term([&](TermPasses& term, Write) { term.stick(at, history); });
+}
+
 double Assembler::lag_friction(const StateView& at, const StateView& start, History& history) {
   double change = 0.0, largest = 0.0;
   for_each_term([&](TermPasses& term, Write) {
@@ -341,6 +345,7 @@ double Assembler::lag_friction(const StateView& at, const StateView& start, Hist
     change = std::max(change, of_term);
     largest = std::max(largest, force);
   });
+  if (!std::isfinite(change)) return 1.0;
   return change > 0.0 ? change / std::max(change, largest) : 0.0;
 }
 

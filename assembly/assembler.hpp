@@ -87,6 +87,8 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   /// Of this rank's points.
   void add_contact_stiffness(const StateView& at, std::span<double> stiffness);
   [[nodiscard]] bool has_friction() const;
+  /// Lets all contacts with friction that touch stick, where a search begins.
+  void stick(const StateView& at, History& history);
   /// Takes the normal forces of friction from a state of a search that began at another. Returns
   /// their largest change over the largest of them.
   double lag_friction(const StateView& at, const StateView& start, History& history);

@@ -111,6 +111,8 @@ class TermPasses {
   }
   /// True if contacts rub: their friction depends on a normal force that the history has.
   [[nodiscard]] virtual bool has_friction() const { return false; }
+  /// Lets all contacts that touch stick, where a search begins.
+  virtual void stick(const StateView& /*at*/, History& /*history*/) {}
   /// Takes the normal forces of friction from a state of a search that began at another. Returns
   /// the largest change and the largest of them [N].
   virtual std::array<double, 2> lag_friction(const StateView& /*at*/, const StateView& /*start*/,

@@ -42,10 +42,12 @@ class NewtonSearch {
         observer_(observer),
         damage_(at == load_point(from) ? options.damage : Damage::held),
         external_force_(from.displacement.size()),
+        history_(from.history),
         linearisation_(problem, solver, tangent, external_force_) {
     problem.conditions.external_force(at, external_force_);
+    problem.assembler.stick(StateView(from), history_);
     current_.displacement = from.displacement;
-    current_.history = from.history;
+    current_.history = history_;
     current_.environment = from.environment;
     evaluate(problem, external_force_, current_, options.damage);
     start_gradient_ = current_.gradient;
@@ -90,7 +92,7 @@ class NewtonSearch {
  private:
   /// State about which the predictor linearises: old displacement, environment of the new load.
   [[nodiscard]] StateView start() const {
-    StateView view(from_.displacement, from_.history, damage_, current_.environment);
+    StateView view(from_.displacement, history_, damage_, current_.environment);
     view.curvature = start_curvature_;
     view.foreseen = foreseen_;
     return view;
@@ -125,7 +127,7 @@ class NewtonSearch {
   void find_start_gradient() {
     Trial there;
     there.displacement = from_.displacement;
-    there.history = from_.history;
+    there.history = history_;
     there.environment = current_.environment;
     there.foreseen = foreseen_;
     evaluate(problem_, external_force_, there, damage_);
@@ -286,6 +288,7 @@ class NewtonSearch {
   const IterationObserver& observer_;
   Damage damage_;
   std::vector<double> external_force_;
+  History history_;  // before the search, with contacts that stick
   Linearisation linearisation_;
   Trial current_, next_;
   std::vector<Tensor> start_curvature_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -135,10 +136,10 @@ const Obstacles::Obstacle& Obstacles::obstacle_of(std::size_t contact) const {
   return *std::ranges::upper_bound(obstacles_, contact, {}, &Obstacle::last);
 }
 
-Coordinates Obstacles::place_of(std::size_t contact, std::span<const double> displacement,
-                                const SharedEnvironment& environment) const {
+Coordinates Obstacles::relative_step(std::size_t contact, std::span<const double> displacement,
+                                     const SharedEnvironment& environment) const {
   const auto obstacle = std::size_t(&obstacle_of(contact) - obstacles_.data());
-  return place(contact, displacement, moved(obstacle, environment));
+  return step_of(contact, displacement, moved(obstacle, environment));
 }
 
 namespace {
@@ -162,13 +163,13 @@ Obstacles::CommittedSlips Obstacles::committed(std::span<const double> displacem
       result.dissipated += 0.5 * stiffness * dot(slip.elastic, slip.elastic);
       continue;
     }
-    const Coordinates place = place_of(slip.contact, displacement, environment);
-    const Coordinates y = slipped(slip, place);
+    const Coordinates step = relative_step(slip.contact, displacement, environment);
+    const Coordinates y = slipped(slip, step);
     const double size = length(y);
     const double bearable = obstacle_of(slip.contact).friction * slip.normal_force / stiffness;
     const double share = size > bearable ? bearable / size : 1.0;
     result.dissipated += stiffness * bearable * std::max(0.0, size - bearable);
-    kept.push_back({slip.contact, slip.normal_force, slip.normal, scaled(share, y), place});
+    kept.push_back({slip.contact, slip.normal_force, slip.normal, scaled(share, y), step});
   }
   for_each_pressed(displacement, {}, environment, [&](const Pressed& contact) {
     if (contact.obstacle.friction == 0.0 || slip_of(kept, contact.contact)) return;
@@ -176,11 +177,28 @@ Obstacles::CommittedSlips Obstacles::committed(std::span<const double> displacem
                      contact.force(),
                      contact.depth.distance.gradient,
                      {},
-                     place_of(contact.contact, displacement, environment)});
+                     relative_step(contact.contact, displacement, environment)});
   });
   std::ranges::merge(kept, fresh, std::back_inserter(result.slips), {}, &Slip::contact,
                      &Slip::contact);
   return result;
+}
+
+Slips Obstacles::stuck(std::span<const double> displacement, const SharedEnvironment& environment,
+                       const Slips& before) const {
+  Slips slips;
+  // As a predictor sees them: contacts that touch count, too.
+  for_each_pressed(displacement, displacement, environment, [&](const Pressed& contact) {
+    if (contact.obstacle.friction == 0.0) return;
+    const Slip* const old = slip_of(before, contact.contact);
+    Slip now = old ? *old : Slip{};
+    now.contact = contact.contact;
+    now.normal_force = std::numeric_limits<double>::infinity();
+    now.normal = contact.depth.distance.gradient;
+    if (!old) now.start = relative_step(contact.contact, displacement, environment);
+    slips.push_back(now);
+  });
+  return slips;
 }
 
 Obstacles::LaggedSlips Obstacles::lagged(std::span<const double> displacement,
@@ -198,7 +216,7 @@ Obstacles::LaggedSlips Obstacles::lagged(std::span<const double> displacement,
     if (contact.obstacle.friction == 0.0) return;
     const Slip* const old = slip_of(before, contact.contact);
     Slip now = old ? *old : Slip{};
-    if (!old) now.start = place_of(contact.contact, at_start, environment_at_start);
+    if (!old) now.start = relative_step(contact.contact, at_start, environment_at_start);
     now.contact = contact.contact;
     now.normal_force = contact.force();
     now.normal = contact.depth.distance.gradient;
@@ -238,13 +256,13 @@ Coordinates Obstacles::moved(std::size_t obstacle, const SharedEnvironment& envi
   return moved;
 }
 
-Coordinates Obstacles::place(std::size_t contact, std::span<const double> displacement,
-                             const Coordinates& of_obstacle) const {
-  Coordinates place = minus(reference_[contact], of_obstacle);
+Coordinates Obstacles::step_of(std::size_t contact, std::span<const double> displacement,
+                               const Coordinates& of_obstacle) const {
+  Coordinates step = scaled(-1.0, of_obstacle);
   const auto d = std::size_t(dimension_);
   const double* const own = &displacement[std::size_t(contacts_[contact].point) * d];
-  for (std::size_t c = 0; c < d; ++c) place[c] += own[c];
-  return place;
+  for (std::size_t c = 0; c < d; ++c) step[c] += own[c];
+  return step;
 }
 
 void Obstacles::refuse_overlap(const Communicator& ranks) const {

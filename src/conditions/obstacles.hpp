@@ -32,7 +32,8 @@ struct ObstacleSetting {
 /// a lattice, elsewhere the point's own size.
 ///
 /// Friction is Coulomb's, with an elastic slip e by which contacts stick without creep. With the
-/// place X of the point relative to the obstacle, P = I - n n^T, and lambda, n, e, X0 of its Slip,
+/// displacement X of the point relative to the obstacle, P = I - n n^T, and lambda, n, e, X0 of its
+/// Slip,
 ///
 ///   y = e + P (X - X0),   k_t = beta k,   R = mu lambda / k_t,
 ///   D = k_t |y|^2 / 2 if |y| <= R, otherwise mu lambda (|y| - R / 2)
@@ -98,7 +99,7 @@ class Obstacles {
   /// Slips with the normal forces of a state.
   struct LaggedSlips {
     Slips slips;
-    double change = 0.0;   ///< largest change of a normal force [N]
+    double change = 0.0;   ///< largest change of a normal force [N]; infinite after `stuck`
     double largest = 0.0;  ///< largest normal force [N]
   };
 
@@ -149,6 +150,9 @@ class Obstacles {
   [[nodiscard]] CommittedSlips committed(std::span<const double> displacement,
                                          const SharedEnvironment& environment,
                                          const Slips& before) const;
+  /// Slips of a search that begins in a state: contacts that touch stick, whatever their force.
+  [[nodiscard]] Slips stuck(std::span<const double> displacement,
+                            const SharedEnvironment& environment, const Slips& before) const;
   /// Slips before with the normal forces and directions of a state; contacts that are new begin
   /// where they were at the start of the step.
   [[nodiscard]] LaggedSlips lagged(std::span<const double> displacement,
@@ -181,21 +185,22 @@ class Obstacles {
   [[nodiscard]] double tangential_stiffness(std::size_t contact) const {
     return obstacle_of(contact).tangential * contacts_[contact].stiffness;
   }
-  /// Place of a contact's point relative to its obstacle's `point` [m].
-  [[nodiscard]] Coordinates place_of(std::size_t contact, std::span<const double> displacement,
-                                     const SharedEnvironment& environment) const;
+  /// Displacement of a contact's point relative to its obstacle [m].
+  [[nodiscard]] Coordinates relative_step(std::size_t contact, std::span<const double> displacement,
+                                          const SharedEnvironment& environment) const;
   [[nodiscard]] Coordinates moved(std::size_t obstacle, const SharedEnvironment& environment) const;
   /// y of a slip [m].
-  [[nodiscard]] static Coordinates slipped(const Slip& slip, const Coordinates& place) {
-    const Coordinates moved = minus(place, slip.start);
+  [[nodiscard]] static Coordinates slipped(const Slip& slip, const Coordinates& step) {
+    const Coordinates moved = minus(step, slip.start);
     return plus(slip.elastic, minus(moved, scaled(dot(moved, slip.normal), slip.normal)));
   }
-  [[nodiscard]] static double relative_depth(const Obstacle& of, const Contact& contact,
-                                             double distance) {
-    return (contact.distance - distance) / (of.depth * contact.distance);
-  }
+  /// Displacement of a contact's point relative to its obstacle [m].
+  [[nodiscard]] Coordinates step_of(std::size_t contact, std::span<const double> displacement,
+                                    const Coordinates& of_obstacle) const;
   [[nodiscard]] Coordinates place(std::size_t contact, std::span<const double> displacement,
-                                  const Coordinates& of_obstacle) const;
+                                  const Coordinates& of_obstacle) const {
+    return plus(reference_[contact], step_of(contact, displacement, of_obstacle));
+  }
 
   int dimension_ = 0;
   std::vector<Contact> contacts_;
@@ -222,7 +227,7 @@ void Obstacles::for_each_rubbing(std::span<const double> displacement,
     const Obstacle& of = obstacle_of(slip.contact);
     const double limit = of.friction * slip.normal_force;
     if (!(limit > 0.0)) continue;
-    const Coordinates y = slipped(slip, place_of(slip.contact, displacement, environment));
+    const Coordinates y = slipped(slip, relative_step(slip.contact, displacement, environment));
     const double size = length(y), stiffness = tangential_stiffness(slip.contact);
     const double bearable = limit / stiffness;
     const bool slides = size > bearable;
@@ -246,8 +251,10 @@ void Obstacles::for_each_pressed(std::span<const double> displacement,
     for (std::size_t c = of.first; c < of.last; ++c) {
       const Contact& contact = contacts_[c];
       const auto depth_at = [&](std::span<const double> at) -> Depth {
-        const auto distance = of.surface.distance(place(c, at, of_obstacle));
-        return {distance, relative_depth(of, contact, distance.value)};
+        const Coordinates moved = step_of(c, at, of_obstacle);
+        return {of.surface.distance(plus(reference_[c], moved)),
+                of.surface.overlap(reference_[c], moved, contact.distance) /
+                    (of.depth * contact.distance)};
       };
       const bool is_foreseen = !foreseen.empty();
       const Depth depth = depth_at(displacement);

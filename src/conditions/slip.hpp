@@ -13,7 +13,7 @@ struct Slip {
   double normal_force = 0.0;  ///< that limits the friction [N]
   Coordinates normal{};       ///< of the surface
   Coordinates elastic{};      ///< displacement that the friction still springs back from [m]
-  Coordinates start{};        ///< place relative to the obstacle where that was so [m]
+  Coordinates start{};        ///< displacement relative to the obstacle where that was so [m]
 };
 
 /// Ascending by contact.

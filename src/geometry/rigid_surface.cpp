@@ -26,6 +26,17 @@ RigidSurface::Distance RigidSurface::distance(const Coordinates& place) const {
   return {sign * (rho - radius), scaled(sign / rho, arm), sign / rho};
 }
 
+double RigidSurface::overlap(const Coordinates& before, const Coordinates& moved, double d) const {
+  if (kind == Kind::plane) return (d - dot(before, direction)) - dot(moved, direction);
+  const Coordinates from = across(before), step = across(moved);
+  // (R + d)^2 - rho^2, of a hollow body (R - d)^2 - rho^2
+  const double touching = is_hollow ? radius - d : radius + d;
+  const double change = dot(step, plus(scaled(2.0, from), step));
+  const double difference = (touching * touching - dot(from, from)) - change;
+  const double rho = length(plus(from, step));
+  return (is_hollow ? -difference : difference) / (touching + rho);
+}
+
 Tensor RigidSurface::second_derivative(const Distance& at) const {
   Tensor second{};
   if (at.curvature == 0.0) return second;

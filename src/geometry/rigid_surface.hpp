@@ -25,6 +25,11 @@ struct RigidSurface {
   };
   [[nodiscard]] Distance distance(const Coordinates& place) const;
 
+  /// d - phi of a place that has moved from another: to the round-off of the motion where the other
+  /// is at phi = d, so that light contacts do not drown in that of the places.
+  /// @param moved relative to the rigid body
+  [[nodiscard]] double overlap(const Coordinates& before, const Coordinates& moved, double d) const;
+
   /// Second derivative of phi, curvature (P - n n^T) with the gradient n [1/m].
   [[nodiscard]] Tensor second_derivative(const Distance& at) const;
 

@@ -55,6 +55,12 @@ class ObstaclePasses : public TermPasses, BlockTangent {
 
   [[nodiscard]] bool has_friction() const override { return obstacles_.rub(); }
 
+  void stick(const StateView& at, History& history) override {
+    if (obstacles_.rub()) {
+      history.replace_slips(obstacles_.stuck(at.displacement, at.environment, history.slips()));
+    }
+  }
+
   std::array<double, 2> lag_friction(const StateView& at, const StateView& start,
                                      History& history) override {
     if (!obstacles_.rub()) return {};
