@@ -97,8 +97,9 @@ Obstacles::Obstacles(const Points& points, const std::vector<ObstacleSpecificati
       const double distance = 0.5 * size;
       const double area = setting.cross_section * std::pow(size, dimension_ - 1);
       const double modulus = setting.youngs_modulus.at(std::size_t(point));
-      contacts_.push_back({point, distance, of.stiffness * modulus * area / distance});
       reference_.push_back(minus(points.position(point), made.surface.point));
+      contacts_.push_back({point, distance, made.surface.distance(reference_.back()) - distance,
+                           of.stiffness * modulus * area / distance});
       largest = std::max(largest, size);
     }
     refuse_small_radius(made.surface, ranks.max(largest), table);
@@ -140,13 +141,18 @@ Coordinates Obstacles::moved(std::size_t obstacle, const SharedEnvironment& envi
   return moved;
 }
 
-Coordinates Obstacles::place(std::size_t contact, std::span<const double> displacement,
-                             const Coordinates& of_obstacle) const {
-  Coordinates place = minus(reference_[contact], of_obstacle);
+Coordinates Obstacles::step(std::size_t contact, std::span<const double> displacement,
+                            const Coordinates& of_obstacle) const {
+  Coordinates step{};
   const auto d = std::size_t(dimension_);
   const double* const own = &displacement[std::size_t(contacts_[contact].point) * d];
-  for (std::size_t c = 0; c < d; ++c) place[c] += own[c];
-  return place;
+  for (std::size_t c = 0; c < d; ++c) step[c] = own[c] - of_obstacle[c];
+  return step;
+}
+
+Coordinates Obstacles::place(std::size_t contact, std::span<const double> displacement,
+                             const Coordinates& of_obstacle) const {
+  return plus(reference_[contact], step(contact, displacement, of_obstacle));
 }
 
 void Obstacles::refuse_overlap(const Communicator& ranks) const {
@@ -154,7 +160,7 @@ void Obstacles::refuse_overlap(const Communicator& ranks) const {
   for (const Obstacle& of : obstacles_) {
     double deepest = 0.0;
     for (std::size_t c = of.first; c < of.last; ++c) {
-      const double depth = contacts_[c].distance - of.surface.distance(reference_[c]).value;
+      const double depth = -contacts_[c].gap;
       if (depth > round_off * contacts_[c].distance) deepest = std::max(deepest, depth);
     }
     deepest = ranks.max(deepest);
@@ -173,7 +179,7 @@ void Obstacles::add_force(std::span<const double> displacement,
   for_each_pressed(displacement, {}, environment, [&](const Pressed& contact) {
     for (std::size_t c = 0; c < d; ++c) {
       force[std::size_t(contact.point) * d + c] +=
-          factor * contact.force() * contact.depth.distance.gradient[c];
+          factor * contact.force() * contact.depth.change.gradient[c];
     }
   });
 }
@@ -186,7 +192,7 @@ std::map<std::string, Obstacles::Action> Obstacles::actions(
   }
   for_each_pressed(displacement, {}, environment, [&](const Pressed& contact) {
     Action& action = actions[contact.obstacle.name];
-    const Coordinates force = scaled(contact.force(), contact.depth.distance.gradient);
+    const Coordinates force = scaled(contact.force(), contact.depth.change.gradient);
     action.force = plus(action.force, force);
     action.moment = plus(action.moment,
                          cross(place(contact.contact, displacement, action.displacement), force));

@@ -34,6 +34,7 @@ class Obstacles {
   struct Contact {
     Index point = 0;
     double distance = 0.0;   ///< d [m]
+    double gap = 0.0;        ///< phi - d before anything moves [m]
     double stiffness = 0.0;  ///< k [N/m]
   };
   struct Obstacle {
@@ -46,8 +47,8 @@ class Obstacles {
   };
   /// A contact in a state.
   struct Depth {
-    RigidSurface::Distance distance;
-    double relative = 0.0;  ///< x
+    RigidSurface::Distance change;  ///< of the distance since the start
+    double relative = 0.0;          ///< x
   };
   /// A contact that has an energy.
   struct Pressed {
@@ -118,10 +119,9 @@ class Obstacles {
 
  private:
   [[nodiscard]] Coordinates moved(std::size_t obstacle, const SharedEnvironment& environment) const;
-  [[nodiscard]] static double relative_depth(const Obstacle& of, const Contact& contact,
-                                             double distance) {
-    return (contact.distance - distance) / (of.depth * contact.distance);
-  }
+  /// Displacement of a contact's point relative to its obstacle.
+  [[nodiscard]] Coordinates step(std::size_t contact, std::span<const double> displacement,
+                                 const Coordinates& of_obstacle) const;
   [[nodiscard]] Coordinates place(std::size_t contact, std::span<const double> displacement,
                                   const Coordinates& of_obstacle) const;
 
@@ -154,8 +154,8 @@ void Obstacles::for_each_pressed(std::span<const double> displacement,
     for (std::size_t c = of.first; c < of.last; ++c) {
       const Contact& contact = contacts_[c];
       const auto depth_at = [&](std::span<const double> at) -> Depth {
-        const auto distance = of.surface.distance(place(c, at, of_obstacle));
-        return {distance, relative_depth(of, contact, distance.value)};
+        const auto change = of.surface.change(reference_[c], step(c, at, of_obstacle));
+        return {change, -(contact.gap + change.value) / (of.depth * contact.distance)};
       };
       const bool is_foreseen = !foreseen.empty();
       const Depth depth = depth_at(displacement);

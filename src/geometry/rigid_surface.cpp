@@ -17,13 +17,21 @@ Coordinates RigidSurface::across(const Coordinates& place) const {
   return minus(place, scaled(dot(place, direction), direction));
 }
 
-RigidSurface::Distance RigidSurface::distance(const Coordinates& place) const {
-  if (kind == Kind::plane) return {dot(place, direction), direction, 0.0};
-  const Coordinates arm = across(place);
-  const double rho = length(arm), sign = is_hollow ? -1.0 : 1.0;
+double RigidSurface::distance(const Coordinates& place) const {
+  if (kind == Kind::plane) return dot(place, direction);
+  const double beyond = length(across(place)) - radius;
+  return is_hollow ? -beyond : beyond;
+}
+
+RigidSurface::Distance RigidSurface::change(const Coordinates& place,
+                                            const Coordinates& step) const {
+  if (kind == Kind::plane) return {dot(step, direction), direction, 0.0};
+  const Coordinates from = across(place), along = across(step), arm = plus(from, along);
+  const double rho = length(arm), sum = rho + length(from), sign = is_hollow ? -1.0 : 1.0;
   // On the axis there is no direction; that is deep inside of a solid, and far from a hollow one.
-  if (rho == 0.0) return {-sign * radius, {}, 0.0};
-  return {sign * (rho - radius), scaled(sign / rho, arm), sign / rho};
+  if (rho == 0.0) return {-sign * sum, {}, 0.0};
+  return {sign * (2.0 * dot(from, along) + dot(along, along)) / sum, scaled(sign / rho, arm),
+          sign / rho};
 }
 
 Tensor RigidSurface::second_derivative(const Distance& at) const {
