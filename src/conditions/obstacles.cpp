@@ -104,8 +104,9 @@ Obstacles::Obstacles(const Points& points, const std::vector<ObstacleSpecificati
       const double distance = 0.5 * size;
       const double area = setting.cross_section * std::pow(size, dimension_ - 1);
       const double modulus = setting.youngs_modulus.at(std::size_t(point));
-      contacts_.push_back({point, distance, of.stiffness * modulus * area / distance});
       reference_.push_back(minus(points.position(point), made.surface.point));
+      contacts_.push_back({point, distance, made.surface.distance(reference_.back()) - distance,
+                           of.stiffness * modulus * area / distance});
       largest = std::max(largest, size);
     }
     refuse_small_radius(made.surface, ranks.max(largest), table);
@@ -139,7 +140,7 @@ const Obstacles::Obstacle& Obstacles::obstacle_of(std::size_t contact) const {
 Coordinates Obstacles::relative_step(std::size_t contact, std::span<const double> displacement,
                                      const SharedEnvironment& environment) const {
   const auto obstacle = std::size_t(&obstacle_of(contact) - obstacles_.data());
-  return step_of(contact, displacement, moved(obstacle, environment));
+  return step(contact, displacement, moved(obstacle, environment));
 }
 
 namespace {
@@ -175,7 +176,7 @@ Obstacles::CommittedSlips Obstacles::committed(std::span<const double> displacem
     if (contact.obstacle.friction == 0.0 || slip_of(kept, contact.contact)) return;
     fresh.push_back({contact.contact,
                      contact.force(),
-                     contact.depth.distance.gradient,
+                     contact.depth.change.gradient,
                      {},
                      relative_step(contact.contact, displacement, environment)});
   });
@@ -194,7 +195,7 @@ Slips Obstacles::stuck(std::span<const double> displacement, const SharedEnviron
     Slip now = old ? *old : Slip{};
     now.contact = contact.contact;
     now.normal_force = std::numeric_limits<double>::infinity();
-    now.normal = contact.depth.distance.gradient;
+    now.normal = contact.depth.change.gradient;
     if (!old) now.start = relative_step(contact.contact, displacement, environment);
     slips.push_back(now);
   });
@@ -219,7 +220,7 @@ Obstacles::LaggedSlips Obstacles::lagged(std::span<const double> displacement,
     if (!old) now.start = relative_step(contact.contact, at_start, environment_at_start);
     now.contact = contact.contact;
     now.normal_force = contact.force();
-    now.normal = contact.depth.distance.gradient;
+    now.normal = contact.depth.change.gradient;
     result.change =
         std::max(result.change, std::abs(now.normal_force - (old ? old->normal_force : 0.0)));
     result.largest = std::max(result.largest, now.normal_force);
@@ -256,13 +257,18 @@ Coordinates Obstacles::moved(std::size_t obstacle, const SharedEnvironment& envi
   return moved;
 }
 
-Coordinates Obstacles::step_of(std::size_t contact, std::span<const double> displacement,
-                               const Coordinates& of_obstacle) const {
-  Coordinates step = scaled(-1.0, of_obstacle);
+Coordinates Obstacles::step(std::size_t contact, std::span<const double> displacement,
+                            const Coordinates& of_obstacle) const {
+  Coordinates step{};
   const auto d = std::size_t(dimension_);
   const double* const own = &displacement[std::size_t(contacts_[contact].point) * d];
-  for (std::size_t c = 0; c < d; ++c) step[c] += own[c];
+  for (std::size_t c = 0; c < d; ++c) step[c] = own[c] - of_obstacle[c];
   return step;
+}
+
+Coordinates Obstacles::place(std::size_t contact, std::span<const double> displacement,
+                             const Coordinates& of_obstacle) const {
+  return plus(reference_[contact], step(contact, displacement, of_obstacle));
 }
 
 void Obstacles::refuse_overlap(const Communicator& ranks) const {
@@ -270,7 +276,7 @@ void Obstacles::refuse_overlap(const Communicator& ranks) const {
   for (const Obstacle& of : obstacles_) {
     double deepest = 0.0;
     for (std::size_t c = of.first; c < of.last; ++c) {
-      const double depth = contacts_[c].distance - of.surface.distance(reference_[c]).value;
+      const double depth = -contacts_[c].gap;
       if (depth > round_off * contacts_[c].distance) deepest = std::max(deepest, depth);
     }
     deepest = ranks.max(deepest);
@@ -294,7 +300,7 @@ void Obstacles::add_force(std::span<const double> displacement,
   for_each_pressed(displacement, {}, environment, [&](const Pressed& contact) {
     for (std::size_t c = 0; c < d; ++c) {
       force[std::size_t(contact.point) * d + c] +=
-          factor * contact.force() * contact.depth.distance.gradient[c];
+          factor * contact.force() * contact.depth.change.gradient[c];
     }
   });
 }
@@ -313,8 +319,7 @@ std::map<std::string, Obstacles::Action> Obstacles::actions(std::span<const doub
         plus(action.moment, cross(place(contact, displacement, action.displacement), force));
   };
   for_each_pressed(displacement, {}, environment, [&](const Pressed& contact) {
-    add(contact.obstacle, contact.contact,
-        scaled(contact.force(), contact.depth.distance.gradient));
+    add(contact.obstacle, contact.contact, scaled(contact.force(), contact.depth.change.gradient));
   });
   for_each_rubbing(displacement, environment, slips, [&](const Rubbing& friction) {
     add(friction.obstacle, friction.contact, friction.force);

@@ -47,6 +47,7 @@ class Obstacles {
   struct Contact {
     Index point = 0;
     double distance = 0.0;   ///< d [m]
+    double gap = 0.0;        ///< phi - d before anything moves [m]
     double stiffness = 0.0;  ///< k [N/m]
   };
   struct Obstacle {
@@ -61,8 +62,8 @@ class Obstacles {
   };
   /// A contact in a state.
   struct Depth {
-    RigidSurface::Distance distance;
-    double relative = 0.0;  ///< x
+    RigidSurface::Distance change;  ///< of the distance since the start
+    double relative = 0.0;          ///< x
   };
   /// A contact that has an energy.
   struct Pressed {
@@ -194,13 +195,11 @@ class Obstacles {
     const Coordinates moved = minus(step, slip.start);
     return plus(slip.elastic, minus(moved, scaled(dot(moved, slip.normal), slip.normal)));
   }
-  /// Displacement of a contact's point relative to its obstacle [m].
-  [[nodiscard]] Coordinates step_of(std::size_t contact, std::span<const double> displacement,
-                                    const Coordinates& of_obstacle) const;
+  /// Displacement of a contact's point relative to its obstacle.
+  [[nodiscard]] Coordinates step(std::size_t contact, std::span<const double> displacement,
+                                 const Coordinates& of_obstacle) const;
   [[nodiscard]] Coordinates place(std::size_t contact, std::span<const double> displacement,
-                                  const Coordinates& of_obstacle) const {
-    return plus(reference_[contact], step_of(contact, displacement, of_obstacle));
-  }
+                                  const Coordinates& of_obstacle) const;
 
   int dimension_ = 0;
   std::vector<Contact> contacts_;
@@ -251,10 +250,8 @@ void Obstacles::for_each_pressed(std::span<const double> displacement,
     for (std::size_t c = of.first; c < of.last; ++c) {
       const Contact& contact = contacts_[c];
       const auto depth_at = [&](std::span<const double> at) -> Depth {
-        const Coordinates moved = step_of(c, at, of_obstacle);
-        return {of.surface.distance(plus(reference_[c], moved)),
-                of.surface.overlap(reference_[c], moved, contact.distance) /
-                    (of.depth * contact.distance)};
+        const auto change = of.surface.change(reference_[c], step(c, at, of_obstacle));
+        return {change, -(contact.gap + change.value) / (of.depth * contact.distance)};
       };
       const bool is_foreseen = !foreseen.empty();
       const Depth depth = depth_at(displacement);

@@ -17,24 +17,21 @@ Coordinates RigidSurface::across(const Coordinates& place) const {
   return minus(place, scaled(dot(place, direction), direction));
 }
 
-RigidSurface::Distance RigidSurface::distance(const Coordinates& place) const {
-  if (kind == Kind::plane) return {dot(place, direction), direction, 0.0};
-  const Coordinates arm = across(place);
-  const double rho = length(arm), sign = is_hollow ? -1.0 : 1.0;
-  // On the axis there is no direction; that is deep inside of a solid, and far from a hollow one.
-  if (rho == 0.0) return {-sign * radius, {}, 0.0};
-  return {sign * (rho - radius), scaled(sign / rho, arm), sign / rho};
+double RigidSurface::distance(const Coordinates& place) const {
+  if (kind == Kind::plane) return dot(place, direction);
+  const double beyond = length(across(place)) - radius;
+  return is_hollow ? -beyond : beyond;
 }
 
-double RigidSurface::overlap(const Coordinates& before, const Coordinates& moved, double d) const {
-  if (kind == Kind::plane) return (d - dot(before, direction)) - dot(moved, direction);
-  const Coordinates from = across(before), step = across(moved);
-  // (R + d)^2 - rho^2, of a hollow body (R - d)^2 - rho^2
-  const double touching = is_hollow ? radius - d : radius + d;
-  const double change = dot(step, plus(scaled(2.0, from), step));
-  const double difference = (touching * touching - dot(from, from)) - change;
-  const double rho = length(plus(from, step));
-  return (is_hollow ? -difference : difference) / (touching + rho);
+RigidSurface::Distance RigidSurface::change(const Coordinates& place,
+                                            const Coordinates& step) const {
+  if (kind == Kind::plane) return {dot(step, direction), direction, 0.0};
+  const Coordinates from = across(place), along = across(step), arm = plus(from, along);
+  const double rho = length(arm), sum = rho + length(from), sign = is_hollow ? -1.0 : 1.0;
+  // On the axis there is no direction; that is deep inside of a solid, and far from a hollow one.
+  if (rho == 0.0) return {-sign * sum, {}, 0.0};
+  return {sign * (2.0 * dot(from, along) + dot(along, along)) / sum, scaled(sign / rho, arm),
+          sign / rho};
 }
 
 Tensor RigidSurface::second_derivative(const Distance& at) const {

@@ -19,16 +19,14 @@ struct RigidSurface {
   /// x.n for a plane, else rho - R, of a hollow one R - rho, where rho = |P x| and P x leaves out
   /// the part along a cylinder's axis.
   struct Distance {
-    double value = 0.0;      ///< [m]
+    double value = 0.0;      ///< phi, or its change [m]
     Coordinates gradient{};  ///< a unit vector, towards the free side
     double curvature = 0.0;  ///< of the surface through the place, positive if convex [1/m]
   };
-  [[nodiscard]] Distance distance(const Coordinates& place) const;
-
-  /// d - phi of a place that has moved from another: to the round-off of the motion where the other
-  /// is at phi = d, so that light contacts do not drown in that of the places.
-  /// @param moved relative to the rigid body
-  [[nodiscard]] double overlap(const Coordinates& before, const Coordinates& moved, double d) const;
+  [[nodiscard]] double distance(const Coordinates& place) const;
+  /// The same at `place` + `step`, but as the change of phi from the place on, which has round-off
+  /// of the step alone: n.v, or +-(2 x.v + v.v) / (rho + rho_0) across the axis.
+  [[nodiscard]] Distance change(const Coordinates& place, const Coordinates& step) const;
 
   /// Second derivative of phi, curvature (P - n n^T) with the gradient n [1/m].
   [[nodiscard]] Tensor second_derivative(const Distance& at) const;

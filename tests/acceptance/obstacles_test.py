@@ -41,7 +41,7 @@ shape = "cylinder"
 point = [8e-3, -20e-3]
 radius = 30e-3
 inside = true
-displacement = [0, "-2.5e-3*load"]
+displacement = [0, "-1.1e-3*load"]
 """
 CUBE = """\
 dimension = 3
@@ -195,23 +195,24 @@ class Obstacles(Pressed):
         self.assertEqual(differences(self.folder / "whole", self.folder / "parts"), [])
 
     def test_an_obstacle_that_touches_nothing_is_reported(self):
-        for changes, count in ((('obstacle.0.displacement=[0, "1e-3*load"]',), 1), ((), 0)):
+        for changes, count in ((('obstacle[0].displacement=[0, "1e-3*load"]',), 1), ((), 0)):
             self.run_case(BLOCK + PLANE + SOLVER, *changes)
             warnings = json.loads((self.folder / "out/summary.json").read_text())["warnings"]
             self.assertEqual(sum("top has touched nothing" in warning for warning in warnings), count)
 
     def test_a_roller_that_jumps_through_the_body_is_noticed(self):
         case = BLOCK + ROLLER.replace("-8e-5*load", "-40e-3*load") + SOLVER
-        self.run_case(case, "loading.adaptive=false", code=1)
+        self.run_case(case, "loading.adaptive=false", code=3)
         self.assertIn("degenerate", self.ended.said)
 
     def test_tangents_of_pressed_points(self):
         for name, case in (("roller", BLOCK + ROLLER), ("plane", BLOCK + PLANE), ("ball", CUBE), ("die", BLOCK + BEND), ("bar", BAR)):
             with self.subTest(name):
                 axes = "xyz"[: int(case.split("dimension = ")[1][0])]
-                deformation = "; ".join(f"{a} + 1e-3*({' + '.join(f'{k + 1 + j}*{b}' for j, b in enumerate(axes))})"
+                deformation = "; ".join(f"{a} + 1e-4*({' + '.join(f'{k + 1 + j}*{b}' for j, b in enumerate(axes))})"
                                         for k, a in enumerate(axes))  # fmt: skip
                 found = self.peristat("check-tangent", self.write("case.toml", case + SOLVER), "--deformation", deformation)
+                self.assert_completed(found)
                 told = json.loads(found.output)
                 self.assertGreater(told["energy"], 0)
                 self.assertLess(told["residual_error"], 1e-8)
@@ -223,25 +224,25 @@ class Obstacles(Pressed):
         block = BLOCK + PLANE + SOLVER
         roller = BLOCK + ROLLER + SOLVER
         for case, change, message in (
-            (block, "obstacle.0.normal=[0, 0]", "must be a vector that is not zero"),
-            (block, 'obstacle.0.shape="cube"', "cylinder"),
-            (block, 'obstacle.0.shape="sphere"', "normal"),
-            (block, "obstacle.0.radius=1", "is for shapes"),
-            (block, "obstacle.0.depth=1", "depth"),
-            (block, "obstacle.0.stiffness=0", "positive"),
-            (block, "obstacle.0.softness=0", "softness"),
-            (block, "obstacle.0.softness=0.3", "below depth"),
-            (block, "obstacle.0.point=[8e-3, 7.99e-3]", "begins inside the body: it would press 1e-05 m deep"),
-            (block, 'obstacle.0.name="foot"', "already a support"),
-            (block, 'obstacle.0.displacement=["free", 0]', "can't be free"),
-            (block, 'obstacle.0.displacement=[0, "1e-3*y"]', "y"),
-            (block, 'obstacle.0.set="none"', "none"),
-            (block, "solver.tangent=matrix_free", "needs the stored tangent"),
-            (block, "solver.mode=arc_length", "no search for contacts"),
+            (block, "obstacle[0].normal=[0, 0]", "must be a vector that is not zero"),
+            (block, 'obstacle[0].shape="cube"', "cylinder"),
+            (block, 'obstacle[0].shape="sphere"', "normal"),
+            (block, "obstacle[0].radius=1", "is for shapes"),
+            (block, "obstacle[0].depth=1", "depth"),
+            (block, "obstacle[0].stiffness=0", "positive"),
+            (block, "obstacle[0].softness=0", "softness"),
+            (block, "obstacle[0].softness=0.3", "below depth"),
+            (block, "obstacle[0].point=[8e-3, 7.99e-3]", "begins inside the body: it would press 1e-05 m deep"),
+            (block, 'obstacle[0].name="foot"', "already a support"),
+            (block, 'obstacle[0].displacement=["free", 0]', "can't be free"),
+            (block, 'obstacle[0].displacement=[0, "1e-3*y"]', "y"),
+            (block, 'obstacle[0].set="none"', "none"),
+            (BLOCK + PLANE, "solver={tangent=\"matrix_free\", linear=\"pcg\"}", "needs the stored tangent"),
+            (BLOCK + PLANE, "solver={mode=\"arc_length\"}", "no search for contacts"),
             (block, 'material.kinematics="linear"', "present positions"),
-            (roller, "obstacle.0.radius=1.9e-3", "at least two spacings"),
-            (roller, "obstacle.0.axis=[0, 0, 1]", "in 3D"),
-            (BAR + SOLVER, 'obstacle.0={name="wall", shape="cylinder", point=[0.5], radius=0.1}', "must be \"plane\" in 1D"),
+            (roller, "obstacle[0].radius=1.9e-3", "at least two spacings"),
+            (roller, "obstacle[0].axis=[0, 0, 1]", "in 3D"),
+            (BAR + SOLVER, 'obstacle[0]={name="wall", shape="cylinder", point=[0.5], radius=0.1}', "must be \"plane\" in 1D"),
             (BLOCK.split("[[support]]")[0] + PLANE + SOLVER, "loading.steps=1", "do not hold the body"),
         ):  # fmt: skip
             with self.subTest(change):
@@ -254,7 +255,7 @@ class InMotion(Pressed):
     def text(self):
         bar = BAR.split("[[support]]")[0].replace('layer = [{ name = "left", side = "x-", thickness = 1 }]', "")
         bar = bar.replace("youngs_modulus = 200e9", "youngs_modulus = 200e9\ndensity = 8000")
-        wall = '[[obstacle]]\nname = "wall"\nshape = "plane"\npoint = [0.5]\nnormal = [-1]\n'
+        wall = '[[obstacle]]\nname = "wall"\nshape = "plane"\npoint = [0.5001]\nnormal = [-1]\n'
         return bar + wall + '[[initial]]\nvelocity = ["5"]\n[solver]\nmode = "dynamics"\n[dynamics]\nend_time = 4e-4\nhistory_every = 5\n'
 
     def test_a_bar_bounces_off_a_wall(self):
@@ -264,7 +265,7 @@ class InMotion(Pressed):
             with self.subTest(name):
                 rows = self.rows(self.text(), *changes, name=name)
                 mass, speed = 8000 * 1e-4 * 0.5, 5.0
-                self.assertAlmostEqual(rows[0]["momentum_x"] / (mass * speed), 1, delta=1e-3)
+                self.assertAlmostEqual(rows[0]["momentum_x"] / (mass * speed), 1, delta=1e-12)
                 # Some of the motion is left as vibrations.
                 self.assertAlmostEqual(rows[-1]["momentum_x"] / (mass * speed), -1, delta=0.06)
                 self.assertEqual(rows[-1]["reaction_x:wall"], 0)

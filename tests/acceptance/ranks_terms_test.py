@@ -314,6 +314,25 @@ class PressuresAndFoundations(Terms):
         self.goes_on(*breaking, "dynamics.history_every=1", "output.every=7", after=5)
 
 
+ROLLER = ('obstacle=[{name="roller", shape="cylinder", point=[1.3, 0.8], radius=0.3, displacement=["-0.03*RISE", 0]}, '
+          '{name="wall", shape="plane", point=[0, 0.7], normal=[1, 0], set="left"}]')  # fmt: skip
+LEFT = 'set=[{name="corner", where="x > 0.6 && y > 1"}, {name="left", where="x < 0.1"}]'
+
+
+class Obstacles(Terms):
+    def test_a_plate_between_obstacles_at_rest(self):
+        one = self.compare_settings(PLATE, LEFT, ROLLER.replace("RISE", "load"), ranks=(2, 3), solver=STORED)
+        last = rows(one, "history.csv")[-1]
+        self.assertNotEqual(float(last["reaction_x:roller"]), 0.0)
+        self.assertNotEqual(float(last["moment_z:roller"]), 0.0)
+
+    def test_a_plate_in_motion(self):
+        moving = in_motion(PLATE), LEFT, ROLLER.replace("RISE", "sin(2000*t)")
+        one = self.compare_settings(*moving, solver="")
+        self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:roller"]), 0.0)
+        self.compare_settings(*moving, *NEWMARK, solver="")
+
+
 GMRES = SOLVER.replace('"pcg"', '"gmres"').replace('tangent = "matrix_free"\n', "").replace("1e-9", "1e-12")
 COLLOCATED = STATES.split("[quadrature]")[0].replace("radius = 0.2 }", 'radius = 0.2, name = "hole" }')
 TRACTIONS = ('load=[{side="x+", traction=["2e6*load*y", "1e6"]}, {boundary="hole", stress=["1e6*load", "2e6", "1e6*x"]}, '

@@ -33,7 +33,7 @@ WORDS = """dimension title lattice points ratio spacing horizon_ratio thickness 
     correlation_length rigid roller at normal constraint term symmetry period gradient rotation gravity traction pressure depth eigenstrain
     strain temperature change thermal_expansion volumes neighbours at cut_bonds dynamics end_time time_step step_share history_every initial velocity scheme
     spectral_radius absorbing degree traction_form boundary statistic expected
-    kinematics operator stabilisation foundation units force time mass stress energy length_unit""".split()
+    kinematics operator stabilisation foundation obstacle inside softness point units force time mass stress energy length_unit""".split()
 CHOICES = """rms_error max_error divergence blue_noise none linear exact exact_centroids volume energy mean bulk bond cpd lps collocation full paper surface stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended bilinear cornelissen table piecewise_constant cubic quintic septic gaussian inverse newton
     relaxation adaptive flow dynamic auto cholesky pcg minres gmres lu bicgstab local_operator jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk ellipse image stl polygon

@@ -519,9 +519,10 @@ class Verification:
         pull = (loads_before + loads + numpy.where(prescribed, at_first + now, 0)) / 2
         work = float((pull * (step.displacement - old.displacement)).sum()) + over_periods.sum() + heating
         work += self.ties.work(old, step, at_first, now) + self.foundations.work(old, step)
-        work += self.obstacles.work(old, step)
+        of_obstacles = self.obstacles.work(old, step)
+        work += of_obstacles
         scale = max(abs(row["external_work"]), numpy.abs(pull * (step.displacement - old.displacement)).sum())
-        scale += numpy.abs(over_periods).sum()
+        scale += numpy.abs(over_periods).sum() + abs(of_obstacles)
         scale += 1e-5 * self.whole_forces(mechanics, step) * numpy.abs(step.everywhere).max()
         self.compare(step, "work", row["external_work"] - old.external_work, work, scale)
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "src/core/coordinates.hpp"
@@ -23,10 +24,11 @@ class ObstaclePasses : public TermPasses, BlockTangent {
     for_each(at, [&](const Pressed& contact) {
       found.energy += contact.energy();
       found.degenerate |= !contact.is_foreseen && !(contact.depth.relative < 1.0);
+      found.round_off += contact.force() * round_off_of_place(at, contact.point);
       if (gradient.empty()) return;
       double* const own = &gradient[std::size_t(contact.point) * dimension_];
       for (std::size_t c = 0; c < dimension_; ++c) {
-        own[c] -= contact.force() * contact.depth.distance.gradient[c];
+        own[c] -= contact.force() * contact.depth.change.gradient[c];
       }
     });
     for_each_rubbing(at, [&](const Rubbing& friction) {
@@ -149,9 +151,8 @@ class ObstaclePasses : public TermPasses, BlockTangent {
                  [&](std::size_t c, const Obstacles::Obstacle& of, const Coordinates& before,
                      const Coordinates& step) {
                    const double level = level_of(of, c, 1.0),
-                                gap = of.surface.distance(before).value - level;
-                   const double closed =
-                       level + gap - of.surface.distance(plus(before, step)).value;
+                                gap = of.surface.distance(before) - level;
+                   const double closed = level + gap - of.surface.distance(plus(before, step));
                    if (closed > 0.0)
                      largest = std::max(largest, closed / std::max(gap, 1e-3 * level));
                  });
@@ -174,7 +175,7 @@ class ObstaclePasses : public TermPasses, BlockTangent {
         at.displacement, at.environment,
         [&](std::size_t c, const Obstacles::Obstacle& of, const Coordinates& place) {
           const Obstacles::Contact& contact = obstacles_.contacts()[c];
-          const double distance = of.surface.distance(place).value;
+          const double distance = of.surface.distance(place);
           if (distance > 3.0 * contact.distance) return;  // more than a spacing apart
           const double depth = (contact.distance - distance) / (of.depth * contact.distance);
           const double bent = std::max(1.0, of.law(depth).second);
@@ -233,6 +234,15 @@ class ObstaclePasses : public TermPasses, BlockTangent {
         });
   }
 
+  /// Round-off of a point's displacement, and so of its depth [m].
+  [[nodiscard]] double round_off_of_place(const StateView& at, Index point) const {
+    double largest = 0.0;
+    for (std::size_t c = 0; c < dimension_; ++c) {
+      largest = std::max(largest, std::abs(at.displacement[std::size_t(point) * dimension_ + c]));
+    }
+    return std::numeric_limits<double>::epsilon() * largest;
+  }
+
   /// Distance from the obstacle at a share of the largest depth [m].
   [[nodiscard]] double level_of(const Obstacles::Obstacle& of, std::size_t contact,
                                 double share) const {
@@ -250,7 +260,7 @@ class ObstaclePasses : public TermPasses, BlockTangent {
   /// projection takes its share away. A foreseen contact has no more of it than a depth that the
   /// body can bear would give.
   [[nodiscard]] static Tensor block_of(const Pressed& contact, double projection) {
-    const RigidSurface::Distance& distance = contact.depth.distance;
+    const RigidSurface::Distance& distance = contact.depth.change;
     double force = contact.force();
     if (contact.is_foreseen) {
       force = std::clamp(force, 0.0, contact.stiffness * contact.scale);

@@ -395,7 +395,7 @@ class CaseRun {
     warn_of_numerical_work();
     warn_of_overload();
     warn_of_locking();
-    warn_of_idle_obstacles();
+    if (result.outcome == Outcome::converged) warn_of_idle_obstacles();
     recorder_->finish();
     summary_.costs = costs(result.relaxation_seconds);
     if (numbering_) tell_traffic();

@@ -245,10 +245,12 @@ TEST_P(ObstacleTerms, ForeseenContactsAreSpringsThatAlsoPull) {
       const Obstacles::Contact& one = pressed.obstacles.contacts()[std::size_t(contact)];
       Coordinates place = pressed.body.points.position(one.point);
       place[0] += 1e-3;
-      const auto distance =
-          pressed.obstacles.all()[0].surface.distance(minus(place, of.surface.point));
-      const double gap = distance.value - 0.5 * spacing;
-      expected += one.stiffness * gap * distance.gradient[0];
+      const Coordinates start = minus(pressed.body.points.position(one.point), of.surface.point);
+      const RigidSurface& surface = pressed.obstacles.all()[0].surface;
+      const auto change = surface.change(start, {1e-3, 0.0, 0.0});
+      const double gap = one.gap + change.value;
+      EXPECT_NEAR(surface.distance(minus(place, of.surface.point)), gap + 0.5 * spacing, 1e-15);
+      expected += one.stiffness * gap * change.gradient[0];
       stored += 0.5 * one.stiffness * gap * gap;
       pull += gradient[std::size_t(one.point) * d];
     }
