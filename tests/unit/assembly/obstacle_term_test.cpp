@@ -164,8 +164,8 @@ TEST_P(ObstacleTerms, ReactionAndMomentAreThoseOfTheForcesOnPoints) {
     std::vector<double> gradient(u.size()), force(u.size(), 0.0);
     static_cast<void>(
         pressed.assembler.gradient({u, History(), Damage::grows, environment}, gradient));
-    pressed.obstacles.add_force(u, environment, 1.0, force);
-    const Obstacles::Action action = pressed.obstacles.actions(u, environment).at(of.name);
+    pressed.obstacles.add_force(u, environment, {}, 1.0, force);
+    const Obstacles::Action action = pressed.obstacles.actions(u, environment, {}).at(of.name);
     EXPECT_DOUBLE_EQ(action.displacement[0], 0.003);
     Coordinates total{}, moment{};
     const auto d = std::size_t(GetParam());
