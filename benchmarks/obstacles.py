@@ -11,11 +11,11 @@ each of these. Beam: the curvature between the inner rollers over M / EI, M = P 
 import csv
 import json
 import math
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
-import os
 
 import numpy
 
@@ -44,7 +44,7 @@ def hertz():
         force = -summary["reactions"]["cylinder"][1]
         b = math.sqrt(4 * force * radius / (math.pi * thickness * modulus))
         p0 = 2 * force / (math.pi * thickness * b)
-        x, f = (numpy.array([row[key] for row in line]) for key in ("x", "y_value" if "y_value" in line[0] else "pressed_y"))
+        x, f = (numpy.array([row[key] for row in line]) for key in ("x", "contact_force_y"))
         assert abs(f.sum() / -force - 1) < 1e-9, "the line misses some forces"
         size = spacing * 1e-3
         width = math.sqrt(4 * (f * x**2).sum() / f.sum())

@@ -129,6 +129,58 @@ class Sheet(PrintedTest):
             self.assertLess(abs(sheet.reaction(set, axis)), 1e-8 * force)  # the solver's tolerance, over the cell's points
 
 
+class Obstacles(PrintedTest):
+    def test_hertz(self):
+        self.page = "cases/contact/hertz.toml"
+        pressed = run("contact/hertz")
+        self.prints("method takes {} iterations a step", max(row["newton_iterations"] for row in pressed.history))
+        force = -pressed.reaction("cylinder", "y")
+        b = math.sqrt(4 * force * 0.2 / (math.pi * 0.01 * 70e9))
+        p0 = 2 * force / (math.pi * 0.01 * b)
+        self.prints('force on "cylinder" is {} kN, for which b = {} mm', force / 1e3, b * 1e3)
+        self.prints("p0 = {} MPa", p0 / 1e6)
+        middle = -pressed.summary["probes"]["on_middle"]
+        self.prints("at the middle bears {} N, a pressure of {} MPa", middle, middle / (0.5e-3 * 0.01) / 1e6)
+        self.assertAlmostEqual(middle / (0.5e-3 * 0.01) / p0, 1, delta=0.1)
+        rows = [row for row in table(pressed.folder / "line_pressed.csv") if row["step"] == 3]
+        forces = numpy.array([row["contact_force_y"] for row in rows])
+        self.assertAlmostEqual(-forces.sum() / force, 1, delta=1e-9)
+        width = 2 * math.sqrt(sum(f * row["x"] ** 2 for f, row in zip(forces, rows)) / forces.sum())
+        self.prints("gives a half width of {} mm", width * 1e3)
+        self.assertLess(abs(width - b), 0.7 * 0.5e-3)
+
+    def test_brazilian_disk(self):
+        self.page = "cases/contact/brazilian_disk.toml"
+        disk = run("contact/brazilian_disk")
+        half = -disk.reaction("platen", "y")
+        unit = 4 * half / (math.pi * 0.064 * 0.01)
+        angle = math.acos(31 / 32)
+        self.prints("sin alpha = {}/32", 32 * math.sin(angle))
+        s = math.sin(angle) * numpy.sin(math.pi * ((numpy.arange(1000) + 0.5) / 1000 - 0.5))
+        c = numpy.sqrt(1 - s**2)
+        punch = [(c * (1 - 4 * s**2)).mean(), (c * (1 - 4 * c**2)).mean()]
+        uniform = [math.sin(2 * angle) / angle - 1, -math.sin(2 * angle) / angle - 1]
+        self.prints("along chords, has {} and {} in place", *punch)
+        self.prints("in place of {} and {}.", *uniform)
+        self.prints('"platen" bears {} N', half)
+        found = [disk.summary["probes"][name] for name in ("across", "along")]
+        self.prints("centre are {} MPa and {} MPa", *(stress / 1e6 for stress in found))
+        self.prints("{} and {} of those of uniform", *(stress / unit / of for stress, of in zip(found, uniform)))
+        self.prints("of uniform pressure, {} and {} of those of the punch", *(stress / unit / of for stress, of in zip(found, punch)))
+
+    def test_four_point_bending(self):
+        self.page = "cases/contact/four_point_bending.toml"
+        beam = run("contact/four_point_bending")
+        load = beam.reaction("support", "y")
+        self.prints('"roller" bears {} N', -beam.reaction("roller", "y"))
+        bent = 2 * load * 0.02 / (30e9 * 0.01 * 0.024**3 / 12)
+        self.prints("M / (E I) = {} /m", bent)
+        probes = beam.summary["probes"]
+        found = 2 * (probes["beside"] - probes["middle"]) / (0.021**2 - 0.001**2)
+        self.prints("curvature of {} /m, {} times", found, found / bent)
+        self.prints("The spring bears {} N", beam.reaction("light_spring", "y"))
+
+
 class Bimetal(PrintedTest):
     page = "cases/thermal/bimetal.toml"
 

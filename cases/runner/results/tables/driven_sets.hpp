@@ -28,8 +28,9 @@ struct Driven {
 };
 
 /// Returns what a case drives, each name and component once: supports, rigid sets, rollers,
-/// linear constraints and obstacles whose displacement is not the number 0, then loads on sets and sides in the
-/// components that are not the number 0. Pressures count with a side. The case must outlive them.
+/// linear constraints and obstacles whose displacement is not the number 0, then loads on sets and
+/// sides in the components that are not the number 0. Pressures count with a side. The case must
+/// outlive them.
 [[nodiscard]] std::vector<Driven> driven_by(const Case& from);
 
 /// Columns of the history for these: displacement_y:SET [m], the mean over the set, and for loads
