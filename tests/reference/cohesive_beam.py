@@ -4,7 +4,7 @@
 
 The beams of the trust suite's size effect (size_effect.py): span 4 D, a notch of 0.3 D in the middle, plane stress. The
 ligament carries f(w) = f_t g(w / w_c) across its opening w, with w_c = G / (f_t int g); outside it the beam is elastic.
-Four-node elements with incompatible modes [Taylor, Beresford and Wilson 1976], one half of the beam. The front of the
+Four-node elements with incompatible modes [Taylor et al. 1976], one half of the beam. The front of the
 zone goes from node to node along the ligament; the load of each position follows by Newton's method. With 60 rows of
 elements over the depth, ratios are within 0.3 % of those with 40.
 """
@@ -34,7 +34,7 @@ def bilinear(x: numpy.ndarray) -> tuple[numpy.ndarray, numpy.ndarray]:
 
 
 def cornelissen(x: numpy.ndarray) -> tuple[numpy.ndarray, numpy.ndarray]:
-    """[Cornelissen, Hordijk and Reinhardt 1986]"""
+    """[Cornelissen et al. 1986]"""
     c1, c2 = 3.0, 6.93
     end, fall = (1 + c1**3) * numpy.exp(-c2), numpy.exp(-c2 * x)
     value = (1 + (c1 * x) ** 3) * fall - x * end
