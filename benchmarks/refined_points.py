@@ -183,8 +183,8 @@ def over_way(history: list[dict], window: tuple[float, float]) -> tuple[float, f
 
 def crack() -> None:
     print("| points | seed | window | J | dissipated | released |\n|---|---|---|---|---|---|")
-    for finer in (True, False):
-        for seed in SEEDS:
+    for seed in SEEDS:
+        for finer in (True, False):
             with tempfile.TemporaryDirectory() as folder:
                 history = rows(run(strip_text(seed, finer), Path(folder)))
             for name, window in WINDOWS.items():

@@ -15,7 +15,7 @@ from run_all import Failed, Ran, Runs
 from specimen import Lattice, Specimen, peak, rows
 
 HEADING = ["| entry | spacing [mm] | points | peak [kN] | phase field [kN] | ratio | displacement at the peak [µm] "
-           "| phase field [µm] | broken bonds reach [mm] | direction [°] | Newton iterations | relaxation iterations | seconds |",
+           "| phase field [µm] | crack reaches [mm] | direction [°] | Newton iterations | relaxation iterations | seconds |",
            "|---|---|---|---|---|---|---|---|---|---|---|---|---|"]  # fmt: skip
 FILES = {"phase_fields.md": HEADING[0].encode()}  # and its signature
 MM = phase_field.MM
@@ -44,12 +44,15 @@ SPECIMENS = {of.name: of for of in (*phase_field.SPECIMENS, *l_panel.SPECIMENS) 
 
 
 def crack(folder: Path, tip: tuple[float, float]) -> tuple[str, str]:
-    """The broken bond that is farthest from where the crack starts: its middle [mm], and its direction from there."""
-    far = max(broken_middles(folder), key=lambda at: math.dist(at[:2], tip), default=None)
-    if far is None:
+    """Where the crack ends [mm], the mean middle of the broken bonds in the last fifth of its reach, and the direction
+    from its start to there [degrees]. Single bonds lie up to a horizon aside."""
+    middles = [at[:2] for at in broken_middles(folder)]
+    reach = max((math.dist(at, tip) for at in middles), default=0.0)
+    last = [at for at in middles if math.dist(at, tip) >= 0.8 * reach]
+    if not last:
         return "", ""
-    angle = math.degrees(math.atan2(far[1] - tip[1], far[0] - tip[0]))
-    return f"({far[0] / MM:.3g}, {far[1] / MM:.3g})", f"{angle:.0f}"
+    x, y = (sum(values) / len(last) for values in zip(*last))
+    return f"({x / MM:.3g}, {y / MM:.3g})", f"{math.degrees(math.atan2(y - tip[1], x - tip[0])):.0f}"
 
 
 def cells(specimen: Specimen, lattice: Lattice, folder: Path) -> list[str]:
