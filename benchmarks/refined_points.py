@@ -157,7 +157,7 @@ def cost() -> None:
 
 
 STRIP = Strip(half_height=12.0, half_length=17.0, way=12.0, inner=9.0, outer=10.5)
-WINDOWS = {"even": (-4.0, -2.0), "change": (-2.0, 2.0), "fine": (2.0, 5.5)}  # coarse horizons
+WINDOWS = {"even": (-4.0, -2.0), "change": (-2.0, 2.0), "fine": (2.0, 5.5), "whole": (-4.0, 5.5)}  # coarse horizons
 
 
 def strip_text(seed: int, finer: bool) -> str:

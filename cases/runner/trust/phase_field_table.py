@@ -52,7 +52,7 @@ def crack(folder: Path, tip: tuple[float, float]) -> tuple[str, str]:
     if not last:
         return "", ""
     x, y = (sum(values) / len(last) for values in zip(*last))
-    return f"({x / MM:.3g}, {y / MM:.3g})", f"{math.degrees(math.atan2(y - tip[1], x - tip[0])):.0f}"
+    return f"({round(x / MM, 3):g}, {round(y / MM, 3):g})", f"{math.degrees(math.atan2(y - tip[1], x - tip[0])):.0f}"
 
 
 def cells(specimen: Specimen, lattice: Lattice, folder: Path) -> list[str]:
