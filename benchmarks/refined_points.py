@@ -1,11 +1,14 @@
 """Elasticity and fracture energy of blue noise, even and with a region four times as fine:
 
-    PERISTAT_PROGRAM=build/release/peristat /usr/bin/python3 benchmarks/refined_points.py [--cost]
+    PERISTAT_PROGRAM=build/release/peristat /usr/bin/python3 benchmarks/refined_points.py [--cost | --crack]
 
 A square of 40 x 40 coarse spacings, or a cube of 20 x 20 x 20. *Energy* is that of a uniaxial stress, given to the rim by displacements, over the
 exact one; *displacement* the largest error over the strain times half the width; *tear* the energy that halves of the
 body dissipate as they move apart, over that of the fracture energy. Means over three seeds, ± standard deviation.
-With --cost: seconds of even blue noise beside a lattice.
+With --cost: seconds of even blue noise beside a lattice. With --crack: the field of a crack tip moves steadily through a
+strip (surfing) from even points into a region twice as fine, and the crack follows. Over windows of the field's way, in
+coarse horizons from the change of the spacing: *J* by a ring of even points about the whole way, *dissipated* the energy
+that bonds dissipate and *released* what is no longer stored, both per area of the field's advance; all over G_c.
 """
 
 import json
@@ -20,7 +23,13 @@ from pathlib import Path
 import h5py
 import numpy
 
-PROGRAM = os.environ.get("PERISTAT_PROGRAM", str(Path(__file__).resolve().parents[1] / "build/release/peristat"))
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT / "cases/runner/trust"), str(ROOT / "cases/runner/sweep")]
+
+from specimen import Lattice, rows  # noqa: E402
+from strip import Strip  # noqa: E402
+
+PROGRAM = os.environ.get("PERISTAT_PROGRAM", str(ROOT / "build/release/peristat"))
 E, FRACTURE_ENERGY, HALF, THICKNESS, STRAIN = 70e9, 10.0, 0.04, 1e-3, 1e-4
 SEEDS = (1, 2, 3)
 
@@ -147,9 +156,47 @@ def cost() -> None:
         print(f"| {name} | {least['bonds']} | {least['iterations']} | {least['linear']:.2f} | {least['total']:.2f} |")
 
 
+STRIP = Strip(half_height=12.0, half_length=17.0, way=12.0, inner=9.0, outer=10.5)
+WINDOWS = {"even": (-4.0, -2.0), "change": (-2.0, 2.0), "fine": (2.0, 5.5), "whole": (-4.0, 5.5)}  # coarse horizons
+
+
+def strip_text(seed: int, finer: bool) -> str:
+    """The strip of blue noise; its finer part reaches as far as the field does, and 2.5 horizons to both sides."""
+    spacing, ratio = 1e-3, 3.015
+    unit = spacing * ratio
+    region = f'shape = "box", min = [0.0, {-2.5 * unit}], max = [{6.5 * unit}, {2.5 * unit}], spacing = {spacing / 2}'
+    points = f'points = "blue_noise"\nseed = {seed}\n' + (f"refine = [{{ {region} }}]\n" if finer else "")
+    text = STRIP.text(Lattice(ratio=ratio), spacing).replace("angle = 0.0\n", points)
+    return text.replace("steps = 40\n", "steps = 48\n")
+
+
+def over_way(history: list[dict], window: tuple[float, float]) -> tuple[float, float, float]:
+    """J, dissipated and released energy per area of the advance, over the fracture energy."""
+    place = [STRIP.way * (row["load_factor"] - 0.5) for row in history]
+    first, last = (min(range(len(place)), key=lambda k: abs(place[k] - end)) for end in window)
+    area = (place[last] - place[first]) * 3.015e-3 * THICKNESS * FRACTURE_ENERGY
+    gained = lambda name: history[last][name] - history[first][name]
+    dissipated = gained("dissipated_energy")
+    j = statistics.fmean(row["tip_J"] for row in history[first + 1 : last + 1]) / FRACTURE_ENERGY
+    return j, dissipated / area, (dissipated + gained("drained_energy")) / area
+
+
+def crack() -> None:
+    print("| points | seed | window | J | dissipated | released |\n|---|---|---|---|---|---|")
+    for seed in SEEDS:
+        for finer in (True, False):
+            with tempfile.TemporaryDirectory() as folder:
+                history = rows(run(strip_text(seed, finer), Path(folder)))
+            for name, window in WINDOWS.items():
+                values = " | ".join(f"{value:.3f}" for value in over_way(history, window))
+                print(f"| {'finer ahead' if finer else 'even'} | {seed} | {window[0]:g} to {window[1]:g} ({name}) | {values} |", flush=True)
+
+
 def main() -> None:
     if sys.argv[1:] == ["--cost"]:
         return cost()
+    if sys.argv[1:] == ["--crack"]:
+        return crack()
     linear = 'volume_correction = "linear"\n'
     corrected = linear + 'surface_correction = "energy"\n'
     state = 'model = "state"\npoisson_ratio = 0.22\n'

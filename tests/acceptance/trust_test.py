@@ -119,7 +119,7 @@ class Trust(Folder):
 
     def test_files_of_others_are_not_replaced(self):
         for name in ("table.md", "entries.svg", "trapping.csv", "trapping.svg", "kink.md", "kink.csv", "kink.svg",
-                     "strength_shear/h1_m3.015_0/case.toml"):  # fmt: skip
+                     "phase_fields.md", "strength_shear/h1_m3.015_0/case.toml"):  # fmt: skip
             mine = self.write(name, "mine")
             self.assert_refused(self.trust("strength_shear", "--quick", "--jobs", 1), name)
             self.assertEqual([path for path in self.folder.rglob("*") if path.is_file()], [mine])

@@ -92,19 +92,29 @@ def rows(folder: Path, name: str = "history") -> list[dict]:
     return [row for row in found if name != "history" or row.get("step") != 0]
 
 
-def lattice_of(folder: Path) -> dict:
-    """Keys of `[lattice]` that a run had, with the values of `--set`."""
+def resolved(folder: Path) -> dict:
+    """The case that a run had, with the values of `--set`."""
     import h5py
 
     with h5py.File(folder / "results.h5") as file:
-        return tomllib.loads(file["case/as_resolved"][()].decode())["lattice"]
+        return tomllib.loads(file["case/as_resolved"][()].decode())
+
+
+def lattice_of(folder: Path) -> dict:
+    return resolved(folder)["lattice"]
+
+
+SMOOTH = 0.05  # share of the peak by which its neighbours may fall short of it
 
 
 def peak(values: list[float]) -> float:
-    """Largest value, interpolated by the parabola through the three highest rows."""
+    """Largest value, interpolated by the parabola through the three highest rows. A row beside which the load falls at
+    once is the largest itself: a parabola through a snap overshoots by an eighth of the fall."""
     top = max(range(len(values)), key=lambda k: values[k])
     if top in (0, len(values) - 1):
         return values[top]
     before, here, after = values[top - 1 : top + 2]
+    if min(before, after) < (1 - SMOOTH) * here:
+        return here
     bend = before - 2 * here + after
     return here - (after - before) ** 2 / (8 * bend) if bend < 0 else here

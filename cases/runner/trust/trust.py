@@ -25,6 +25,7 @@ import kink
 import l_panel
 import notched_beam
 import phase_field
+import phase_field_table
 import size_effect
 import strength
 import surfing
@@ -42,7 +43,8 @@ from verdict import CALIBRATION, HEADING, Verdict, extension_of, row
 MODULES = (surfing, notched_beam, compact_tension, centre_crack, double_cantilever, brazilian_disk, size_effect, l_panel,
            concrete_beams, double_edge_notch, inclined_notch, attracted_crack, strength, edge_cracks, phase_field)  # fmt: skip
 ENTRIES: dict[str, Specimen] = {s.name: s for module in MODULES for s in module.SPECIMENS}
-STUDIES = {"trapping": trapping, "kink": kink}  # with tables of their own
+STUDIES = {"trapping": trapping, "kink": kink, "phase_fields": phase_field_table}  # with tables of their own
+VARY = ("trapping", "kink")  # settings themselves
 STEADY = "surfing"
 TABLE = HEADING[0].encode()  # the signature of the table
 PASSED, RED, WRONG_INPUT, MACHINE_FAILED, INTERRUPTED = 0, 3, 2, 5, 130
@@ -112,7 +114,7 @@ def _parser() -> argparse.ArgumentParser:
     )  # fmt: skip
     parser.add_argument("names", metavar="NAME", nargs="*", help="entries (default: all); trapping: how strongly "
                         "lattices trap cracks, by law, horizon ratio and angle; kink: where cracks turn under mixed mode, by "
-                        "T-stress and points")  # fmt: skip
+                        "T-stress and points; phase_fields: peaks, cracks and costs beside phase fields")  # fmt: skip
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], dest="given",
                         help="another value of a key of the setting, in every run; models with a free Poisson's ratio have "
                         f"that of glass, {GLASS}, unless material.poisson_ratio is set. Entries whose keys the model does not "
@@ -139,12 +141,13 @@ def main(words: list[str]) -> int:
 def run(asked: argparse.Namespace) -> int:
     unknown = [name for name in asked.names if name not in ENTRIES | STUDIES]
     if unknown:
-        print(f"peristat trust: no entry {unknown[0]}; there are {', '.join(ENTRIES)}, {' and '.join(STUDIES)}", file=sys.stderr)
+        print(f"peristat trust: no entry {unknown[0]}; there are {', '.join([*ENTRIES, *STUDIES])}", file=sys.stderr)
         return WRONG_INPUT
     given = read_settings(asked.given)
     studies = [name for name in STUDIES if name in asked.names]
-    if given and studies:
-        raise WrongSetting(f"{studies[0]} takes no --set: its settings are what it varies")
+    varied = [name for name in studies if name in VARY]
+    if given and varied:
+        raise WrongSetting(f"{varied[0]} takes no --set: its settings are what it varies")
     entries = ENTRIES | {STEADY: surfing.specimen(Strip(given_ratio=poisson_ratio(given)))}
     program = os.environ.get("PERISTAT_PROGRAM")
     if not program:
@@ -153,7 +156,7 @@ def run(asked: argparse.Namespace) -> int:
     tell = lambda text: print(text, flush=True)
     cores = len(os.sched_getaffinity(0))
     jobs, threads = bounded(asked.jobs or cores, asked.threads or 1, cores)
-    for name, sign in ({"table.md": TABLE, "entries.svg": PICTURE} | trapping.FILES | kink.FILES).items():
+    for name, sign in ({"table.md": TABLE, "entries.svg": PICTURE} | trapping.FILES | kink.FILES | phase_field_table.FILES).items():
         require_own(asked.output / name, sign)
     asked.output.mkdir(parents=True, exist_ok=True)
     runs = Runs(Program(program), asked.output, jobs, threads, tell, given)

@@ -2,9 +2,13 @@
 
 import math
 import sys
+import tempfile
 import tomllib
 import unittest
 from pathlib import Path
+
+import h5py
+import numpy
 
 RUNNER = Path(__file__).resolve().parents[3] / "cases" / "runner"
 sys.path[:0] = [str(RUNNER / "trust"), str(RUNNER / "sweep")]
@@ -19,10 +23,12 @@ import edge_cracks  # noqa: E402
 import inclined_notch  # noqa: E402
 import l_panel  # noqa: E402
 import phase_field  # noqa: E402
+import phase_field_table  # noqa: E402
 import other_setting  # noqa: E402
 import setting  # noqa: E402
 import size_effect  # noqa: E402
 import strength  # noqa: E402
+from run_all import Ran  # noqa: E402
 from specimen import Lattice  # noqa: E402
 
 
@@ -157,6 +163,43 @@ class CutsBetweenPoints(unittest.TestCase):
                     case = tomllib.loads(specimen.text(lattice))
                     rows = (case["crack"][0]["to"][axis] - case["lattice"]["shape"][0]["min"][axis]) / specimen.spacing(lattice)
                     self.assertAlmostEqual(rows, round(rows), delta=1e-6, msg=f"{specimen.name} {lattice.name}")
+
+
+class PhaseFields(unittest.TestCase):
+    def test_clamps_lie_beyond_the_square(self):
+        """So that the part that deforms has the height of the papers."""
+        for name in ("square_tension", "square_shear"):
+            specimen = phase_field_table.SPECIMENS[name]
+            case = tomllib.loads(specimen.text(Lattice()))
+            box, horizon = case["lattice"]["shape"][0], 3.015 * specimen.coarsest
+            self.assertAlmostEqual(-box["min"][1], horizon, delta=0.01 * horizon)
+            self.assertAlmostEqual(box["max"][1] - phase_field.SIDE, horizon, delta=0.01 * horizon)
+            self.assertEqual([of["where"] for of in case["set"][:2]], ["y < 0", f"y > {phase_field.SIDE}"])
+
+    def test_notches_lie_between_points_on_every_lattice_along_them(self):
+        for specimen in phase_field.SPECIMENS:
+            axis = 0 if specimen.name == "bending_phase_field" else 1
+            for lattice in specimen.lattices(quick=False):
+                if lattice.angle == 0.0:
+                    case = tomllib.loads(specimen.text(lattice))
+                    rows = (case["crack"][0]["to"][axis] - case["lattice"]["shape"][0]["min"][axis]) / specimen.spacing(lattice)
+                    self.assertAlmostEqual(rows, round(rows), delta=1e-6, msg=f"{specimen.name} {lattice.name}")
+
+    def test_a_run_without_results_has_a_row_with_its_reason(self):
+        specimen = phase_field_table.SPECIMENS["square_shear"]
+        told = phase_field_table.line(Ran("", Path(), "no end within 900 s"), specimen, Lattice())
+        self.assertEqual(told.count("|"), phase_field_table.HEADING[1].count("|"))
+        self.assertIn("| 0.025 | no end within 900 s |", told)
+
+    def test_the_crack_ends_at_the_farthest_broken_bonds(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            with h5py.File(folder / "results.h5", "w") as file:
+                file["points/reference"] = 1e-3 * numpy.array([[0, 0, 0], [0.2, 0, 0], [1, 0.8, 0], [1, 1, 0], [0.9, 1.1, 0]])
+            (folder / "broken_bonds.csv").write_text("step,load_factor,first_point,second_point\n1,1,0,1\n2,1,2,3\n2,1,3,4\n")
+            self.assertEqual(phase_field_table.crack(folder, (0.0, 0.0)), ("(0.975, 0.975)", "45"))
+            (folder / "broken_bonds.csv").write_text("step,load_factor,first_point,second_point\n")
+            self.assertEqual(phase_field_table.crack(folder, (0.0, 0.0)), ("", ""))
 
 
 class SizeEffect(unittest.TestCase):
