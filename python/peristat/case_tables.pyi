@@ -319,6 +319,8 @@ class MaterialDamage(Table):
     """`cpd`, `state`, and `lps` as an energy: what drives the damage of a bond. `'stretch'`: its stretch; `'release'`: what its loss would set free with all that depends on it, as an equivalent stretch that the law takes. `state` has `'release'` alone. Default: `'release'` with `state`, and with `fracture_energy` or `fracture_toughness`; otherwise `'stretch'`. Allowed: `'stretch'`, `'release'`; the same for all materials of a body"""
     struts: Literal["keep", "cut"]
     """model `bond`: what becomes of struts, bonds that still join the two faces of an open crack. `'keep'`: their stretch alone decides; `'cut'`: they fail with the bonds around them. Default: `'keep'`. Allowed: `'keep'`, `'cut'`; the same for all materials of a body"""
+    compression: Literal["lost", "kept"]
+    """model `bond`: whether damaged bonds bear compression. `'lost'`: as little as tension; `'kept'`: as undamaged ones. Default: `'lost'`. Allowed: `'lost'`, `'kept'`; the same for all materials of a body"""
     no_fail: List
     """sets of points whose bonds stay elastic at any stretch, including bonds to points outside the sets. Default: none. Allowed: list of names of sets and layers"""
 
@@ -498,6 +500,20 @@ class Foundation(Table):
     displacement: List
     """displacement of the ground, per component [m]. Default: `['0', '0']`. Allowed: number or expression of place and `load` (mode `dynamics`: `t`)"""
 
+class Contact(Table):
+    set: str
+    """set whose points touch. Default: all points. Allowed: name of a set or layer"""
+    with_: str
+    """another set, which the points of `set` touch, and not one another. Default: the points of `set` touch one another. Allowed: name of a set or layer"""
+    distance: Quantity
+    """distance at which two points touch [m]. Default: the mean of the two points' sizes, on a lattice the spacing. Allowed: positive"""
+    stiffness: float
+    """stiffness over that of the bar of material between two points. Default: 1. Allowed: 0.001 to 1000"""
+    depth: float
+    """largest depth of the contact over its distance; the force grows without limit towards it. Default: 0.25. Allowed: 0.01 to 0.5"""
+    softness: float
+    """strain of the gap over which the stiffness sets in; at most a tenth of the strains of interest. Default: 1e-4. Allowed: 1e-9 to 0.25"""
+
 class Obstacle(Table):
     name: str
     """name under which its force is reported. required. Allowed: letters, digits, `_`, `-`; at most 100 characters"""
@@ -523,6 +539,10 @@ class Obstacle(Table):
     """depth that no point may reach, relative to half a spacing. Default: 0.25. Allowed: 0.001 to 0.999"""
     softness: float
     """depth over which the stiffness sets in, relative to half a spacing. Default: 1e-4. Allowed: 1e-12 to 0.999; below `depth`"""
+    friction: float
+    """coefficient of Coulomb's friction. Default: 0. Allowed: 0 to 1000"""
+    tangential_stiffness: float
+    """stiffness of contacts that stick, relative to `stiffness`. Default: 0.5. Allowed: 0.001 to 1000"""
 
 class Eigenstrain(Table):
     set: str
@@ -757,7 +777,10 @@ class CaseTable(Table):
     def add_foundation(self, *, name: str = ..., set: str = ..., side: Literal["x-", "x+", "y-", "y+", "z-", "z+"] = ..., modulus: List = ..., stiffness: List = ..., displacement: List = ...) -> Foundation: ...
     foundation: Array[Foundation]
     """tables: springs between a part of the body and the ground. Default: none"""
-    def add_obstacle(self, *, name: str = ..., set: str = ..., shape: Literal["plane", "cylinder", "sphere"] = ..., point: List = ..., normal: List = ..., axis: List = ..., radius: Quantity = ..., inside: bool = ..., displacement: List = ..., stiffness: float = ..., depth: float = ..., softness: float = ...) -> Obstacle: ...
+    def add_contact(self, *, set: str = ..., with_: str = ..., distance: Quantity = ..., stiffness: float = ..., depth: float = ..., softness: float = ...) -> Contact: ...
+    contact: Array[Contact]
+    """tables: contact of points that no whole bond joins. Default: none"""
+    def add_obstacle(self, *, name: str = ..., set: str = ..., shape: Literal["plane", "cylinder", "sphere"] = ..., point: List = ..., normal: List = ..., axis: List = ..., radius: Quantity = ..., inside: bool = ..., displacement: List = ..., stiffness: float = ..., depth: float = ..., softness: float = ..., friction: float = ..., tangential_stiffness: float = ...) -> Obstacle: ...
     obstacle: Array[Obstacle]
     """tables: rigid bodies that press on points. Default: none"""
     def add_eigenstrain(self, *, set: str = ..., strain: Expression = ...) -> Eigenstrain: ...
