@@ -91,7 +91,7 @@ void ImplicitStepping::establish(ImplicitStep& step) {
   if (path_.damaged().model().fails_by_release()) {
     step.found.record.overload = step.growth.utilisation;
   }
-  if (step.growth.degrading > 0) {
+  if (step.growth.degrading > 0 || path_.body().assembler.has_friction()) {
     const bool fails_in_avalanches = path_.damaged().model().fails_in_avalanches();
     if (fails_in_avalanches || path_.damaged().model().struts()) {
       step.found.energies.intact = {path_.working_force(attempt.state, attempt.external_force),
