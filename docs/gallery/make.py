@@ -111,8 +111,11 @@ SHOWS = {
     "buckling/column": "A column that buckles, and its path beyond the bifurcation.",
     "pressure/ring": "A ring under a pressure that follows the deformation, compared with Lamé.",
     "contact/brazilian_disk": "A flattened disk between platens: the stresses at its centre.",
+    "contact/closed_crack": "A cut bar that is pressed together: faces that close bear pressure, and nothing else.",
     "contact/four_point_bending": "A beam on four rollers: pure bending between the inner ones.",
     "contact/hertz": "A cylinder on a flat block, compared with Hertz.",
+    "contact/impact": "Two halves of a bar that collide and part again, in explicit steps.",
+    "contact/incline": "A block on a slope: it sticks up to the angle of friction, and slides beyond.",
     "thermal/bimetal": "A heated strip of two metals that bends, compared with Timoshenko.",
     "bar/tension": "A bar in one dimension, compared with its closed form.",
 }

@@ -28,38 +28,45 @@ every = 500
 
 
 class FrictionTest(Folder):
+    def moved(self, *changes):
+        """Displacement of the block by load factor, and all columns."""
+        rows = columns(self.run_case(INCLINE, *changes))
+        return dict(zip(rows["load_factor"].round(9), rows["block_x"])), rows
+
     def test_sticks_below_and_slides_above_the_angle_of_friction(self):
         for friction in (0.3, 0.1):
-            below, above = friction - 1e-3, friction + 1e-3
-            rows = columns(self.run_case(INCLINE, f"obstacle[0].friction={friction}", f"loading.table=[0, {below}, {above}]"))
-            sticks, slides = rows["block_x"][1:]
-            self.assertLess(sticks, 1e-7)
-            spring = rows["reaction_x:spring"][1:]
-            self.assertLess(abs(spring[0]), 1e-6 * WEIGHT)
+            below, above = round(friction - 1e-3, 9), round(friction + 1e-3, 9)
+            moved, rows = self.moved(f"obstacle[0].friction={friction}", f"loading.table=[0, {below}, {above}]")
+            self.assertLess(moved[below], 1e-7)
+            stuck = rows["load_factor"] <= below
+            # The spring bears next to nothing of what is below the limit of friction.
+            self.assertLess(abs(rows["reaction_x:spring"][stuck]).max(), 1e-6 * WEIGHT)
             along, across = -rows["reaction_x:slope"], rows["reaction_y:slope"]
-            numpy.testing.assert_allclose(along[1:], [below * WEIGHT, friction * across[2]], rtol=1e-5)
-            numpy.testing.assert_allclose(slides, (above * WEIGHT - friction * across[2]) / SPRING, rtol=1e-5)
-            numpy.testing.assert_allclose(rows["moment_z:slope"][1:], -across[1:] * 0.0, atol=across[1] * 0.02)
+            numpy.testing.assert_allclose(along[stuck], rows["load_factor"][stuck] * WEIGHT, rtol=1e-5, atol=1e-12)
+            numpy.testing.assert_allclose(along[-1], friction * across[-1], rtol=1e-5)
+            numpy.testing.assert_allclose(moved[above], (above * WEIGHT - friction * across[-1]) / SPRING, rtol=1e-5)
 
     def test_what_slides_is_dissipated(self):
-        rows = columns(self.run_case(INCLINE, "loading.steps=20"))
-        slid, force = rows["block_x"][-1], -rows["reaction_x:slope"][-1]
-        # It slides in the last tenth of the way, at a force that hardly changes.
-        numpy.testing.assert_allclose(rows["dissipated_energy"][-1], force * slid, rtol=2e-2)
-        self.assertLess(abs(rows["balance_error"][-1]), 0.02 * rows["dissipated_energy"][-1])
+        moved, rows = self.moved()
+        force = -rows["reaction_x:slope"][-1]
+        # It slides at a force that does not change; the edges have slid a little before.
+        numpy.testing.assert_allclose(rows["dissipated_energy"][-1], force * moved[0.301], rtol=1e-3)
+        self.assertLess(abs(rows["balance_error"][-1]), 1e-4 * rows["dissipated_energy"][-1])
 
     def test_does_not_creep(self):
-        """However many steps it waits in, it stays where it stuck."""
-        once = columns(self.run_case(INCLINE, "loading.table=[0, 0.299]"))["block_x"][-1]
-        often = columns(self.run_case(INCLINE, "loading.table=[0, 0.299]", "loading.steps=50"))["block_x"][-1]
-        waited = columns(self.run_case(INCLINE, "loading.table=[0, 0.299, 0.299]", "loading.steps=20"))["block_x"][-1]
-        numpy.testing.assert_allclose([often, waited], once, rtol=1e-8)
+        """However many steps it waits in, it stays where it stuck, as far as the normal forces are found: 1e-6."""
+        stay = "loading.table=[0, 0.299, 0.299, 0.299]"
+        _, rows = self.moved(stay, "loading.steps=25")
+        arrived = rows["block_x"][26 if rows["step"][0] == 0 else 25]
+        numpy.testing.assert_allclose(rows["block_x"][-1], arrived, rtol=1e-7)
+        once = self.moved("loading.table=[0, 0.299]", "loading.steps=2")[0][0.299]
+        numpy.testing.assert_allclose(arrived, once, rtol=1e-2)  # edges slide by steps
 
     def test_unloading_leaves_a_slip(self):
         rows = columns(self.run_case(INCLINE, "loading.table=[0, 0.301, 0, -0.29]"))
-        self.assertGreater(rows["block_x"][1], 1e-3)
-        self.assertGreater(rows["block_x"][2], 0.999 * rows["block_x"][1])
-        self.assertGreater(rows["block_x"][3], 0.99 * rows["block_x"][1])
+        at = {round(load, 9): moved for load, moved in zip(rows["load_factor"], rows["block_x"])}
+        self.assertGreater(at[0.301], 1e-3)
+        self.assertGreater(rows["block_x"][-1], 0.999 * at[0.301])
 
     def test_resumed_runs_and_threads(self):
         table = "loading.table=[0, 0.299, 0.301, 0.1]"

@@ -79,6 +79,12 @@ class Contact(PrintedTest, Folder):
         self.prints("leaves {} of the whole", cut / whole)
         self.prints("and {} with", pressed(run("contact/closed_crack", "contact[0].stiffness=2")) / whole)
 
+    def test_incline(self):
+        self.page = "cases/contact/incline.toml"
+        moved = {round(row["load_factor"], 9): row["block_x"] for row in run("contact/incline").history}
+        self.prints("it has moved {} m", moved[0.299])
+        self.prints("it has slid by {} m", moved[0.301])
+
     def test_impact(self):
         self.page = "cases/contact/impact.toml"
         impact = run("contact/impact")
