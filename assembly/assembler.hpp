@@ -85,7 +85,7 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   [[nodiscard]] bool has_passed(const StateView& from, const StateView& to);
   [[nodiscard]] double work_of_obstacles(const StateView& from, const StateView& to);
   /// Of this rank's points.
-  void add_contact_stiffness(const StateView& at, std::span<double> stiffness);
+  void add_contact_stiffness(const StateView& at, double most_depth, std::span<double> stiffness);
   int cover_contacts(const StateView& at) override;
 
   /// What drives bonds that fail by release.

@@ -53,9 +53,12 @@ class Relaxation {
   }
 
   void find_density(TangentOperator& tangent) {
-    tangent.linearise(problem_.assembler, at_.at(), 0.0);
+    StateView view = at_.at();
+    view.has_contacts = false;
+    tangent.linearise(problem_.assembler, view, 0.0);
     std::vector<double> sums(at_.displacement.size());
     tangent.absolute_row_sums(sums);
+    if (problem_.assembler.has_contacts()) add_contacts(sums);
     for (std::size_t e = 0; e < dofs_.size(); ++e) {
       const double density = 0.25 * options_.mass_factor * sums[dofs_[e]];
       // A point without an unbroken bond stays where it is.
@@ -211,6 +214,16 @@ class Relaxation {
   }
 
  private:
+  /// Adds the stiffness of contacts that touch, or will where obstacles are in the end.
+  void add_contacts(std::vector<double>& row_sums) {
+    constexpr double usual_depth = 0.2;  // strains of a hundredth press as deep
+    std::vector<double> here(row_sums.size(), 0.0), there(row_sums.size(), 0.0);
+    StateView view = at_.at();
+    problem_.assembler.add_contact_stiffness(view, usual_depth, here);
+    view.environment = way_.end_environment();
+    problem_.assembler.add_contact_stiffness(view, usual_depth, there);
+    for (std::size_t k = 0; k < row_sums.size(); ++k) row_sums[k] += std::max(here[k], there[k]);
+  }
   /// Moves the environment to a fraction of the path and adds half of its work; the other half is
   /// added in the next state.
   void heat_up(double share) {

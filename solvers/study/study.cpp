@@ -117,6 +117,11 @@ void refuse_obstacles(const Body& body, const StudyOptions& options) {
                      "has no search for contacts with an [[obstacle]]; take newton, adaptive, "
                      "relaxation or dynamics");
   }
+  const bool relaxes = mode == Mode::relaxation || mode == Mode::adaptive;
+  if (relaxes && options.loading.relaxation.method == RelaxationMethod::flow) {
+    throw InputError("loading.relaxation.method", "flow",
+                     "has no search for contacts with an [[obstacle]]; take \"dynamic\"");
+  }
   const bool is_explicit =
       mode == Mode::dynamics && options.loading.dynamics.scheme == MotionScheme::verlet;
   if (is_explicit && options.loading.dynamics.time_step > 0.0) {

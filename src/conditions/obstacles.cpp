@@ -194,8 +194,8 @@ std::map<std::string, Obstacles::Action> Obstacles::actions(
     Action& action = actions[contact.obstacle.name];
     const Coordinates force = scaled(contact.force(), contact.depth.change.gradient);
     action.force = plus(action.force, force);
-    action.moment = plus(action.moment,
-                         cross(place(contact.contact, displacement, action.displacement), force));
+    const Coordinates at = place(contact.contact, displacement, action.displacement);
+    action.moment = plus(action.moment, cross(contact.obstacle.surface.lever(at), force));
   });
   return actions;
 }
@@ -203,10 +203,27 @@ std::map<std::string, Obstacles::Action> Obstacles::actions(
 double Obstacles::work(std::span<const double> from, const SharedEnvironment& under_from,
                        std::span<const double> to, const SharedEnvironment& under_to) const {
   double work = 0.0;
-  auto before = actions(from, under_from), after = actions(to, under_to);
-  for (const Obstacle& of : obstacles_) {
-    const Action &one = before[of.name], &other = after[of.name];
-    work += 0.5 * dot(plus(one.force, other.force), minus(other.displacement, one.displacement));
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const Obstacle& of = obstacles_[k];
+    const Coordinates start = moved(k, under_from), end = moved(k, under_to);
+    const Coordinates motion = minus(end, start);
+    if (motion == Coordinates{}) continue;
+    for (std::size_t c = of.first; c < of.last; ++c) {
+      const auto [change0, before] = depth_of(c, of, from, start);
+      const auto [change1, after] = depth_of(c, of, to, end);
+      if (!(before > 0.0) && !(after > 0.0)) continue;
+      const Coordinates mean = scaled(0.5, plus(scaled(of.law(before).first, change0.gradient),
+                                                scaled(of.law(after).first, change1.gradient)));
+      double share = 1.0;  // of the motion, during which they touch
+      if (!(before > 0.0)) {
+        const double met = depth_of(c, of, from, end).relative;
+        if (met > 0.0) share = met / (met - before);
+      } else if (!(after > 0.0)) {
+        const double left = depth_of(c, of, to, start).relative;
+        if (left > 0.0) share = left / (left - after);
+      }
+      work += share * contacts_[c].stiffness * of.depth * contacts_[c].distance * dot(mean, motion);
+    }
   }
   return work;
 }
