@@ -326,8 +326,10 @@ double Assembler::work_of_obstacles(const StateView& from, const StateView& to) 
   return index_map_.ranks().sum(work);
 }
 
-void Assembler::add_contact_stiffness(const StateView& at, std::span<double> stiffness) {
-  for_each_term([&](TermPasses& term, Write) { term.add_contact_stiffness(at, stiffness); });
+void Assembler::add_contact_stiffness(const StateView& at, double most_depth,
+                                      std::span<double> stiffness) {
+  for_each_term(
+      [&](TermPasses& term, Write) { term.add_contact_stiffness(at, most_depth, stiffness); });
 }
 
 bool Assembler::has_friction() const {

@@ -85,7 +85,7 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   [[nodiscard]] bool has_passed(const StateView& from, const StateView& to);
   [[nodiscard]] double work_of_obstacles(const StateView& from, const StateView& to);
   /// Of this rank's points.
-  void add_contact_stiffness(const StateView& at, std::span<double> stiffness);
+  void add_contact_stiffness(const StateView& at, double most_depth, std::span<double> stiffness);
   [[nodiscard]] bool has_friction() const;
   /// Lets all contacts with friction that touch stick, where a search begins.
   void stick(const StateView& at, History& history);

@@ -101,9 +101,11 @@ class TermPasses {
   [[nodiscard]] virtual bool has_passed(const StateView& /*from*/, const StateView& /*to*/) {
     return false;
   }
-  /// Adds to each degree of freedom the stiffness of contacts that touch at a state or soon may: it
-  /// is a bound while they close no more than a fifth of their gap [N/m].
-  virtual void add_contact_stiffness(const StateView&, std::span<double> /*stiffness*/) {}
+  /// Adds to each degree of freedom the stiffness of contacts that touch at a state or are within a
+  /// spacing of it [N/m]. It is a bound while they close no more than a fifth of their gap.
+  /// @param most_depth share of the largest depth beyond which the stiffness is that at this share
+  virtual void add_contact_stiffness(const StateView&, double /*most_depth*/,
+                                     std::span<double> /*stiffness*/) {}
   /// Work that obstacles do on the body from one state to another by the trapezoidal rule [J].
   [[nodiscard]] virtual double work_of_obstacles(const StateView& /*from*/,
                                                  const StateView& /*to*/) {

@@ -122,9 +122,13 @@ void refuse_unheld_bodies(const Body& body) {
   const std::shared_ptr<const Bonds> bonds = whole_network(body.model);
   const std::string motions = describe_free_motions(body, *bonds);
   if (!motions.empty()) {
+    const std::string remedy =
+        body.conditions->obstacles().none()
+            ? "Prescribe displacements that prevent this"
+            : "Obstacles only push, so they do not hold it. Prescribe displacements that prevent "
+              "this, give planes of symmetry, or hold it by soft springs (a foundation)";
     throw InputError("supports", "",
-                     "the supports do not hold the body: " + motions +
-                         ". Prescribe displacements that prevent this");
+                     "the supports do not hold the body: " + motions + ". " + remedy);
   }
   const std::string loose = describe_loose_points(body, *bonds);
   const std::string flatness = describe_flatness(body);

@@ -263,7 +263,7 @@ double Dynamics::step_with_contacts(const Motion& motion, double dt) {
   const std::vector<double>& mass = setting().mass;
   const Trial& at = motion.at();
   std::vector<double> stiffness(mass.size(), 0.0);
-  assembler.add_contact_stiffness(at.at(), stiffness);
+  assembler.add_contact_stiffness(at.at(), 1.0, stiffness);
   double largest = 0.0;
   for (const Index dof : path_.free().dof) {
     largest = std::max(largest, stiffness[dof] / mass[dof]);

@@ -56,15 +56,20 @@ class Relaxation {
   }
 
   void find_density(TangentOperator& tangent) {
-    tangent.linearise(problem_.assembler, at_.at(), 0.0);
+    StateView view = at_.at();
+    view.has_contacts = false;
+    tangent.linearise(problem_.assembler, view, 0.0);
     std::vector<double> sums(at_.displacement.size());
     tangent.absolute_row_sums(sums);
+    if (problem_.assembler.has_contacts()) {
+      row_sums_ = sums;
+      add_contacts(sums);
+    }
     for (std::size_t e = 0; e < dofs_.size(); ++e) {
       const double density = density_of(sums[dofs_[e]]);
       // A point without an unbroken bond stays where it is.
       inverse_density_[e] = density > 0.0 ? 1.0 / density : 0.0;
     }
-    if (problem_.assembler.has_contacts()) row_sums_ = std::move(sums);
   }
 
   /// Computes forces, residual and damage at the present displacement.
@@ -228,7 +233,7 @@ class Relaxation {
   void make_room_for_contacts() {
     if (row_sums_.empty()) return;
     std::vector<double> sums(row_sums_.size());
-    problem_.assembler.add_contact_stiffness(at_.at(), sums);
+    problem_.assembler.add_contact_stiffness(at_.at(), 1.0, sums);
     for (std::size_t e = 0; e < dofs_.size(); ++e) {
       const double of_contacts = sums[dofs_[e]];
       if (!(of_contacts > 0.0)) continue;
@@ -237,6 +242,16 @@ class Relaxation {
     }
   }
 
+  /// Adds the stiffness of contacts that touch, or will where obstacles are in the end.
+  void add_contacts(std::vector<double>& row_sums) {
+    constexpr double usual_depth = 0.2;  // strains of a hundredth press as deep
+    std::vector<double> here(row_sums.size(), 0.0), there(row_sums.size(), 0.0);
+    StateView view = at_.at();
+    problem_.assembler.add_contact_stiffness(view, usual_depth, here);
+    view.environment = way_.end_environment();
+    problem_.assembler.add_contact_stiffness(view, usual_depth, there);
+    for (std::size_t k = 0; k < row_sums.size(); ++k) row_sums[k] += std::max(here[k], there[k]);
+  }
   /// Moves the environment to a fraction of the path and adds half of its work; the other half is
   /// added in the next state.
   void heat_up(double share) {

@@ -312,17 +312,21 @@ std::map<std::string, Obstacles::Action> Obstacles::actions(std::span<const doub
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     actions[obstacles_[k].name].displacement = moved(k, environment);
   }
-  const auto add = [&](const Obstacle& of, std::size_t contact, const Coordinates& force) {
+  const auto add = [&](const Obstacle& of, const Coordinates& force) -> Action& {
     Action& action = actions[of.name];
     action.force = plus(action.force, force);
-    action.moment =
-        plus(action.moment, cross(place(contact, displacement, action.displacement), force));
+    return action;
   };
   for_each_pressed(displacement, {}, environment, [&](const Pressed& contact) {
-    add(contact.obstacle, contact.contact, scaled(contact.force(), contact.depth.change.gradient));
+    const Coordinates force = scaled(contact.force(), contact.depth.change.gradient);
+    Action& action = add(contact.obstacle, force);
+    const Coordinates at = place(contact.contact, displacement, action.displacement);
+    action.moment = plus(action.moment, cross(contact.obstacle.surface.lever(at), force));
   });
   for_each_rubbing(displacement, environment, slips, [&](const Rubbing& friction) {
-    add(friction.obstacle, friction.contact, friction.force);
+    Action& action = add(friction.obstacle, friction.force);
+    const Coordinates at = place(friction.contact, displacement, action.displacement);
+    action.moment = plus(action.moment, cross(at, friction.force));
   });
   return actions;
 }
@@ -331,11 +335,37 @@ double Obstacles::work(std::span<const double> from, const SharedEnvironment& un
                        const Slips& slips_from, std::span<const double> to,
                        const SharedEnvironment& under_to, const Slips& slips_to) const {
   double work = 0.0;
-  auto before = actions(from, under_from, slips_from), after = actions(to, under_to, slips_to);
-  for (const Obstacle& of : obstacles_) {
-    const Action &one = before[of.name], &other = after[of.name];
-    work += 0.5 * dot(plus(one.force, other.force), minus(other.displacement, one.displacement));
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const Obstacle& of = obstacles_[k];
+    const Coordinates start = moved(k, under_from), end = moved(k, under_to);
+    const Coordinates motion = minus(end, start);
+    if (motion == Coordinates{}) continue;
+    for (std::size_t c = of.first; c < of.last; ++c) {
+      const auto [change0, before] = depth_of(c, of, from, start);
+      const auto [change1, after] = depth_of(c, of, to, end);
+      if (!(before > 0.0) && !(after > 0.0)) continue;
+      const Coordinates mean = scaled(0.5, plus(scaled(of.law(before).first, change0.gradient),
+                                                scaled(of.law(after).first, change1.gradient)));
+      double share = 1.0;  // of the motion, during which they touch
+      if (!(before > 0.0)) {
+        const double met = depth_of(c, of, from, end).relative;
+        if (met > 0.0) share = met / (met - before);
+      } else if (!(after > 0.0)) {
+        const double left = depth_of(c, of, to, start).relative;
+        if (left > 0.0) share = left / (left - after);
+      }
+      work += share * contacts_[c].stiffness * of.depth * contacts_[c].distance * dot(mean, motion);
+    }
   }
+  const auto add_friction = [&](std::span<const double> at, const SharedEnvironment& environment,
+                                const Slips& slips) {
+    for_each_rubbing(at, environment, slips, [&](const Rubbing& friction) {
+      const auto k = std::size_t(&friction.obstacle - obstacles_.data());
+      work += 0.5 * dot(friction.force, minus(moved(k, under_to), moved(k, under_from)));
+    });
+  };
+  add_friction(from, under_from, slips_from);
+  add_friction(to, under_to, slips_to);
   return work;
 }
 

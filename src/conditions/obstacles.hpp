@@ -175,7 +175,9 @@ class Obstacles {
                                                       const SharedEnvironment& environment,
                                                       const Slips& slips) const;
 
-  /// Work that the obstacles do on the body from one state to another by the trapezoidal rule [J].
+  /// Work that the obstacles do on the body from one state to another [J]: the mean of the forces
+  /// before and after, times the motion. A contact that sets in works from where the obstacle meets
+  /// the old place of its point, one that ends up to where it leaves the new place.
   [[nodiscard]] double work(std::span<const double> from, const SharedEnvironment& under_from,
                             const Slips& slips_from, std::span<const double> to,
                             const SharedEnvironment& under_to, const Slips& slips_to) const;
@@ -189,6 +191,14 @@ class Obstacles {
   /// Displacement of a contact's point relative to its obstacle [m].
   [[nodiscard]] Coordinates relative_step(std::size_t contact, std::span<const double> displacement,
                                           const SharedEnvironment& environment) const;
+  [[nodiscard]] Depth depth_of(std::size_t contact, const Obstacle& of,
+                               std::span<const double> displacement,
+                               const Coordinates& of_obstacle) const {
+    const auto change =
+        of.surface.change(reference_[contact], step(contact, displacement, of_obstacle));
+    const Contact& at = contacts_[contact];
+    return {change, -(at.gap + change.value) / (of.depth * at.distance)};
+  }
   [[nodiscard]] Coordinates moved(std::size_t obstacle, const SharedEnvironment& environment) const;
   /// y of a slip [m].
   [[nodiscard]] static Coordinates slipped(const Slip& slip, const Coordinates& step) {
@@ -249,9 +259,8 @@ void Obstacles::for_each_pressed(std::span<const double> displacement,
     const Coordinates of_obstacle = moved(k, environment);
     for (std::size_t c = of.first; c < of.last; ++c) {
       const Contact& contact = contacts_[c];
-      const auto depth_at = [&](std::span<const double> at) -> Depth {
-        const auto change = of.surface.change(reference_[c], step(c, at, of_obstacle));
-        return {change, -(contact.gap + change.value) / (of.depth * contact.distance)};
+      const auto depth_at = [&](std::span<const double> at) {
+        return depth_of(c, of, at, of_obstacle);
       };
       const bool is_foreseen = !foreseen.empty();
       const Depth depth = depth_at(displacement);

@@ -17,6 +17,10 @@ Coordinates RigidSurface::across(const Coordinates& place) const {
   return minus(place, scaled(dot(place, direction), direction));
 }
 
+Coordinates RigidSurface::lever(const Coordinates& place) const {
+  return kind == Kind::plane ? place : minus(place, across(place));
+}
+
 double RigidSurface::distance(const Coordinates& place) const {
   if (kind == Kind::plane) return dot(place, direction);
   const double beyond = length(across(place)) - radius;

@@ -41,6 +41,10 @@ struct RigidSurface {
   [[nodiscard]] double least_distance_passed(const Coordinates& place,
                                              const Coordinates& step) const;
 
+  /// Part of a place that gives its forces a moment about `point`: on a plane all of it, along a
+  /// cylinder's axis, and none on a sphere.
+  [[nodiscard]] Coordinates lever(const Coordinates& place) const;
+
  private:
   /// Part across a cylinder's axis.
   [[nodiscard]] Coordinates across(const Coordinates& place) const;

@@ -243,7 +243,7 @@ class Obstacles(Pressed):
             (roller, "obstacle[0].radius=1.9e-3", "at least two spacings"),
             (roller, "obstacle[0].axis=[0, 0, 1]", "in 3D"),
             (BAR + SOLVER, 'obstacle[0]={name="wall", shape="cylinder", point=[0.5], radius=0.1}', "must be \"plane\" in 1D"),
-            (BLOCK.split("[[support]]")[0] + PLANE + SOLVER, "loading.steps=1", "do not hold the body"),
+            (BLOCK.split("[[support]]")[0] + PLANE + SOLVER, "loading.steps=1", "Obstacles only push"),
         ):  # fmt: skip
             with self.subTest(change):
                 self.assertIn(message, self.refusal(case, change).replace("\n", " "))

@@ -324,10 +324,10 @@ class Obstacles(Terms):
         one = self.compare_settings(PLATE, LEFT, ROLLER.replace("RISE", "load"), ranks=(2, 3), solver=STORED)
         last = rows(one, "history.csv")[-1]
         self.assertNotEqual(float(last["reaction_x:roller"]), 0.0)
-        self.assertNotEqual(float(last["moment_z:roller"]), 0.0)
+        self.assertNotEqual(float(last["moment_z:wall"]), 0.0)
 
     def test_a_plate_in_motion(self):
-        moving = in_motion(PLATE), LEFT, ROLLER.replace("RISE", "sin(2000*t)")
+        moving = in_motion(PLATE), LEFT, ROLLER.replace("RISE", "sin(1000*t)")
         one = self.compare_settings(*moving, solver="")
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:roller"]), 0.0)
         self.compare_settings(*moving, *NEWMARK, solver="")

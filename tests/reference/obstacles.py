@@ -91,10 +91,20 @@ class Obstacles:
         pad = [(0, 0), (0, 3 - arm.shape[1])]
         return numpy.cross(numpy.pad(arm, pad), numpy.pad(force, pad)).sum(axis=0)
 
+    def depth(self, table, displacement, load):
+        return (self.distance - self.gap(table, displacement, load)) / (table.get("depth", 0.25) * self.distance)
+
     def work(self, old, new):
-        """Mean of the forces in both states times the motion [J]."""
-        if not self.tables:
-            return 0.0
-        before, after = (self.forces(step.displacement, step.loads) for step in (old, new))
-        return sum((before[t["name"]] + after[t["name"]]).sum(axis=0) / 2 @ (self.moved(t, new.loads) - self.moved(t, old.loads))
-                   for t in self.tables)  # fmt: skip
+        """Mean of the forces in both states times the motion, for contacts that begin or end times the share of the motion
+        in which they touch if the point is where it was before, or is in the end [J]."""
+        work = 0.0
+        for table in self.tables:
+            before, after = (self.forces(step.displacement, step.loads)[table["name"]] for step in (old, new))
+            depths = [[self.depth(table, step.displacement, at.loads) for at in (old, new)] for step in (old, new)]
+            (x00, x01), (x10, x11) = depths
+            with numpy.errstate(divide="ignore", invalid="ignore"):
+                begins, ends = x01 / (x01 - x00), x10 / (x10 - x11)
+            share = numpy.where((x00 <= 0) & (x11 > 0) & (x01 > 0), begins, 1.0)
+            share = numpy.where((x00 > 0) & (x11 <= 0) & (x10 > 0), ends, share)
+            work += ((before + after) / 2 * share[:, None]).sum(axis=0) @ (self.moved(table, new.loads) - self.moved(table, old.loads))
+        return work

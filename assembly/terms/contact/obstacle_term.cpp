@@ -169,7 +169,8 @@ class ObstaclePasses : public TermPasses, BlockTangent {
     return passed;
   }
 
-  void add_contact_stiffness(const StateView& at, std::span<double> stiffness) override {
+  void add_contact_stiffness(const StateView& at, double most_depth,
+                             std::span<double> stiffness) override {
     constexpr double after_a_fifth = 1.0 / (0.8 * 0.8);  // growth of b'' when a fifth is closed
     obstacles_.for_each_place(
         at.displacement, at.environment,
@@ -178,7 +179,7 @@ class ObstaclePasses : public TermPasses, BlockTangent {
           const double distance = of.surface.distance(place);
           if (distance > 3.0 * contact.distance) return;  // more than a spacing apart
           const double depth = (contact.distance - distance) / (of.depth * contact.distance);
-          const double bent = std::max(1.0, of.law(depth).second);
+          const double bent = std::max(1.0, of.law(std::min(depth, most_depth)).second);
           for (std::size_t k = 0; k < dimension_; ++k) {
             stiffness[std::size_t(contact.point) * dimension_ + k] +=
                 after_a_fifth * (bent + of.tangential) * contact.stiffness;

@@ -173,14 +173,16 @@ class PairContactPasses : public TermPasses, BlockTangent {
 
   /// With the depths after a fifth of the gaps has closed. A row of k b'' n n^T has the sum
   /// 2 k b'' |n_c| sum |n|.
-  void add_contact_stiffness(const StateView& at, std::span<double> stiffness) override {
+  void add_contact_stiffness(const StateView& at, double most_depth,
+                             std::span<double> stiffness) override {
     constexpr double closes = 0.2;
     if (!at.has_contacts || !is_finite(at.displacement)) return;
     const auto d = std::size_t(points_.dimension);
     for (const NearPairs::Open& open : near_.at(at.displacement, at.history)) {
       const Gap now = gap(open.pair, at.displacement);
       const double most = deepest(open.pair);
-      const double depth = (now.overlap + closes * (most - now.overlap)) / most;
+      const double depth =
+          std::min(most_depth, (now.overlap + closes * (most - now.overlap)) / most);
       if (!(depth > 0.0)) continue;
       const ContactLaw::Value of_law = rule_of(open.pair).law(depth);
       const double along = open.share * open.pair.stiffness * of_law.second;
