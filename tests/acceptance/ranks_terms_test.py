@@ -315,19 +315,19 @@ class PressuresAndFoundations(Terms):
 
 
 ROLLER = ('obstacle=[{name="roller", shape="cylinder", point=[1.3, 0.8], radius=0.3, displacement=["-0.03*RISE", 0]}, '
-          '{name="wall", shape="plane", point=[0, 0.7], normal=[1, 0], set="left"}]')  # fmt: skip
-LEFT = 'set=[{name="corner", where="x > 0.6 && y > 1"}, {name="left", where="x < 0.1"}]'
+          '{name="wall", shape="plane", point=[1.0, 0.7], normal=[-1, 0], set="right"}]')  # fmt: skip
+RIGHT = 'set=[{name="corner", where="x > 0.6 && y > 1"}, {name="right", where="x > 0.9 && y > 1.2"}]'
 
 
 class Obstacles(Terms):
     def test_a_plate_between_obstacles_at_rest(self):
-        one = self.compare_settings(PLATE, LEFT, ROLLER.replace("RISE", "load"), ranks=(2, 3), solver=STORED)
+        one = self.compare_settings(PLATE, RIGHT, ROLLER.replace("RISE", "load"), ranks=(2, 3), solver=STORED)
         last = rows(one, "history.csv")[-1]
         self.assertNotEqual(float(last["reaction_x:roller"]), 0.0)
         self.assertNotEqual(float(last["moment_z:wall"]), 0.0)
 
     def test_a_plate_in_motion(self):
-        moving = in_motion(PLATE), LEFT, ROLLER.replace("RISE", "sin(1000*t)")
+        moving = in_motion(PLATE), RIGHT, ROLLER.replace("RISE", "sin(1000*t)")
         one = self.compare_settings(*moving, solver="")
         self.assertNotEqual(float(rows(one, "history.csv")[-1]["reaction_x:roller"]), 0.0)
         self.compare_settings(*moving, *NEWMARK, solver="")

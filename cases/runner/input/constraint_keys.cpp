@@ -174,7 +174,8 @@ Table<ObstacleSpecification> obstacle_keys() {
          "depth over which the stiffness sets in, relative to half a spacing")
            .moreover("below `depth`"),
        K("friction", &Spec::friction, between(0.0, 1000.0),
-         "coefficient of Coulomb's [friction](contact.md#friction)"),
+         "coefficient of Coulomb's [friction](contact.md#friction)")
+           .early(),
        K("tangential_stiffness", &Spec::tangential_stiffness, between(0.001, 1000.0),
          "stiffness of contacts that stick, relative to `stiffness`")
            .unless([](auto& of, auto&) { return of.friction == 0.0; }, "needs friction")}};
