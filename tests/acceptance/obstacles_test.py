@@ -239,7 +239,7 @@ class Obstacles(Pressed):
             (block, 'obstacle[0].set="none"', "none"),
             (BLOCK + PLANE, "solver={tangent=\"matrix_free\", linear=\"pcg\"}", "needs the stored tangent"),
             (BLOCK + PLANE, "solver={mode=\"arc_length\"}", "does not follow contacts"),
-            (block, 'material.kinematics="linear"', "present positions"),
+            (block, 'material.kinematics="linear"', 'is for models "bond" with kinematics "finite"'),
             (roller, "obstacle[0].radius=1.9e-3", "at least two spacings"),
             (roller, "obstacle[0].axis=[0, 0, 1]", "in 3D"),
             (BAR + SOLVER, 'obstacle[0]={name="wall", shape="cylinder", point=[0.5], radius=0.1}', "must be \"plane\" in 1D"),
