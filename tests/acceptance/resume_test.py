@@ -342,8 +342,8 @@ class Refused(Resumed):
 
     def test_an_older_layout(self):
         version = self.peristat("--version").output.split()[1]
-        self.change_checkpoint(lambda data: data.replace(f"checkpoint 10 {version}".encode(), b"checkpoint 0 0.0.7"))
-        self.refuses(["layout 0 of peristat 0.0.7", f"this is peristat {version}, which resumes from layout 10"])
+        self.change_checkpoint(lambda data: data.replace(f"checkpoint 11 {version}".encode(), b"checkpoint 0 0.0.7"))
+        self.refuses(["layout 0 of peristat 0.0.7", f"this is peristat {version}, which resumes from layout 11"])
 
     def test_points_that_are_others(self):
         with h5py.File(self.out / "results.h5", "r+") as file:
