@@ -91,6 +91,15 @@ class FrictionTest(Folder):
         self.assertLess(rows["block_x"][-1], 1.6 * expected)
         self.assertLess(abs(rows["balance_error"][-1]), 0.02 * rows["external_work"][-1])
 
+    def test_implicit_steps_that_damp_vibrations(self):
+        """Newmark's steps without vibrations: the rigid block, v = 98.1 (t - 0.06)^2 / 2 [m/s]."""
+        damped = PUSHED.replace("end_time = 0.0625", 'end_time = 0.08\nscheme = "newmark"\ntime_step = 2e-4\nspectral_radius = 0.0')
+        rows = columns(self.run_case(damped.replace("every = 500", "every = 50")))
+        numpy.testing.assert_allclose(rows["block_x"][-1], 0.5 * 98.1 * 0.02**2, rtol=2e-3)
+        numpy.testing.assert_allclose(-rows["reaction_x:slope"][-1], 0.3 * rows["reaction_y:slope"][-1], rtol=1e-5)
+        stuck = (rows["time"] > 0.03) & (rows["time"] < 0.0595)
+        self.assertLess(abs(rows["block_x"][stuck]).max(), 1e-5)
+
     def test_refused(self):
         self.assertIn("friction", self.refusal(INCLINE, "obstacle[0].friction=-0.1"))
         self.assertIn("needs friction", self.refusal(INCLINE, "obstacle[0].friction=0", "obstacle[0].tangential_stiffness=2"))
