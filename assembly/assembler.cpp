@@ -352,6 +352,7 @@ double Assembler::lag_friction(const StateView& at, const StateView& start, Hist
 }
 
 int Assembler::cover_contacts(const StateView& at) {
+  if (!has_contacts()) return version_of_pattern_;
   std::vector<Couplings> in_contact;
   for_each_term([&](TermPasses& term, Write) {
     if (const auto couplings = term.contact_couplings(at)) in_contact.push_back(*couplings);

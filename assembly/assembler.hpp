@@ -138,8 +138,8 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
  private:
   /// Squared equivalent stretches of all bonds, without rates.
   [[nodiscard]] std::vector<BondDrive> drives(const StateView& at);
-  /// A history before which bonds start to fail as the state says, see StrengthOnsets.
   [[nodiscard]] std::unique_ptr<TermPasses> passes_of(const Term& term);
+  /// A history before which bonds start to fail as the state says, see StrengthOnsets.
   [[nodiscard]] History with_onsets(const StateView& at);
   /// Damages by release, if the model's bonds fail so. Returns its growth.
   Evaluation release(std::span<const double> displacement, History& history,

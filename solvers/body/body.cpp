@@ -15,6 +15,7 @@
 #include "solvers/body/pair_contact.hpp"
 #include "solvers/body/require_memory_for.hpp"
 #include "solvers/body/surface_sites.hpp"
+#include "solvers/body/youngs_moduli.hpp"
 #include "solvers/formulations/check_specification.hpp"
 #include "solvers/formulations/convolved/convolved_lattice.hpp"
 #include "solvers/formulations/specification/for_each_material.hpp"
@@ -166,22 +167,6 @@ LoadingProgramme programme_of(const BodySpecification& of) {
   return of.programme.empty() ? LoadingProgramme() : LoadingProgramme(of.programme);
 }
 
-/// Young's modulus per point.
-std::vector<double> moduli_of_points(const PointMaterials& materials, const Body& body) {
-  const BodySpecification& of = body.specification;
-  std::vector<double> of_materials, of_points;
-  for (const PointMaterials::Material& material : materials.all()) {
-    of_materials.push_back(
-        formulation_of(of)
-            .moduli(*material.of, material.key, body.setting, body.points.spacing)
-            .youngs_modulus);
-  }
-  for (Index i = 0; i < body.points.count(); ++i) {
-    of_points.push_back(of_materials[materials.of(i)]);
-  }
-  return of_points;
-}
-
 LoadSetting load_setting(const Body& body, const BodySpecification& of) {
   const Points& points = body.points;
   const PointMaterials materials(of, points);
@@ -190,7 +175,7 @@ LoadSetting load_setting(const Body& body, const BodySpecification& of) {
       [](const LoadSpecification& load) { return load.kind == LoadSpecification::Kind::gravity; });
   LoadSetting setting{.horizon = of.horizon, .index_map = *body.index_map};
   if (!of.obstacles.empty()) {
-    setting.of_obstacles = {body.setting.cross_section, moduli_of_points(materials, body)};
+    setting.of_obstacles = {body.setting.cross_section, youngs_moduli(body)};
   }
   setting.density = of_materials(materials, points, &MaterialSpecification::density, "density",
                                  has_gravity ? "gravity" : "");
@@ -351,8 +336,7 @@ void refuse_without_ranks(const BodySpecification& of) {
         "is not for more than one rank yet; supported on several ranks are pre-cracks, supports, "
         "rigid sets, rollers, linear constraints, planes of symmetry, periods, foundations, "
         "obstacles, eigenstrains, tractions, pressures, body forces, total forces and gravity, and "
-        "damage of "
-        "bonds, points, states and triangles");
+        "damage of bonds, points, states and triangles");
   };
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.controls.empty()) refuse("controls");

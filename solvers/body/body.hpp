@@ -86,8 +86,7 @@ void take_horizons(Points& points, BodySpecification& of, const Communicator& ra
 [[nodiscard]] Model make_elastic_bonds(const Body& body, Bonds bonds, const BondSetting& setting);
 
 /// Adds the pressures, foundations and obstacles of the body's conditions, its contacts and its
-/// inertia to a
-/// model of its points. The body's own model has them already.
+/// inertia to a model of its points. The body's own model has them already.
 void add_terms_of_conditions(Model& model, const Body& body);
 
 /// Number of threads to run on.

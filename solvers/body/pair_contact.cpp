@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "assembly/terms/contact/pair_contact_term.hpp"
-#include "solvers/formulations/materials/point_materials.hpp"
+#include "solvers/body/youngs_moduli.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/point_sizes.hpp"
 
@@ -34,21 +34,13 @@ std::shared_ptr<Term> make_pair_contact(const Body& body) {
   const Points& points = body.points;
   std::vector<PairContactRule> rules;
   for (const ContactSpecification& contact : of.contacts) rules.push_back(rule_of(contact, points));
-  const PointMaterials materials(of, points);
-  std::vector<double> moduli;
-  for (const auto& [material, key, name] : materials.all()) {
-    moduli.push_back(formulation_of(*material)
-                         .moduli(*material, key, body.setting, points.spacing)
-                         .youngs_modulus);
-  }
-  std::vector<double> size, modulus;
+  std::vector<double> size;
   for (Index i = 0; i < points.count(); ++i) {
     size.push_back(size_of_point(points, i, body.setting.cross_section));
-    modulus.push_back(moduli[materials.of(i)]);
   }
   return std::make_shared<PairContactTerm>(
       ContactPairs(points, body.model.bonds(), std::move(rules), std::move(size),
-                   std::move(modulus), body.model.failing_bonds() != nullptr));
+                   youngs_moduli(body), body.model.failing_bonds() != nullptr));
 }
 
 void refuse_contacts_with_images(const BodySpecification& of) {

@@ -36,8 +36,9 @@ Motion::Motion(const EquilibriumProblem& problem, const MotionSetting& setting, 
 }
 
 bool Motion::find_forces() {
-  // The slip of the step is the incremental one of a force that is taken here.
-  static_cast<void>(problem_.assembler.lag_friction(at_.at(), at_.at(), at_.history));
+  if (problem_.assembler.has_friction()) {  // by the normal forces of this place
+    static_cast<void>(problem_.assembler.lag_friction(at_.at(), at_.at(), at_.history));
+  }
   const Evaluation found = problem_.assembler.commit_forces(at_.displacement, at_.history,
                                                             at_.gradient, at_.environment);
   if (at_.environment && at_.environment->has_follower_force()) {

@@ -72,8 +72,8 @@ std::string explanation(Outcome outcome) {
     case Outcome::line_search_failed:
       return "no step along the Newton direction lowers the energy";
     case Outcome::degenerate:
-      return "bonds collapse to zero length, points go too deep into an obstacle or through it, or "
-             "values are not finite";
+      return "bonds collapse to zero length, points go too deep into what they touch or through "
+             "it, or values are not finite";
     case Outcome::out_of_memory:
       return "the factorisation does not fit in memory";
     case Outcome::linear_solver_inaccurate:

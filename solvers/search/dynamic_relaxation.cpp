@@ -232,10 +232,10 @@ class Relaxation {
   /// Raises the densities of points whose contacts press, which are stiffer than the bonds.
   void make_room_for_contacts() {
     if (row_sums_.empty()) return;
-    std::vector<double> sums(row_sums_.size());
-    problem_.assembler.add_contact_stiffness(at_.at(), 1.0, sums);
+    of_contacts_.assign(row_sums_.size(), 0.0);
+    problem_.assembler.add_contact_stiffness(at_.at(), 1.0, of_contacts_);
     for (std::size_t e = 0; e < dofs_.size(); ++e) {
-      const double of_contacts = sums[dofs_[e]];
+      const double of_contacts = of_contacts_[dofs_[e]];
       if (!(of_contacts > 0.0)) continue;
       const double density = density_of(row_sums_[dofs_[e]] + of_contacts);
       inverse_density_[e] = std::min(inverse_density_[e], 1.0 / density);
@@ -252,6 +252,7 @@ class Relaxation {
     problem_.assembler.add_contact_stiffness(view, usual_depth, there);
     for (std::size_t k = 0; k < row_sums.size(); ++k) row_sums[k] += std::max(here[k], there[k]);
   }
+
   /// Moves the environment to a fraction of the path and adds half of its work; the other half is
   /// added in the next state.
   void heat_up(double share) {
@@ -340,7 +341,8 @@ class Relaxation {
   const SharedEnvironment start_environment_;
   std::vector<FourSums> partial_;        // per thread
   std::vector<double> inverse_density_;  // 1/lambda; 0 where nothing resists
-  std::vector<double> row_sums_;         // without contacts that close later; empty: there are none
+  std::vector<double> row_sums_;         // of the bonds; empty: there are no contacts
+  std::vector<double> of_contacts_;      // row sums of contacts at the present displacement
   std::vector<double> residual_, last_residual_;  // F^n, F^(n-1)
   std::vector<Index> held_;                       // prescribed ones that count on this rank
   std::vector<double> last_reaction_;             // dE/dx there

@@ -18,10 +18,8 @@
 namespace peristat {
 namespace {
 
-void require_between(double value, double low, double high, const std::string& key,
-                     const std::string& allowed) {
-  if (value > low && value < high) return;
-  throw InputError(key, number_text(value), allowed);
+void require(bool is_allowed, double value, const std::string& key, const std::string& allowed) {
+  if (!is_allowed) throw InputError(key, number_text(value), allowed);
 }
 
 /// The surface with a unit direction, as the body's dimension needs it.
@@ -78,13 +76,17 @@ Obstacles::Obstacles(const Points& points, const std::vector<ObstacleSpecificati
     if (!points.spacing.is_square()) {
       throw InputError(table, "", "needs square or cubic cells: one spacing for all axes");
     }
-    require_between(of.stiffness, 0.0, 1e30, table + ".stiffness", "must be positive");
-    require_between(of.depth, 0.0, 1.0, table + ".depth", "must be between 0 and 1");
-    require_between(of.softness, 0.0, of.depth, table + ".softness",
-                    "must be positive and below depth, " + number_text(of.depth));
-    require_between(of.friction, -1e-300, 1e3, table + ".friction", "must be from 0 to 1000");
-    require_between(of.tangential_stiffness, 0.0, 1e3, table + ".tangential_stiffness",
-                    "must be positive and at most 1000");
+    require(of.stiffness > 0.0 && of.stiffness < 1e30, of.stiffness, table + ".stiffness",
+            "must be positive");
+    require(of.depth > 0.0 && of.depth < 1.0, of.depth, table + ".depth",
+            "must be between 0 and 1");
+    require(of.softness > 0.0 && of.softness < of.depth, of.softness, table + ".softness",
+            "must be positive and below depth, " + number_text(of.depth));
+    require(of.friction >= 0.0 && of.friction <= 1e3, of.friction, table + ".friction",
+            "must be from 0 to 1000");
+    require(of.tangential_stiffness > 0.0 && of.tangential_stiffness <= 1e3,
+            of.tangential_stiffness, table + ".tangential_stiffness",
+            "must be positive and at most 1000");
     Obstacle made{of.name,
                   table,
                   checked_surface(of.surface, dimension_, table),

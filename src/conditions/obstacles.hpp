@@ -22,9 +22,9 @@ struct ObstacleSetting {
   std::vector<double> youngs_modulus{};  ///< E per point [Pa]
 };
 
-/// Rigid obstacles that press on points. A body's surface is half a spacing d =
-/// Delta/2 in front of its outermost points. A point at the signed distance phi from an obstacle
-/// has the relative depth x = (d - phi) / (a d), and the energy
+/// Rigid obstacles that press on points. A body's surface is half a spacing d = Delta/2 in front of
+/// its outermost points. A point at the signed distance phi from an obstacle has the relative depth
+/// x = (d - phi) / (a d), and the energy
 ///
 ///   k (a d)^2 b(x),  k = alpha E A / d,  A = h Delta (2D), Delta^2 (3D), the area (1D),
 ///
@@ -109,8 +109,7 @@ class Obstacles {
   /// @param ranks that have parts of the body: collective, each rank has the contacts of its own
   ///        points
   /// @throws InputError ("obstacles[k].…", k from 0) for a bad surface, number or expression, and
-  /// for
-  ///         cells that are no squares or cubes
+  ///         for cells that are no squares or cubes
   Obstacles(const Points& points, const std::vector<ObstacleSpecification>& specifications,
             const std::vector<std::string>& parameters, const ObstacleSetting& setting,
             const Communicator& ranks);
@@ -136,8 +135,8 @@ class Obstacles {
   void for_each_pressed(std::span<const double> displacement, std::span<const double> foreseen,
                         const SharedEnvironment& environment, const Visit& visit) const;
 
-  /// Calls visit(number of the contact, obstacle, relative place, step of the place) for every
-  /// contact.
+  /// Calls visit(number of the contact, obstacle, place of its point relative to the obstacle) for
+  /// every contact.
   template <class Visit>
   void for_each_place(std::span<const double> displacement, const SharedEnvironment& environment,
                       const Visit& visit) const;

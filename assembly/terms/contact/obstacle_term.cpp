@@ -76,16 +76,8 @@ class ObstaclePasses : public TermPasses, BlockTangent {
 
   void tangent(const StateView& at, Tangent& tangent, double projection, Write how) override {
     if (how == Write::over) tangent.clear();
-    for_each(at, [&](const Pressed& contact) {
-      const Tensor block = block_of(contact, projection);
-      double* const own = &tangent.diagonal[std::size_t(contact.point) * dimension_ * dimension_];
-      for (std::size_t r = 0; r < dimension_; ++r) {
-        for (std::size_t c = 0; c < dimension_; ++c) own[r * dimension_ + c] += block[r][c];
-      }
-    });
-    for_each_rubbing(at, [&](const Rubbing& friction) {
-      const Tensor block = block_of(friction, projection);
-      double* const own = &tangent.diagonal[std::size_t(friction.point) * dimension_ * dimension_];
+    for_each_block(at, projection, [&](Index point, const Tensor& block) {
+      double* const own = &tangent.diagonal[std::size_t(point) * dimension_ * dimension_];
       for (std::size_t r = 0; r < dimension_; ++r) {
         for (std::size_t c = 0; c < dimension_; ++c) own[r * dimension_ + c] += block[r][c];
       }
@@ -95,19 +87,13 @@ class ObstaclePasses : public TermPasses, BlockTangent {
   void product(const StateView& at, std::span<const double> v, double projection,
                std::span<double> product, Write how) override {
     if (how == Write::over) std::fill(product.begin(), product.end(), 0.0);
-    const auto multiply = [&](Index point, const Tensor& block) {
+    for_each_block(at, projection, [&](Index point, const Tensor& block) {
       const std::size_t first = std::size_t(point) * dimension_;
       for (std::size_t r = 0; r < dimension_; ++r) {
         for (std::size_t c = 0; c < dimension_; ++c) {
           product[first + r] += block[r][c] * v[first + c];
         }
       }
-    };
-    for_each(at, [&](const Pressed& contact) {
-      multiply(contact.point, block_of(contact, projection));
-    });
-    for_each_rubbing(at, [&](const Rubbing& friction) {
-      multiply(friction.point, block_of(friction, projection));
     });
   }
 
@@ -153,8 +139,9 @@ class ObstaclePasses : public TermPasses, BlockTangent {
                    const double level = level_of(of, c, 1.0),
                                 gap = of.surface.distance(before) - level;
                    const double closed = level + gap - of.surface.distance(plus(before, step));
-                   if (closed > 0.0)
+                   if (closed > 0.0) {
                      largest = std::max(largest, closed / std::max(gap, 1e-3 * level));
+                   }
                  });
     return largest;
   }
@@ -203,6 +190,16 @@ class ObstaclePasses : public TermPasses, BlockTangent {
   void for_each_rubbing(const StateView& at, const Visit& visit) const {
     if (!at.has_contacts) return;
     obstacles_.for_each_rubbing(at.displacement, at.environment, at.history.slips(), visit);
+  }
+
+  /// Calls visit(point, its block of the tangent) for every contact, and for its friction.
+  template <class Visit>
+  void for_each_block(const StateView& at, double projection, const Visit& visit) const {
+    for_each(at,
+             [&](const Pressed& contact) { visit(contact.point, block_of(contact, projection)); });
+    for_each_rubbing(at, [&](const Rubbing& friction) {
+      visit(friction.point, block_of(friction, projection));
+    });
   }
 
   /// k (P - s y y^T / |y|^2), s = 1 where the contact slides. The projection takes its share of the

@@ -430,8 +430,8 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   const Reduced reduced(assembler, constraints, history,
                         goes_by_events ? Damage::held : Damage::grows, environment);
   const StateView at = reduced.at(displacement);
-  std::vector<double> internal_force(
-      dofs);  // not folded, without the forces of foundations and obstacles
+  // Not folded, without the forces of foundations and obstacles.
+  std::vector<double> internal_force(dofs);
   static_cast<void>(assembler.gradient(at, internal_force));
   body.conditions->foundations().add_force(displacement, environment, 1.0, internal_force);
   body.conditions->obstacles().add_force(displacement, environment, history.slips(), 1.0,
@@ -440,7 +440,7 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
   if (found.degenerate) {
     throw InputError(
         "--deformation", '"' + text + '"',
-        "collapses a bond to zero length, or presses a point deeper into an obstacle than it "
+        "collapses a bond to zero length, or presses a point deeper into what it touches than it "
         "may go");
   }
   const std::unique_ptr<TangentOperator> made_tangent =

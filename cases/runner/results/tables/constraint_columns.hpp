@@ -13,8 +13,8 @@
 namespace peristat {
 
 /// Columns of the history that constraints have besides their reactions: moment_z:SET [N m] and
-/// rotation_z:SET [rad] of every rigid set, in 3D of all axes; moment_z:NAME [N m] of
-/// every obstacle; and gradient_x:period_y [1] … of every period.
+/// rotation_z:SET [rad] of every rigid set, in 3D of all axes; moment_z:NAME [N m] of every
+/// obstacle; and gradient_x:period_y [1] … of every period.
 [[nodiscard]] std::vector<ProbeColumns> constraint_columns(const Case& from);
 
 /// Adds the values of these columns in a state. Collective.
