@@ -28,8 +28,8 @@ struct FailingBody {
     const double modulus = std::get<Harmonic>(elastic.bond_failure()->potential()).modulus;
     model = Model(elastic.bonds(), Degraded<TanhDegradation>{modulus, {0.016, 0.020, 3.0}});
     const std::vector<double> ones(std::size_t(points.count()), 1.0);
-    contact = std::make_shared<PairContactTerm>(
-        ContactPairs(points, model.bonds(), {PairContactRule{}}, ones, ones, true));
+    contact = std::make_shared<PairContactTerm>(std::make_shared<const PointContacts>(
+        ContactPairs(points, model.bonds(), {PairContactRule{}}, ones, ones, true), model.bonds()));
     if (state.range(1) != 0) model.add(contact);
   }
   [[nodiscard]] std::vector<double> displacement() const {
@@ -43,7 +43,7 @@ void search_for_contacts(benchmark::State& state) {
   const FailingBody body(state);
   const std::vector<double> at = body.displacement();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(body.contact->pairs().near(at, omp_get_max_threads()));
+    benchmark::DoNotOptimize(body.contact->contacts().pairs.near(at, omp_get_max_threads()));
   }
 }
 

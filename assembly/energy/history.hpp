@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -44,12 +45,15 @@ class History {
     note_damage();
   }
 
-  /// Contacts with friction.
-  [[nodiscard]] const Slips& slips() const {
+  /// Contacts with friction of a kind.
+  [[nodiscard]] const Slips& slips(Rub of = Rub::obstacles) const {
     static const Slips none;
-    return slips_ ? *slips_ : none;
+    const auto& kept = slips_[std::size_t(of)];
+    return kept ? *kept : none;
   }
-  void replace_slips(Slips slips) { slips_ = std::make_shared<const Slips>(std::move(slips)); }
+  void replace_slips(Slips slips, Rub of = Rub::obstacles) {
+    slips_[std::size_t(of)] = std::make_shared<const Slips>(std::move(slips));
+  }
 
  private:
   static std::uint64_t next_version() {
@@ -59,7 +63,7 @@ class History {
 
   std::uint64_t version_ = 0;
   std::vector<std::shared_ptr<std::vector<double>>> terms_;
-  std::shared_ptr<const Slips> slips_;  // null: none
+  std::array<std::shared_ptr<const Slips>, all_rubs.size()> slips_;  // null: none
 };
 
 }  // namespace peristat

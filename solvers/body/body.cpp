@@ -12,7 +12,7 @@
 #include "assembly/terms/springs/foundation_term.hpp"
 #include "assembly/terms/springs/inertia_term.hpp"
 #include "solvers/body/body_memory.hpp"
-#include "solvers/body/pair_contact.hpp"
+#include "solvers/body/point_contacts.hpp"
 #include "solvers/body/require_memory_for.hpp"
 #include "solvers/body/surface_sites.hpp"
 #include "solvers/body/youngs_moduli.hpp"
@@ -385,7 +385,7 @@ void add_terms_of_conditions(Model& model, const Body& body) {
   }
   const Foundations& foundations = body.conditions->foundations();
   if (!foundations.none()) model.add(std::make_shared<FoundationTerm>(body.points, foundations));
-  if (auto contact = make_pair_contact(body)) model.add(std::move(contact));
+  add_contacts(body, model);
   const Obstacles& obstacles = body.conditions->obstacles();
   if (!obstacles.none()) model.add(std::make_shared<ObstacleTerm>(body.points, obstacles));
   if (body.specification.has_inertia) model.add(std::make_shared<InertiaTerm>(body.points));

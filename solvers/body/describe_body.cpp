@@ -82,13 +82,18 @@ std::vector<std::string> describe_constraints(const Body& body) {
   }
   if (const auto* const contact = body.model.find<PairContactTerm>()) {
     const std::vector<ContactPair> near =
-        contact->pairs().near(std::vector<double>(body.points.reference.size()), 1);
+        contact->contacts().pairs.near(std::vector<double>(body.points.reference.size()), 1);
     const auto faces = std::ranges::count_if(near, [](const ContactPair& pair) {
       return pair.bond < 0 && pair.reference <= pair.distance * (1.0 + horizon_tolerance);
     });
     lines.push_back(fmt::format("contact: {} pairs of points face each other without a bond{}",
                                 faces,
                                 body.model.has_history() ? "; bonds that break add theirs" : ""));
+    const ContactFaces& surface = contact->contacts().faces;
+    if (!surface.none()) {
+      lines.push_back(fmt::format("contact: {} {} join the points of the surface", surface.facets(),
+                                  body.points.dimension == 2 ? "segments" : "triangles"));
+    }
   }
   std::size_t rigid = 0;
   const auto& sets = body.conditions->constraints().rigid_sets();

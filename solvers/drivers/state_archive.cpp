@@ -15,25 +15,54 @@ void transfer_optional(StateArchive& archive, const std::string& name,
   value = is_there ? std::optional(held) : std::nullopt;
 }
 
-void transfer_slips(StateArchive& archive, const std::string& name, History& history) {
-  std::vector<double> values;
-  for (const auto& [contact, normal_force, normal, elastic, start] : history.slips()) {
-    values.insert(values.end(), {double(contact), normal_force});
-    for (const Coordinates& vector : {normal, elastic, start}) {
-      values.insert(values.end(), vector.begin(), vector.end());
+std::vector<double> numbers_of(const Slips& slips) {
+  std::vector<double> numbers;
+  for (const Slip& slip : slips) {
+    numbers.insert(numbers.end(), {double(slip.contact), slip.normal_force, slip.friction,
+                                   slip.stiffness, double(slip.point)});
+    for (const Coordinates& vector : {slip.normal, slip.elastic, slip.start}) {
+      numbers.insert(numbers.end(), vector.begin(), vector.end());
+    }
+    numbers.push_back(double(slip.partners.size()));
+    for (const auto& [point, share] : slip.partners) {
+      numbers.insert(numbers.end(), {double(point), share});
     }
   }
-  archive.transfer(name + "/slips", values, Rows::whole);
-  constexpr std::size_t numbers = 11;
+  return numbers;
+}
+
+Slips slips_of(std::span<const double> numbers) {
   Slips slips;
-  for (std::size_t k = 0; k + numbers <= values.size(); k += numbers) {
-    const auto vector_at = [&](std::size_t first) {
-      return Coordinates{values[k + first], values[k + first + 1], values[k + first + 2]};
-    };
-    slips.push_back(
-        {std::size_t(values[k]), values[k + 1], vector_at(2), vector_at(5), vector_at(8)});
+  auto next = numbers.begin();
+  const auto take_vector = [&](Coordinates& vector) {
+    for (double& component : vector) component = *next++;
+  };
+  while (next != numbers.end()) {
+    Slip slip;
+    slip.contact = std::size_t(*next++);
+    slip.normal_force = *next++;
+    slip.friction = *next++;
+    slip.stiffness = *next++;
+    slip.point = Index(*next++);
+    take_vector(slip.normal);
+    take_vector(slip.elastic);
+    take_vector(slip.start);
+    slip.partners.resize(std::size_t(*next++));
+    for (auto& [point, share] : slip.partners) {
+      point = Index(*next++);
+      share = *next++;
+    }
+    slips.push_back(std::move(slip));
   }
-  if (!slips.empty()) history.replace_slips(std::move(slips));
+  return slips;
+}
+
+void transfer_slips(StateArchive& archive, const std::string& name, History& history) {
+  for (const Rub rub : all_rubs) {
+    std::vector<double> numbers = numbers_of(history.slips(rub));
+    archive.transfer(name + "/slips_" + std::to_string(int(rub)), numbers, Rows::whole);
+    if (!numbers.empty()) history.replace_slips(slips_of(numbers), rub);
+  }
 }
 
 void transfer_history(StateArchive& archive, const std::string& name, History& history) {

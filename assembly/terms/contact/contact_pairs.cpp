@@ -54,15 +54,13 @@ bool ContactPairs::find_pair(Index i, Index j, ContactPair& pair) const {
     squared += step * step;
   }
   const double one = modulus_[std::size_t(i)], other = modulus_[std::size_t(j)];
-  const double section = points_.dimension == 3   ? mean * mean
-                         : points_.dimension == 2 ? thickness_ * mean
-                                                  : thickness_;
   pair.i = i;
   pair.j = j;
   pair.rule = std::int32_t(rule - rules_.begin());
   pair.reference = std::sqrt(squared);
   pair.distance = std::min(pair.reference, rule->distance > 0.0 ? rule->distance : mean);
-  pair.stiffness = rule->stiffness * 2.0 * one * other / (one + other) * section / pair.distance;
+  pair.stiffness =
+      rule->stiffness * 2.0 * one * other / (one + other) * section(mean) / pair.distance;
   pair.bond = bond.value_or(-1);
   return true;
 }

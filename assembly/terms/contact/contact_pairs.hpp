@@ -15,9 +15,12 @@ namespace peristat {
 /// How points touch one another.
 struct PairContactRule {
   ContactLaw law{};
-  double depth = 0.25;     ///< a: the largest depth over the distance of contact
-  double stiffness = 1.0;  ///< alpha: over that of the bar of a pair of points
-  double distance = 0.0;   ///< d_c [m]; 0: the mean of the two points' sizes
+  double depth = 0.25;      ///< a: the largest depth over the distance of contact
+  double stiffness = 1.0;   ///< alpha: over that of the bar of a pair of points
+  double distance = 0.0;    ///< d_c [m]; 0: the mean of the two points' sizes
+  bool has_faces = false;   ///< surfaces touch as ContactFaces, not as points
+  double friction = 0.0;    ///< mu
+  double tangential = 0.5;  ///< beta: stiffness of a contact that sticks over its stiffness
   /// Per point: 1 in the first set, 2 in the second, 0 in none; empty: all points touch one
   /// another.
   std::vector<char> side{};
@@ -63,6 +66,14 @@ class ContactPairs {
   /// The longest d [m].
   [[nodiscard]] double reach() const { return reach_; }
   [[nodiscard]] const Points& points() const { return points_; }
+  [[nodiscard]] std::span<const double> sizes() const { return size_; }      ///< per point [m]
+  [[nodiscard]] std::span<const double> moduli() const { return modulus_; }  ///< per point [Pa]
+  /// Area of the face of a cell of a size [m2]; in 1D the bar's cross-section.
+  [[nodiscard]] double section(double size) const {
+    return points_.dimension == 3   ? size * size
+           : points_.dimension == 2 ? thickness_ * size
+                                    : thickness_;
+  }
   /// Memory of it, and of the pairs that are kept near a state where bonds can fail [bytes].
   [[nodiscard]] double bytes() const;
 

@@ -3,56 +3,31 @@
 #include <algorithm>
 #include <cmath>
 
-#include "assembly/terms/damage.hpp"
+#include "assembly/terms/contact/bond_shares.hpp"
 
 namespace peristat {
-namespace {
 
-/// Calls visit(pair, 1 - T) for each pair.
-template <class Pairs, class Visit>
-void for_each_share(const Model& model, const History& history, const Pairs& pairs,
-                    const Visit& visit) {
-  const std::span<const double> stretches = bond_stretches(model, history);
-  const auto without_bonds = [&] {
-    for (const ContactPair& pair : pairs) {
-      if (pair.bond < 0) visit(pair, 1.0);
-    }
-  };
-  const BondFailure* const failing = model.failing_bonds();
-  if (!failing || stretches.empty()) return without_bonds();
-  failing->with_damage_law(model.failure_history(history), [&](const auto& laws) {
-    for (const ContactPair& pair : pairs) {
-      if (pair.bond < 0) {
-        visit(pair, 1.0);
-        continue;
-      }
-      const double largest = stretches[std::size_t(pair.bond)];
-      // A bond that has not been damaged has the stretch 0, and one that never fails -1.
-      if (largest <= 0.0) continue;
-      const double share = 1.0 - laws.of_bond(pair.bond).integrity_after(largest);
-      if (share > 0.0) visit(pair, share);
-    }
-  });
-}
-
-}  // namespace
-
-double NearPairs::slack(std::span<const double> displacement) const {
-  if (found_at_.size() < displacement.size()) return 0.0;
-  const int d = pairs_.points().dimension;
-  const Index count = pairs_.points().count();
+double room_left(const ContactPairs& pairs, std::span<const double> found_at,
+                 std::span<const double> displacement, int threads) {
+  if (found_at.size() < displacement.size()) return 0.0;
+  const int d = pairs.points().dimension;
+  const Index count = pairs.points().count();
   double largest = 0.0;
-#pragma omp parallel for num_threads(threads_) reduction(max : largest) schedule(static)
+#pragma omp parallel for num_threads(threads) reduction(max : largest) schedule(static)
   for (Index i = 0; i < count; ++i) {
     double squared = 0.0;
     for (int c = 0; c < d; ++c) {
       const std::size_t dof = std::size_t(i) * d + c;
-      const double step = displacement[dof] - found_at_[dof];
+      const double step = displacement[dof] - found_at[dof];
       squared += step * step;
     }
     largest = std::max(largest, squared);
   }
-  return std::max(0.0, pairs_.skin() - 2.0 * std::sqrt(largest));
+  return std::max(0.0, pairs.skin() - 2.0 * std::sqrt(largest));
+}
+
+double NearPairs::slack(std::span<const double> displacement) const {
+  return room_left(pairs_, found_at_, displacement, threads_);
 }
 
 std::span<const NearPairs::Open> NearPairs::at(std::span<const double> displacement,
@@ -64,9 +39,11 @@ std::span<const NearPairs::Open> NearPairs::at(std::span<const double> displacem
 std::span<const NearPairs::Open> NearPairs::open_for(const History& history) {
   if (version_ == history.version()) return open_;
   version_ = history.version();
+  find_whole(history);
   open_.clear();
-  for_each_share(model_, history, near_, [&](const ContactPair& pair, double share) {
-    open_.push_back({pair, share});
+  for_each_lost_share(model_, history, near_, [&](const ContactPair& pair, double share) {
+    share *= faces_.left_to_pair(pair, whole_);
+    if (share > 0.0) open_.push_back({pair, share});
   });
   return open_;
 }
@@ -79,11 +56,19 @@ std::span<const NearPairs::Open> NearPairs::found_at(std::span<const double> dis
   return open_for(history);
 }
 
-double NearPairs::share(const ContactPair& pair, const History& history) const {
+void NearPairs::find_whole(const History& history) {
+  if (whole_for_ == history.version()) return;
+  whole_for_ = history.version();
+  whole_ = faces_.whole(model_, history);
+}
+
+double NearPairs::share(const ContactPair& pair, const History& history) {
   double found = 0.0;
-  for_each_share(model_, history, std::span(&pair, 1),
-                 [&](const ContactPair&, double share) { found = share; });
-  return found;
+  for_each_lost_share(model_, history, std::span(&pair, 1),
+                      [&](const ContactPair&, double share) { found = share; });
+  if (found == 0.0 || faces_.none()) return found;
+  find_whole(history);
+  return found * faces_.left_to_pair(pair, whole_);
 }
 
 }  // namespace peristat

@@ -4,19 +4,18 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
+#include "assembly/terms/contact/contact_limits.hpp"
+#include "assembly/terms/contact/contact_rows.hpp"
 #include "assembly/terms/contact/near_pairs.hpp"
+#include "assembly/terms/contact/point_friction.hpp"
 #include "assembly/terms/contact/swept_pairs.hpp"
 #include "assembly/terms/workspace.hpp"
 #include "src/core/vector_verbs.hpp"
 
 namespace peristat {
 namespace {
-
-/// Depth over the largest from which a contact counts as touching: rest is at 0 to round-off.
-constexpr double touching = -1e-9;
 
 /// How two points stand to each other.
 struct Gap {
@@ -30,6 +29,7 @@ struct Gap {
 struct TouchingPair {
   const ContactPair& pair;
   Gap gap{};
+  double share = 1.0;        ///< 1 - T
   double depth = 0.0;        ///< x
   double energy = 0.0;       ///< [J]
   double force = 0.0;        ///< that presses [N]; below 0 only where it is foreseen
@@ -40,13 +40,15 @@ struct TouchingPair {
 class PairContactPasses : public TermPasses, BlockTangent {
  public:
   PairContactPasses(const PairContactTerm& term, const TermSetting& setting)
-      : pairs_(term.pairs()),
+      : pairs_(term.contacts().pairs),
         points_(setting.points),
         pattern_(setting.pattern),
-        threads_(setting.workspace.threads()),
-        near_(pairs_, setting.model, threads_),
-        near_foreseen_(pairs_, setting.model, threads_),
-        offset_(std::size_t(points_.count()) + 1, 0) {}
+        near_(pairs_, term.contacts().faces, setting.model, setting.workspace.threads()),
+        near_foreseen_(pairs_, term.contacts().faces, setting.model, setting.workspace.threads()),
+        friction_(points_.dimension),
+        rows_(points_.count()),
+        rubs_(std::ranges::any_of(pairs_.rules(),
+                                  [](const auto& rule) { return rule.friction > 0.0; })) {}
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
     if (how == Write::over) std::ranges::fill(gradient, 0.0);
@@ -57,7 +59,48 @@ class PairContactPasses : public TermPasses, BlockTangent {
       found.degenerate |= !contact.is_foreseen && !(contact.depth < 1.0);
       if (!gradient.empty()) add(contact, contact.force, gradient);
     }) || found.degenerate;
+    for_each_rubbing(at, [&](const PointFriction::Rubbing& rubbing) {
+      found.energy += rubbing.energy;
+      for (std::size_t c = 0; c < std::size_t(points_.dimension) && !gradient.empty(); ++c) {
+        gradient[place_of(rubbing.slip.point) + c] -= rubbing.force[c];
+        gradient[place_of(partner(rubbing)) + c] += rubbing.force[c];
+      }
+    });
     return found;
+  }
+
+  Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
+                    History& history, std::span<double> gradient, Write how) override {
+    double dissipated = 0.0;
+    const StateView at(displacement, history, Damage::grows, environment);
+    if (rubs_ && is_finite_at(points_, displacement)) {
+      PointFriction::Committed now =
+          friction_.committed(history.slips(Rub::pairs), presses(at), displacement);
+      dissipated = now.dissipated;
+      history.replace_slips(std::move(now.slips), Rub::pairs);
+    }
+    Evaluation found = this->gradient(at, gradient, how);
+    found.released += dissipated;
+    return found;
+  }
+
+  [[nodiscard]] bool has_friction() const override { return rubs_; }
+
+  void stick(const StateView& at, History& history) override {
+    if (!rubs_) return;
+    StateView touches = at;  // as a predictor sees them: contacts at rest count
+    touches.foreseen = at.displacement;
+    history.replace_slips(
+        friction_.stuck(history.slips(Rub::pairs), presses(touches), at.displacement), Rub::pairs);
+  }
+
+  std::array<double, 2> lag_friction(const StateView& at, const StateView& start,
+                                     History& history) override {
+    if (!rubs_ || !is_finite_at(points_, at.displacement)) return {};
+    PointFriction::Lagged now = friction_.lagged(history.slips(Rub::pairs), presses(at),
+                                                 at.displacement, start.displacement);
+    history.replace_slips(std::move(now.slips), Rub::pairs);
+    return {now.change, now.largest};
   }
 
   [[nodiscard]] TangentForms forms() override { return {.blocks = this}; }
@@ -78,7 +121,20 @@ class PairContactPasses : public TermPasses, BlockTangent {
           tangent.diagonal[std::size_t(contact.pair.j) * d * d + r * d + c] += entry;
         }
       }
-      tangent.add_to_block(place(contact.pair), block);
+      tangent.add_to_block(place_of_contact(pattern_, contact.pair.i, contact.pair.j), block);
+    });
+    for_each_rubbing(at, [&](const PointFriction::Rubbing& rubbing) {
+      const Index i = std::min(rubbing.slip.point, partner(rubbing)),
+                  j = std::max(rubbing.slip.point, partner(rubbing));
+      for (std::size_t r = 0; r < d; ++r) {
+        for (std::size_t c = 0; c < d; ++c) {
+          const double entry = rubbing.second_derivative(r, c, projection);
+          block[r * d + c] = -entry;
+          tangent.diagonal[std::size_t(i) * d * d + r * d + c] += entry;
+          tangent.diagonal[std::size_t(j) * d * d + r * d + c] += entry;
+        }
+      }
+      tangent.add_to_block(place_of_contact(pattern_, i, j), block);
     });
   }
 
@@ -98,6 +154,16 @@ class PairContactPasses : public TermPasses, BlockTangent {
         product[j + c] += force;
       }
     });
+    for_each_rubbing(at, [&](const PointFriction::Rubbing& rubbing) {
+      const std::size_t i = place_of(rubbing.slip.point), j = place_of(partner(rubbing));
+      for (std::size_t r = 0; r < d; ++r) {
+        for (std::size_t c = 0; c < d; ++c) {
+          const double force = rubbing.second_derivative(r, c, projection) * (v[i + c] - v[j + c]);
+          product[i + r] += force;
+          product[j + r] -= force;
+        }
+      }
+    });
   }
 
   void point_energies(const StateView& at, std::span<double> energies, Write how) override {
@@ -105,6 +171,10 @@ class PairContactPasses : public TermPasses, BlockTangent {
     for_each_touching(at, [&](const TouchingPair& contact) {
       energies[std::size_t(contact.pair.i)] += 0.5 * contact.energy;
       energies[std::size_t(contact.pair.j)] += 0.5 * contact.energy;
+    });
+    for_each_rubbing(at, [&](const PointFriction::Rubbing& rubbing) {
+      energies[std::size_t(rubbing.slip.point)] += 0.5 * rubbing.energy;
+      energies[std::size_t(partner(rubbing))] += 0.5 * rubbing.energy;
     });
   }
 
@@ -176,7 +246,7 @@ class PairContactPasses : public TermPasses, BlockTangent {
   void add_contact_stiffness(const StateView& at, double most_depth,
                              std::span<double> stiffness) override {
     constexpr double closes = 0.2;
-    if (!at.has_contacts || !is_finite(at.displacement)) return;
+    if (!at.has_contacts || !is_finite_at(points_, at.displacement)) return;
     const auto d = std::size_t(points_.dimension);
     for (const NearPairs::Open& open : near_.at(at.displacement, at.history)) {
       const Gap now = gap(open.pair, at.displacement);
@@ -202,8 +272,8 @@ class PairContactPasses : public TermPasses, BlockTangent {
   /// A predictor, which begins a search, looks anew, so that what follows does not depend on
   /// earlier searches; later states keep what covers them.
   std::optional<Couplings> contact_couplings(const StateView& at) override {
-    if (!is_finite(at.displacement)) return rows();
-    std::vector<std::pair<Index, Index>> wanted;
+    if (!is_finite_at(points_, at.displacement)) return rows_.couplings();
+    std::vector<ContactRows::Pair> wanted;
     const auto want = [&](std::span<const NearPairs::Open> open) {
       for (const NearPairs::Open& one : open) {
         if (one.pair.bond < 0) wanted.emplace_back(one.pair.i, one.pair.j);
@@ -213,21 +283,17 @@ class PairContactPasses : public TermPasses, BlockTangent {
     if (!is_new) {
       bool are_covered = true;
       for_each_touching(at, [&](const TouchingPair& contact) {
-        are_covered &= contact.pair.bond >= 0 || has_row(contact.pair);
+        are_covered &= contact.pair.bond >= 0 || rows_.has(contact.pair.i, contact.pair.j);
       });
-      if (are_covered) return rows();
-      for (Index i = 0; i < points_.count(); ++i) {
-        for (Offset k = offset_[std::size_t(i)]; k < offset_[std::size_t(i) + 1]; ++k) {
-          wanted.emplace_back(i, partner_[std::size_t(k)]);
-        }
-      }
+      if (are_covered) return rows_.couplings();
+      rows_.add_to(wanted);
     }
     want(near_.found_at(at.displacement, at.history));
-    if (is_new && is_finite(at.foreseen)) {
+    if (is_new && is_finite_at(points_, at.foreseen)) {
       want(near_foreseen_.found_at(at.foreseen, at.history));
     }
-    take_rows(std::move(wanted));
-    return rows();
+    rows_.take(std::move(wanted));
+    return rows_.couplings();
   }
 
  private:
@@ -238,15 +304,17 @@ class PairContactPasses : public TermPasses, BlockTangent {
     if (!at.has_contacts) return true;
     const bool foresees = !at.foreseen.empty();
     const std::span<const double> deciding = foresees ? at.foreseen : at.displacement;
-    if (!is_finite(at.displacement) || (foresees && !is_finite(deciding))) return false;
+    if (!is_finite_at(points_, at.displacement)) return false;
+    if (foresees && !is_finite_at(points_, deciding)) return false;
     NearPairs& near = foresees ? near_foreseen_ : near_;
     for (const NearPairs::Open& open : near.at(deciding, at.history)) {
       const ContactPair& pair = open.pair;
       const double most = deepest(pair);
       const Gap decides = gap(pair, deciding);
       const double depth = decides.overlap / most;
-      if (foresees ? !(depth > touching) : !(depth > 0.0)) continue;
+      if (foresees ? !(depth > touching_depth) : !(depth > 0.0)) continue;
       TouchingPair contact{pair, foresees ? gap(pair, at.displacement) : decides};
+      contact.share = open.share;
       contact.depth = contact.gap.overlap / most;
       contact.is_foreseen = foresees;
       const ContactLaw::Value of_law =
@@ -258,6 +326,37 @@ class PairContactPasses : public TermPasses, BlockTangent {
       visit(std::as_const(contact));
     }
     return true;
+  }
+
+  template <class Visit>
+  void for_each_rubbing(const StateView& at, const Visit& visit) const {
+    if (!at.has_contacts || !rubs_) return;
+    friction_.for_each(at.history.slips(Rub::pairs), at.displacement, visit);
+  }
+  /// The point that a rubbing point is pressed on.
+  [[nodiscard]] static Index partner(const PointFriction::Rubbing& of) {
+    return of.slip.partners.front().point;
+  }
+  [[nodiscard]] std::size_t place_of(Index point) const {
+    return std::size_t(point) * std::size_t(points_.dimension);
+  }
+
+  /// Contacts with friction at a state.
+  [[nodiscard]] std::vector<Press> presses(const StateView& at) {
+    std::vector<Press> found;
+    for_each_touching(at, [&](const TouchingPair& contact) {
+      const ContactPair& pair = contact.pair;
+      const PairContactRule& rule = rule_of(pair);
+      if (rule.friction == 0.0) return;
+      found.push_back({std::size_t(pair.i) * std::size_t(points_.count()) + std::size_t(pair.j),
+                       pair.j,
+                       {{pair.i, 1.0}},
+                       std::max(0.0, contact.force),
+                       contact.gap.normal,
+                       rule.friction,
+                       rule.tangential * contact.share * pair.stiffness});
+    });
+    return found;
   }
 
   [[nodiscard]] const PairContactRule& rule_of(const ContactPair& pair) const {
@@ -309,48 +408,13 @@ class PairContactPasses : public TermPasses, BlockTangent {
     }
   }
 
-  [[nodiscard]] bool is_finite(std::span<const double> displacement) const {
-    const auto of_points = displacement.first(points_.reference.size());
-    return std::ranges::all_of(of_points, [](double u) { return std::isfinite(u); });
-  }
-
-  [[nodiscard]] Offset place(const ContactPair& pair) const {
-    const std::span<const Index> row = pattern_.of(pair.i);
-    const auto found = std::lower_bound(row.begin(), row.end(), pair.j);
-    if (found == row.end() || *found != pair.j) {
-      throw std::logic_error("the pattern of the tangent lacks points in contact");
-    }
-    return pattern_.offset[std::size_t(pair.i)] + (found - row.begin());
-  }
-
-  [[nodiscard]] std::optional<Couplings> rows() const {
-    if (partner_.empty()) return std::nullopt;
-    return Couplings(offset_, partner_);
-  }
-  [[nodiscard]] bool has_row(const ContactPair& pair) const {
-    const auto first = partner_.begin() + offset_[std::size_t(pair.i)],
-               last = partner_.begin() + offset_[std::size_t(pair.i) + 1];
-    return std::binary_search(first, last, pair.j);
-  }
-  void take_rows(std::vector<std::pair<Index, Index>> wanted) {
-    std::ranges::sort(wanted);
-    wanted.erase(std::ranges::unique(wanted).begin(), wanted.end());
-    offset_.assign(std::size_t(points_.count()) + 1, 0);
-    partner_.clear();
-    for (const auto& [i, j] : wanted) {
-      ++offset_[std::size_t(i) + 1];
-      partner_.push_back(j);
-    }
-    for (std::size_t i = 1; i < offset_.size(); ++i) offset_[i] += offset_[i - 1];
-  }
-
   const ContactPairs& pairs_;
   const Points& points_;
   const BlockPattern& pattern_;
-  int threads_;
   NearPairs near_, near_foreseen_;
-  std::vector<Offset> offset_;  // rows of contact_couplings
-  std::vector<Index> partner_;
+  PointFriction friction_;
+  ContactRows rows_;
+  bool rubs_;
 };
 
 }  // namespace

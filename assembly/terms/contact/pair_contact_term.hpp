@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "assembly/terms/contact/contact_pairs.hpp"
+#include "assembly/terms/contact/point_contacts.hpp"
 #include "assembly/terms/term.hpp"
 
 namespace peristat {
@@ -16,19 +16,20 @@ namespace peristat {
 /// bond loses its contact takes over, and a bond loses it only where r > d. Forces are central.
 class PairContactTerm : public Term {
  public:
-  explicit PairContactTerm(ContactPairs pairs)
-      : pairs_(std::move(pairs)), no_couplings_(std::size_t(pairs_.points().count()) + 1, 0) {}
+  explicit PairContactTerm(std::shared_ptr<const PointContacts> contacts)
+      : contacts_(std::move(contacts)),
+        no_couplings_(std::size_t(contacts_->pairs.points().count()) + 1, 0) {}
 
-  [[nodiscard]] const ContactPairs& pairs() const { return pairs_; }
+  [[nodiscard]] const PointContacts& contacts() const { return *contacts_; }
 
   [[nodiscard]] Couplings couplings() const override { return {no_couplings_, {}}; }
   [[nodiscard]] bool has_symmetric_blocks() const override { return true; }
-  [[nodiscard]] Balances balances() const override { return {}; }
-  [[nodiscard]] double stored_bytes() const override { return pairs_.bytes(); }
+  [[nodiscard]] Balances balances() const override { return contacts_->balances(); }
+  [[nodiscard]] double stored_bytes() const override { return contacts_->pairs.bytes(); }
   [[nodiscard]] std::unique_ptr<TermPasses> passes(const TermSetting& setting) const override;
 
  private:
-  ContactPairs pairs_;
+  std::shared_ptr<const PointContacts> contacts_;
   std::vector<Offset> no_couplings_;
 };
 

@@ -7,12 +7,11 @@
 #include <numeric>
 #include <vector>
 
+#include "assembly/terms/contact/contact_limits.hpp"
 #include "src/neighbourhood/cell_list.hpp"
 
 namespace peristat {
 namespace {
-
-constexpr double share_of_depth = 0.9, share_of_way = 0.9;
 
 /// Points that are near one another, with the boxes of their places and of their steps.
 template <int D>
@@ -20,8 +19,6 @@ struct Group {
   std::array<double, D> lower, upper, least_step, most_step;
   Index first, last;  // places in the cell list
 };
-
-constexpr double never = 2.0;
 
 /// First time at which two points that are farther apart are at a distance; `never`: not in this
 /// step.
@@ -95,7 +92,7 @@ bool may_meet(const Group<D>& a, const Group<D>& b, double reach) {
 /// Visits all pairs that reach a share of their largest depth in a step, with the time.
 template <int D, class Visit>
 void for_each_swept_pair(const ContactPairs& pairs, const StateView& at,
-                         std::span<const double> step, const NearPairs& near, double share,
+                         std::span<const double> step, NearPairs& near, double share,
                          const Visit& visit) {
   const Points& points = pairs.points();
   std::vector<double> place(points.reference);
@@ -180,9 +177,9 @@ double longest_approach(const Points& points, std::span<const double> step) {
 double longest_swept_share(const ContactPairs& pairs, const StateView& at,
                            std::span<const double> step, NearPairs& near) {
   double first = never;
-  visit_swept_pairs(pairs, at, step, near, share_of_depth,
+  visit_swept_pairs(pairs, at, step, near, most_depth_of_step,
                     [&](const ContactPair&, double time) { first = std::min(first, time); });
-  return first <= 1.0 ? share_of_way * first : 1.0;
+  return first <= 1.0 ? most_time_of_step * first : 1.0;
 }
 
 bool passes_through(const ContactPairs& pairs, const StateView& at, std::span<const double> step,

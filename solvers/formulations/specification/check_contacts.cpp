@@ -44,6 +44,10 @@ void check_contacts(const BodySpecification& of, const Points& points) {
     require(contact.distance >= 0.0 && contact.distance <= of.horizon, table + ".distance",
             number_text(contact.distance),
             "must be positive and no longer than the horizon, " + number_text(of.horizon) + " m");
+    require(contact.shape == ContactShape::points || points.dimension > 1, table + ".shape",
+            "\"faces\"", "needs two or three dimensions; a bar has points alone");
+    require_within(contact.friction, 0.0, 1000.0, table + ".friction");
+    require_within(contact.tangential_stiffness, 0.001, 1000.0, table + ".tangential_stiffness");
     require_absent(!contact.with.empty() && contact.set.empty(), table + ".with",
                    "needs the other set, " + table + ".set");
     Sides sides{points_that_touch(points, contact.set, table + ".set"), {}};

@@ -37,9 +37,10 @@ struct Halves {
       });
     }
     const auto count = std::size_t(body.points.count());
-    contact = std::make_shared<PairContactTerm>(
+    contact = std::make_shared<PairContactTerm>(std::make_shared<const PointContacts>(
         ContactPairs(body.points, body.model.bonds(), {rule}, std::vector<double>(count, spacing),
-                     std::vector<double>(count, modulus), fails));
+                     std::vector<double>(count, modulus), fails),
+        body.model.bonds()));
     body.model.add(contact);
   }
 
@@ -233,7 +234,7 @@ TEST_P(PairContact, LongestStepIsThatOfAllPairs) {
     for (Index i = 0; i < points.count(); ++i) {
       for (Index j = i + 1; j < points.count(); ++j) {
         ContactPair pair;
-        if (!halves.contact->pairs().find_pair(i, j, pair)) continue;
+        if (!halves.contact->contacts().pairs.find_pair(i, j, pair)) continue;
         const double least = (1.0 - 0.9 * 0.25) * pair.distance;
         double a = 0.0, b = 0.0, c = -least * least;
         for (std::size_t k = 0; k < d; ++k) {

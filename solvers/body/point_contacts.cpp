@@ -1,10 +1,12 @@
-#include "solvers/body/pair_contact.hpp"
+#include "solvers/body/point_contacts.hpp"
 
 #include <utility>
 #include <vector>
 
+#include "assembly/terms/contact/face_contact_term.hpp"
 #include "assembly/terms/contact/pair_contact_term.hpp"
 #include "solvers/body/youngs_moduli.hpp"
+#include "src/conditions/points_of_set.hpp"
 #include "src/core/input_error.hpp"
 #include "src/geometry/point_sizes.hpp"
 
@@ -16,6 +18,9 @@ PairContactRule rule_of(const ContactSpecification& of, const Points& points) {
                        .depth = of.depth,
                        .stiffness = of.stiffness,
                        .distance = of.distance,
+                       .has_faces = of.shape == ContactShape::faces,
+                       .friction = of.friction,
+                       .tangential = of.tangential_stiffness,
                        .side = {},
                        .has_two_sides = !of.with.empty()};
   if (of.set.empty()) return rule;
@@ -28,9 +33,9 @@ PairContactRule rule_of(const ContactSpecification& of, const Points& points) {
 
 }  // namespace
 
-std::shared_ptr<Term> make_pair_contact(const Body& body) {
+void add_contacts(const Body& body, Model& model) {
   const BodySpecification& of = body.specification;
-  if (of.contacts.empty()) return nullptr;
+  if (of.contacts.empty()) return;
   const Points& points = body.points;
   std::vector<PairContactRule> rules;
   for (const ContactSpecification& contact : of.contacts) rules.push_back(rule_of(contact, points));
@@ -38,9 +43,18 @@ std::shared_ptr<Term> make_pair_contact(const Body& body) {
   for (Index i = 0; i < points.count(); ++i) {
     size.push_back(size_of_point(points, i, body.setting.cross_section));
   }
-  return std::make_shared<PairContactTerm>(
-      ContactPairs(points, body.model.bonds(), std::move(rules), std::move(size),
-                   youngs_moduli(body), body.model.failing_bonds() != nullptr));
+  const Bonds& bonds = body.model.bonds();
+  auto contacts = std::make_shared<const PointContacts>(
+      ContactPairs(points, bonds, std::move(rules), std::move(size), youngs_moduli(body),
+                   body.model.failing_bonds() != nullptr),
+      bonds);
+  for (std::size_t k = 0; k < of.contacts.size(); ++k) {
+    if (of.contacts[k].shape == ContactShape::points || !contacts->faces.none()) continue;
+    throw InputError(indexed("contacts", k) + ".shape", "\"faces\"",
+                     "finds no faces: the body is one point thick; take \"points\"");
+  }
+  model.add(std::make_shared<PairContactTerm>(contacts));
+  if (!contacts->faces.none()) model.add(std::make_shared<FaceContactTerm>(contacts));
 }
 
 void refuse_contacts_with_images(const BodySpecification& of) {

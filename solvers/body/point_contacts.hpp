@@ -1,15 +1,12 @@
 #pragma once
 
-#include <memory>
-
-#include "assembly/terms/term.hpp"
+#include "assembly/terms/model.hpp"
 #include "solvers/body/body.hpp"
 
 namespace peristat {
 
-/// Makes the contacts of a body's points by its specification, on the bonds of its model.
-/// @return null if it has none
-[[nodiscard]] std::shared_ptr<Term> make_pair_contact(const Body& body);
+/// Adds the contacts of a body's points by its specification, on the bonds of its model.
+void add_contacts(const Body& body, Model& model);
 
 /// Refuses contacts of bodies with planes of symmetry and periods.
 /// @throws InputError ("contacts")
