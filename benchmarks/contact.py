@@ -2,8 +2,9 @@
 
     PERISTAT_PROGRAM=build/release/peristat /usr/bin/python3 -B benchmarks/contact.py
 
-The stiffness of a bar with a closed cut over that of the whole bar, by spacing and by stiffness of the contact; and
-energy and speed of two halves that collide, by the share of the stable step.
+The stiffness of a bar with a closed cut over that of the whole bar, by spacing and by stiffness of the contact; energy
+and speed of two halves that collide, by the share of the stable step; and the slip of a closed inclined crack over that
+of an infinite plate, by spacing and friction.
 """
 
 import os
@@ -19,6 +20,7 @@ from tests.acceptance.motions import columns  # noqa: E402
 from tests.reference.program import peristat, settings  # noqa: E402
 
 CUT = ROOT / "cases/contact/closed_crack.toml"
+INCLINED = ROOT / "cases/contact/inclined_crack.toml"
 IMPACT = ROOT / "cases/contact/impact.toml"
 ENERGY = 0.5 * 2700 * 0.080 * 0.004 * 1e-3 * 10.0**2  # J
 
@@ -49,6 +51,36 @@ def impact(folder):
         print(f"| {share} | {rows['step'][-1]:.0f} | {rows['modified_energy'][-1] / ENERGY:.4f} | {-rows['left_x'][-1] / 10:.3f} |", flush=True)
 
 
+def inclined(folder):
+    """The plate is eight times as wide as the crack, 20 mm, is long, and elastic."""
+    width, half = 0.160, 0.010
+    print("\n| spacings along the crack | mu = 0 | 0.3 | 0.6 |\n|---|---|---|---|")
+    for spacing in (1e-3, 5e-4, 2.5e-4):
+        at = [width / 2 + sign * half / 2**0.5 for sign in (-1, 1)]
+        changes = [
+            f"lattice.spacing={spacing}",
+            f"lattice.shape[0].max=[{width}, {width}]",
+            f'set[1].where="y > {width} - spacing"',
+            f'set[2].where="y < spacing && abs(x - {width / 2}) < spacing"',
+            f'set[3].where="abs(y - x - spacing) < 0.1*spacing && abs(x + y - {width} - 0.5*spacing) < 1.2*spacing"',
+            f'set[4].where="abs(y - x) < 0.1*spacing && abs(x + y - {width} - 0.5*spacing) < 1.2*spacing"',
+            f"crack[0].from=[{at[0]}, {at[0] + spacing / 2}]",
+            f"crack[0].to=[{at[1]}, {at[1] + spacing / 2}]",
+            "material.damage.law=none",
+            "loading.table=[0, 0.1]",
+            "loading.steps=1",
+            "solver.mode=newton",
+        ]
+        ratios = []
+        for friction in (0.0, 0.3, 0.6):
+            rows = run(folder, INCLINED, *changes, f"contact[0].friction={friction}")
+            slip = 2**0.5 * (rows["above_x"][-1] - rows["below_x"][-1])
+            pressure = -rows["reaction_y:top"][-1] / width / 1e-3
+            ratios.append(slip / (4 * 0.5 * (1 - friction) * pressure * half / 3e9))
+        print(f"| {2 * half / spacing:.0f} | " + " | ".join(f"{ratio:.3f}" for ratio in ratios) + " |", flush=True)
+
+
 with tempfile.TemporaryDirectory() as name:
     cut_bar(pathlib.Path(name))
     impact(pathlib.Path(name))
+    inclined(pathlib.Path(name))

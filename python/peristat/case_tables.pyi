@@ -505,6 +505,8 @@ class Contact(Table):
     """set whose points touch. Default: all points. Allowed: name of a set or layer"""
     with_: str
     """another set, which the points of `set` touch, and not one another. Default: the points of `set` touch one another. Allowed: name of a set or layer"""
+    shape: Literal["points", "faces"]
+    """what touches. `'points'`: points, for cracks that slip by less than a spacing and for fragments; `'faces'`: points and the faces that join surface points, for surfaces that slide. Default: `'points'`. Allowed: `'points'`, `'faces'`"""
     distance: Quantity
     """distance at which two points touch [m]. Default: the mean of the two points' sizes, on a lattice the spacing. Allowed: positive"""
     stiffness: float
@@ -513,6 +515,10 @@ class Contact(Table):
     """largest depth of the contact over its distance; the force grows without limit towards it. Default: 0.25. Allowed: 0.01 to 0.5"""
     softness: float
     """strain of the gap over which the stiffness sets in; at most a tenth of the strains of interest. Default: 1e-4. Allowed: 1e-9 to 0.25"""
+    friction: float
+    """coefficient of Coulomb's friction. Default: 0. Allowed: 0 to 1000"""
+    tangential_stiffness: float
+    """stiffness of contacts that stick, relative to `stiffness`. Default: 0.5. Allowed: 0.001 to 1000"""
 
 class Obstacle(Table):
     name: str
@@ -777,7 +783,7 @@ class CaseTable(Table):
     def add_foundation(self, *, name: str = ..., set: str = ..., side: Literal["x-", "x+", "y-", "y+", "z-", "z+"] = ..., modulus: List = ..., stiffness: List = ..., displacement: List = ...) -> Foundation: ...
     foundation: Array[Foundation]
     """tables: springs between a part of the body and the ground. Default: none"""
-    def add_contact(self, *, set: str = ..., with_: str = ..., distance: Quantity = ..., stiffness: float = ..., depth: float = ..., softness: float = ...) -> Contact: ...
+    def add_contact(self, *, set: str = ..., with_: str = ..., shape: Literal["points", "faces"] = ..., distance: Quantity = ..., stiffness: float = ..., depth: float = ..., softness: float = ..., friction: float = ..., tangential_stiffness: float = ...) -> Contact: ...
     contact: Array[Contact]
     """tables: contact of points that no whole bond joins. Default: none"""
     def add_obstacle(self, *, name: str = ..., set: str = ..., shape: Literal["plane", "cylinder", "sphere"] = ..., point: List = ..., normal: List = ..., axis: List = ..., radius: Quantity = ..., inside: bool = ..., displacement: List = ..., stiffness: float = ..., depth: float = ..., softness: float = ..., friction: float = ..., tangential_stiffness: float = ...) -> Obstacle: ...

@@ -51,7 +51,8 @@ void add_contacts(const Body& body, Model& model) {
   for (std::size_t k = 0; k < of.contacts.size(); ++k) {
     if (of.contacts[k].shape == ContactShape::points || !contacts->faces.none()) continue;
     throw InputError(indexed("contacts", k) + ".shape", "\"faces\"",
-                     "finds no faces: the body is one point thick; take \"points\"");
+                     "finds no faces: the body is one point thick, or bonds do not reach across the "
+                     "diagonals of its cells; take \"points\"");
   }
   model.add(std::make_shared<PairContactTerm>(contacts));
   if (!contacts->faces.none()) model.add(std::make_shared<FaceContactTerm>(contacts));

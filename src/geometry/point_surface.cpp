@@ -11,6 +11,8 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
+#include "src/core/coordinates.hpp"
+
 namespace peristat {
 namespace {
 
@@ -91,28 +93,74 @@ std::vector<FacetCorners> boundary_of(const Handles& simplices, std::span<const 
   return boundary;
 }
 
+/// Places of points that move apart across cuts, by up to a twentieth of a size per unjoined side.
+/// The points of a lattice's cell stand on one circle, so that round-off chooses its diagonal. A
+/// cut through the cell leaves a straight face only with the diagonal along it.
+class SpreadPlaces {
+ public:
+  SpreadPlaces(const Points& points, std::span<const double> size,
+               const std::function<bool(Index, Index)>& are_joined)
+      : size_(size), are_joined_(are_joined), rest_(std::size_t(points.count())) {
+    for (Index i = 0; i < points.count(); ++i) rest_[std::size_t(i)] = points.position(i);
+    place_ = rest_;
+  }
+  [[nodiscard]] const std::vector<Coordinates>& places() const { return place_; }
+
+  /// Moves the ends of a side of a simplex apart if it is short and not joined.
+  void spread(Index i, Index j) {
+    constexpr double longest = 1.5, share = 0.05;
+    const double size = std::min(size_[std::size_t(i)], size_[std::size_t(j)]);
+    const Coordinates arm = minus(rest_[std::size_t(j)], rest_[std::size_t(i)]);
+    const double distance = length(arm);
+    if (distance > longest * size || are_joined_(i, j)) return;
+    const Coordinates step = scaled(share * size / distance, arm);
+    place_[std::size_t(j)] = plus(place_[std::size_t(j)], step);
+    place_[std::size_t(i)] = minus(place_[std::size_t(i)], step);
+  }
+
+ private:
+  std::span<const double> size_;
+  const std::function<bool(Index, Index)>& are_joined_;
+  std::vector<Coordinates> rest_, place_;
+};
+
+Plane triangulate_plane(const std::vector<Coordinates>& places) {
+  std::vector<std::pair<Kernel::Point_2, Index>> numbered;
+  for (const Coordinates& at : places) {
+    numbered.emplace_back(Kernel::Point_2(at[0], at[1]), Index(numbered.size()));
+  }
+  return {numbered.begin(), numbered.end()};
+}
+
+Space triangulate_space(const std::vector<Coordinates>& places) {
+  std::vector<std::pair<Kernel::Point_3, Index>> numbered;
+  for (const Coordinates& at : places) {
+    numbered.emplace_back(Kernel::Point_3(at[0], at[1], at[2]), Index(numbered.size()));
+  }
+  return {numbered.begin(), numbered.end()};
+}
+
 }  // namespace
 
 std::vector<FacetCorners> surface_of_points(const Points& points, std::span<const double> size,
                                             const std::function<bool(Index, Index)>& are_joined) {
+  SpreadPlaces spread(points, size, are_joined);
   if (points.dimension == 2) {
-    std::vector<std::pair<Kernel::Point_2, Index>> places;
-    for (Index i = 0; i < points.count(); ++i) {
-      const Coordinates at = points.position(i);
-      places.emplace_back(Kernel::Point_2(at[0], at[1]), i);
+    const Plane first = triangulate_plane(spread.places());
+    for (const Plane::Edge& edge : first.finite_edges()) {
+      const auto& [face, side] = edge;
+      spread.spread(face->vertex((side + 1) % 3)->info(), face->vertex((side + 2) % 3)->info());
     }
-    Plane plane;
-    plane.insert(places.begin(), places.end());
+    const Plane plane = triangulate_plane(spread.places());
     return boundary_of<3>(plane.finite_face_handles(), size, are_joined);
   }
   if (points.dimension == 3) {
-    std::vector<std::pair<Kernel::Point_3, Index>> places;
-    for (Index i = 0; i < points.count(); ++i) {
-      const Coordinates at = points.position(i);
-      places.emplace_back(Kernel::Point_3(at[0], at[1], at[2]), i);
+    const Space first = triangulate_space(spread.places());
+    for (const Space::Edge& edge : first.finite_edges()) {
+      spread.spread(edge.first->vertex(edge.second)->info(),
+                    edge.first->vertex(edge.third)->info());
     }
-    Space space;
-    space.insert(places.begin(), places.end());
+    const Space space = triangulate_space(spread.places());
     if (space.dimension() < 3) return {};
     return boundary_of<4>(space.finite_cell_handles(), size, are_joined);
   }

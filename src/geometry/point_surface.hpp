@@ -16,7 +16,8 @@ using FacetCorners = std::array<Index, 3>;
 /// Surface that joins the outermost points of a body: segments in 2D, triangles in 3D. It is the
 /// boundary of the simplices of a Delaunay triangulation that are part of the body: all their
 /// corners are joined, and the circumscribed radius is at most 1.25 times the size of a corner. The
-/// faces of a crack, whose points are not joined, are therefore part of it.
+/// faces of a crack, whose points are not joined, are therefore part of it; those along rows or
+/// diagonals of a lattice are flat.
 /// @param size of each point [m]
 /// @param are_joined whether two points are one piece
 /// @return facets, ascending; none in 1D, and none where no simplex is, as in rows of single points

@@ -3,6 +3,7 @@
 import numpy
 
 from tests.reference.body import pairs_within
+from tests.reference.face_contact import FaceContact
 
 
 def law(x, bend):
@@ -33,6 +34,8 @@ class PairContact:
         self.modulus = modulus[body.materials.number]
         self.size, self.tables = size, case.get("contact")
         self.reach = max(table.get("distance", size.max()) for table in self.tables)
+        has_faces = any(table.get("shape") == "faces" for table in self.tables)
+        self.faces = FaceContact(self) if has_faces else None
 
     def sides(self, table):
         everywhere = numpy.ones(len(self.size), bool)
@@ -61,6 +64,8 @@ class PairContact:
             section = {1: body.cross_section, 2: body.cross_section * mean, 3: mean**2}[body.dimension]
             harmonic = 2 / (1 / self.modulus[i] + 1 / self.modulus[j])
             stiffness = table.get("stiffness", 1.0) * harmonic * section / gap * share * taken
+            if self.faces:
+                stiffness = stiffness * self.faces.left_to_pairs(i, j, table, integrity)
             deepest = table.get("depth", 0.25) * gap
             value, first = law((gap**2 - length**2 - change) / (gap + distance) / deepest, table.get("softness", 1e-4) / table.get("depth", 0.25))
             energy = energy + stiffness * deepest**2 * value
@@ -73,4 +78,10 @@ class PairContact:
         total = numpy.zeros(len(self.size), energy.dtype)
         for end in (i, j):
             numpy.add.at(total, end, energy / 2)
+        for point, part, weights, energy, _ in self.on_faces(u, integrity):
+            total[point] += energy / 2
+            total[list(part)] += weights * energy / 2
         return total
+
+    def on_faces(self, u, integrity):
+        return self.faces.touching(u, integrity, law) if self.faces else []

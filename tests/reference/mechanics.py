@@ -263,6 +263,9 @@ class Mechanics:
             i, j, _, force = self.contact.touching(u, self.integrity(history))
             add_at(total, i, -numpy.abs(force) if absolute else force)
             add_at(total, j, -numpy.abs(force) if absolute else -force)
+            for point, part, weights, _, force in self.contact.on_faces(u, self.integrity(history)):
+                total[point] += -numpy.abs(force) if absolute else -force
+                total[list(part)] += weights[:, None] * (-numpy.abs(force) if absolute else force)
         return numpy.abs(total) if absolute else total
 
     def tangent(self, u, history=None):

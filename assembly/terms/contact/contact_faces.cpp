@@ -107,7 +107,8 @@ void ContactFaces::find_facing() {
   for (std::size_t r = 0; r < facing_.size(); ++r) {
     if (pairs_.rules()[r].has_faces) facing_[r] = facing_by(pairs_.rules()[r]);
   }
-  // Rest is free of forces.
+  // Rest is free of forces, with a hair for round-off.
+  constexpr double almost = 1.0 - 1e-14;
   const std::vector<double> at_rest(pairs_.points().reference.size());
   const std::vector<char> whole(facets_.size(), 1);
   const FacingPoints near = this->near(at_rest, whole, 1);
@@ -117,7 +118,8 @@ void ContactFaces::find_facing() {
     double least = facing.distance;
     for (const FacingPart& part : near.parts_of(of)) {
       if (part.corners < corners()) continue;
-      least = std::min(least, facet_distance(arms(of.point, part.corner, part.corners, at_rest)));
+      const FacetArms arms = this->arms(of.point, part.corner, part.corners, at_rest);
+      least = std::min(least, almost * facet_distance(arms));
     }
     facing.stiffness *= facing.distance / least;
     facing.distance = least;

@@ -135,12 +135,18 @@ class FaceContactPasses : public TermPasses, BlockTangent {
     });
   }
 
-  /// With the present arm, since facets that touch need not have been neighbours.
+  /// As of PairContactTerm, with the arm from the place that is pressed.
   void add_virials(const StateView& at, std::span<double> virials) override {
     for_each_touched(at, [&](const FacingPoint& of, std::span<const TouchedPart> parts) {
       for (const TouchedPart& touched : parts) {
-        const Coordinates force = scaled(touched.force, touched.at.normal),
-                          arm = scaled(touched.at.distance, touched.at.normal);
+        const Coordinates force = scaled(touched.force, touched.at.normal);
+        Coordinates arm{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          arm = minus(arm, scaled(touched.at.weight[k], touched.arms.reference[k]));
+        }
+        if (length(arm) > 2.0 * pairs_.reach()) {
+          arm = scaled(touched.at.distance, touched.at.normal);
+        }
         add_virial(of.point, 0.5, force, arm, virials);
         for (int k = 0; k < touched.part.corners; ++k) {
           add_virial(touched.part.corner[std::size_t(k)], 0.5 * touched.at.weight[std::size_t(k)],

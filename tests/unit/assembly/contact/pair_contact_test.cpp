@@ -9,81 +9,20 @@
 
 #include "assembly/assembler.hpp"
 #include "assembly/operators/tangent.hpp"
-#include "assembly/terms/contact/pair_contact_term.hpp"
-#include "tests/bodies.hpp"
 #include "tests/finite_differences.hpp"
+#include "tests/unit/assembly/contact/halves.hpp"
 
 namespace peristat {
 namespace {
 
-using tests::BoxBody;
-using tests::BoxSetting;
 using tests::dot;
 using tests::norm;
 using tests::Random;
 
-constexpr double spacing = 0.1, modulus = 3.0;
-
-/// Two halves of a box without a bond between them, beside one another along the last axis.
-struct Halves {
-  BoxBody body;
-  std::shared_ptr<PairContactTerm> contact;
-
-  explicit Halves(int dimension, const PairContactRule& rule = {}, bool fails = false)
-      : body(setting_of(dimension, fails)) {
-    if (!fails) {
-      body.remove_bonds([&](Index i, Offset bond) {
-        return is_above(i) != is_above(body.model.bonds().partner[std::size_t(bond)]);
-      });
-    }
-    const auto count = std::size_t(body.points.count());
-    contact = std::make_shared<PairContactTerm>(std::make_shared<const PointContacts>(
-        ContactPairs(body.points, body.model.bonds(), {rule}, std::vector<double>(count, spacing),
-                     std::vector<double>(count, modulus), fails),
-        body.model.bonds()));
-    body.model.add(contact);
-  }
-
-  static BoxSetting setting_of(int dimension, bool fails) {
-    BoxSetting box = tests::small_box(dimension);
-    if (dimension == 2) box.extent = {9, 8, 0};
-    if (dimension == 3) box.extent = {4, 4, 6};
-    if (dimension == 1) box.extent = {12, 0, 0};
-    box.horizon_ratio = 2.015;
-    if (fails) {
-      box.potential = [](double micromodulus) -> BondPotential {
-        return Degraded<CriticalStretch>{micromodulus, {0.01}};
-      };
-    }
-    return box;
-  }
-
-  [[nodiscard]] int dimension() const { return body.points.dimension; }
-  [[nodiscard]] bool is_above(Index i) const {
-    const double middle = dimension() == 2 ? 0.4 : dimension() == 3 ? 0.3 : 0.6;
-    return body.points.position(i)[std::size_t(dimension() - 1)] > middle;
-  }
-  /// The upper half moves by this along the last axis and along the first, and all points a little.
-  [[nodiscard]] std::vector<double> moved(double along, double aside, double noise) const {
-    std::vector<double> displacement = Random(3).vector(body.dofs(), noise * spacing);
-    const auto d = std::size_t(dimension());
-    for (Index i = 0; i < body.points.count(); ++i) {
-      if (!is_above(i)) continue;
-      displacement[std::size_t(i) * d] += aside * spacing;
-      displacement[std::size_t(i) * d + d - 1] += along * spacing;
-    }
-    return displacement;
-  }
-  [[nodiscard]] std::vector<double> pressed() const {
-    return moved(-0.12, dimension() == 1 ? 0.0 : 0.05, 0.02);
-  }
-};
-
-std::vector<double> gradient_at(Assembler& assembler, const std::vector<double>& displacement) {
-  std::vector<double> gradient(displacement.size());
-  static_cast<void>(assembler.gradient(displacement, gradient));
-  return gradient;
-}
+using tests::gradient_at;
+using tests::Halves;
+using tests::modulus;
+using tests::spacing;
 
 class PairContact : public ::testing::TestWithParam<int> {};
 
@@ -128,23 +67,7 @@ TEST_P(PairContact, ForcesAndMomentsBalance) {
   Assembler assembler(halves.body.points, alone, 1);
   const std::vector<double> at = halves.pressed(), gradient = gradient_at(assembler, at);
   ASSERT_GT(norm(gradient), 0.0);
-  const auto d = std::size_t(GetParam());
-  Coordinates force{}, moment{};
-  for (Index i = 0; i < halves.body.points.count(); ++i) {
-    Coordinates place{}, here{};
-    for (std::size_t c = 0; c < d; ++c) {
-      place[c] = halves.body.points.position(i)[c] + at[std::size_t(i) * d + c];
-      here[c] = gradient[std::size_t(i) * d + c];
-      force[c] += here[c];
-    }
-    for (std::size_t c = 0; c < 3; ++c) {
-      moment[c] += place[(c + 1) % 3] * here[(c + 2) % 3] - place[(c + 2) % 3] * here[(c + 1) % 3];
-    }
-  }
-  for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_NEAR(force[c], 0.0, 1e-13 * norm(gradient));
-    EXPECT_NEAR(moment[c], 0.0, 1e-13 * norm(gradient));
-  }
+  tests::expect_balance(halves, at, gradient);
 }
 
 TEST_P(PairContact, RestAndOpenFacesAreFreeOfForce) {
