@@ -106,6 +106,7 @@ History Assembler::history_of(std::span<const double> bond_stretches, const Hist
   const BondFailure* const bonds = model_.failing_bonds();
   if (!bonds) return {};
   History history = initial_history();
+  history.take_contacts(before);
   const std::span<const double> rest = model_.failure_history(before.terms() ? before : history);
   history.replace(model_.slot_of(*bonds), bonds->history_of(bond_stretches, rest));
   for (const auto& term : model_.terms()) term->follow(model_, history);

@@ -54,7 +54,7 @@ def impact(folder):
 def inclined(folder):
     """The plate is eight times as wide as the crack, 20 mm, is long, and elastic."""
     width, half = 0.160, 0.010
-    print("\n| spacings along the crack | mu = 0 | 0.3 | 0.6 |\n|---|---|---|---|")
+    print("\n| spacings along the crack | open, under tension | mu = 0 | 0.3 | 0.6 |\n|---|---|---|---|---|")
     for spacing in (1e-3, 5e-4, 2.5e-4):
         at = [width / 2 + sign * half / 2**0.5 for sign in (-1, 1)]
         changes = [
@@ -67,16 +67,15 @@ def inclined(folder):
             f"crack[0].from=[{at[0]}, {at[0] + spacing / 2}]",
             f"crack[0].to=[{at[1]}, {at[1] + spacing / 2}]",
             "material.damage.law=none",
-            "loading.table=[0, 0.1]",
             "loading.steps=1",
             "solver.mode=newton",
         ]
         ratios = []
-        for friction in (0.0, 0.3, 0.6):
-            rows = run(folder, INCLINED, *changes, f"contact[0].friction={friction}")
-            slip = 2**0.5 * (rows["above_x"][-1] - rows["below_x"][-1])
-            pressure = -rows["reaction_y:top"][-1] / width / 1e-3
-            ratios.append(slip / (4 * 0.5 * (1 - friction) * pressure * half / 3e9))
+        for load, friction in ((-0.1, 0.0), (0.1, 0.0), (0.1, 0.3), (0.1, 0.6)):
+            rows = run(folder, INCLINED, *changes, f"loading.table=[0, {load}]", f"contact[0].friction={friction}")
+            slip = sum(rows[f"above_{c}"][-1] - rows[f"below_{c}"][-1] for c in "xy") / 2**0.5
+            stress = rows["reaction_y:top"][-1] / width / 1e-3
+            ratios.append(slip / (4 * 0.5 * (1 - friction) * stress * half / 3e9))
         print(f"| {2 * half / spacing:.0f} | " + " | ".join(f"{ratio:.3f}" for ratio in ratios) + " |", flush=True)
 
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "src/conditions/slip.hpp"
+#include "src/core/types.hpp"
 
 namespace peristat {
 
@@ -26,8 +27,8 @@ class History {
     return *terms_[term];
   }
 
-  /// Number that differs between histories that leave other integrities to bonds: equal ones leave
-  /// the same.
+  /// Number that differs between histories that leave other integrities to bonds, or other facets:
+  /// equal ones leave the same.
   [[nodiscard]] std::uint64_t version() const { return version_; }
   /// To be called after integrities have changed in the arrays that `change` returns.
   void note_damage() { version_ = next_version(); }
@@ -55,6 +56,23 @@ class History {
     slips_[std::size_t(of)] = std::make_shared<const Slips>(std::move(slips));
   }
 
+  /// Facets of the surface that have torn, ascending.
+  [[nodiscard]] std::span<const Index> torn_facets() const {
+    if (!torn_facets_) return {};
+    return *torn_facets_;
+  }
+  void replace_torn_facets(std::vector<Index> facets) {
+    torn_facets_ = std::make_shared<const std::vector<Index>>(std::move(facets));
+    note_damage();
+  }
+
+  /// Takes what another history knows of contacts.
+  void take_contacts(const History& from) {
+    slips_ = from.slips_;
+    torn_facets_ = from.torn_facets_;
+    note_damage();
+  }
+
  private:
   static std::uint64_t next_version() {
     static std::atomic<std::uint64_t> last = 0;
@@ -64,6 +82,7 @@ class History {
   std::uint64_t version_ = 0;
   std::vector<std::shared_ptr<std::vector<double>>> terms_;
   std::array<std::shared_ptr<const Slips>, all_rubs.size()> slips_;  // null: none
+  std::shared_ptr<const std::vector<Index>> torn_facets_;            // null: none
 };
 
 }  // namespace peristat

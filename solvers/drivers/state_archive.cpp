@@ -57,12 +57,15 @@ Slips slips_of(std::span<const double> numbers) {
   return slips;
 }
 
-void transfer_slips(StateArchive& archive, const std::string& name, History& history) {
+void transfer_contacts(StateArchive& archive, const std::string& name, History& history) {
   for (const Rub rub : all_rubs) {
     std::vector<double> numbers = numbers_of(history.slips(rub));
     archive.transfer(name + "/slips_" + std::to_string(int(rub)), numbers, Rows::whole);
     if (!numbers.empty()) history.replace_slips(slips_of(numbers), rub);
   }
+  std::vector<double> torn(history.torn_facets().begin(), history.torn_facets().end());
+  archive.transfer(name + "/torn_facets", torn, Rows::whole);
+  if (!torn.empty()) history.replace_torn_facets({torn.begin(), torn.end()});
 }
 
 void transfer_history(StateArchive& archive, const std::string& name, History& history) {
@@ -74,7 +77,7 @@ void transfer_history(StateArchive& archive, const std::string& name, History& h
     archive.transfer(name + "/history_" + std::to_string(k), values, Rows::histories);
     history.replace(term, std::move(values));
   }
-  transfer_slips(archive, name, history);
+  transfer_contacts(archive, name, history);
 }
 
 void transfer_ledger(StateArchive& archive, PathLedger& ledger) {

@@ -57,14 +57,14 @@ class FaceContactTest(Folder):
         return verification
 
     def test_every_state_is_an_equilibrium_of_the_reference(self):
-        for pressed in (PRESSED, SLIDING):
+        for pressed, iterations in ((PRESSED, 6), (SLIDING, 8)):
             text = HEAD + FACES + pressed
             folder = self.run_case(text)
             self.assert_verified(text, folder)
             rows = columns(folder)
             self.assertLess(rows["reaction_x:right_end"][1], -1.0)  # pressed
             self.assertLess(abs(rows["reaction_x:right_end"][2]), 1e-6)  # apart
-            self.assertLessEqual(rows["newton_iterations"].max(), 6)
+            self.assertLessEqual(rows["newton_iterations"].max(), iterations)
 
     def test_a_closed_cut_is_as_stiff_as_with_points(self):
         pressed = PRESSED.replace('"2e-6*load"', "0")
@@ -73,7 +73,9 @@ class FaceContactTest(Folder):
 
     def test_a_bar_in_space_and_its_stress(self):
         text = IN_SPACE.replace('"2e-6*load", 0', '"3e-4*load", "2e-4*load"') + "[output]\nstress = true\n"
-        text = text.replace("softness = 1e-5", 'softness = 1e-5\nshape = "faces"')
+        text = text.replace("softness = 1e-5", 'softness = 1e-5\nshape = "faces"').replace("[0, -1, 0.5, -3]", "[0, -1, -2]")
+        # Squares of a lattice have two diagonals, and the reference may take the other one.
+        text = text.replace("horizon_ratio = 3.015\n", "horizon_ratio = 2.015\nperturbation = 0.02\n", 1)
         folder = self.run_case(text)
         verification = self.assert_verified(text, folder)
         mechanics, last = verification.mechanics, verification.results.steps[-1]
@@ -114,7 +116,7 @@ class FaceContactTest(Folder):
         self.assertLess(abs(rows["balance_error"][-1]), 1e-3 * rows["dissipated_energy"][-1])
         # Rows of points climb over one another: they hold at the same slope without any friction.
         points = columns(self.run_case(BODIES, "contact[0].shape=points", "contact[0].friction=0", "loading.table=[0, 0.1]"))
-        self.assertLess(points["block_x"][-1], 5e-4)
+        self.assertLess(points["block_x"][-1], 1e-3)
         smooth = columns(self.run_case(BODIES, "contact[0].friction=0", "loading.table=[0, 0.001]", "loading.steps=1"))
         numpy.testing.assert_allclose(smooth["block_x"][-1], 0.001 * WEIGHT / SPRING, rtol=2e-2)
 
@@ -128,14 +130,24 @@ class FaceContactTest(Folder):
         numpy.testing.assert_allclose(one["block_x"], two["block_x"], rtol=1e-5, atol=1e-15)
 
     def test_slip_of_an_inclined_crack(self):
-        """Halfway along the crack, beside 4 tau a / E of an infinite plate; the plate is four times as wide as the crack."""
-        for friction in (0.0, 0.3, 0.6):
+        """Halfway along the crack: that of the open crack under tension, times 1 - mu. The open crack's itself is 4 tau a / E
+        of an infinite plate and more, by the softness of faces (benchmarks/RESULTS.md: 1.13 at 20 spacings, and falling)."""
+
+        def slip(load, friction):
             rows = columns(self.run_case(INCLINED, f"contact[0].friction={friction}", "loading.steps=1",
-                                         "material.damage.law=none", "loading.table=[0, 0.1]"))  # fmt: skip
-            slip = sum(rows[f"below_{c}"][-1] - rows[f"above_{c}"][-1] for c in "xy") / 2**0.5
-            stress = -rows["reaction_y:top"][-1] / 0.080 / 1e-3
-            exact = 4 * 0.5 * (1 - friction) * stress * 0.010 / 3e9
-            self.assertAlmostEqual(slip / exact, 1.0, delta=0.08)
+                                         "material.damage.law=none", f"loading.table=[0, {load}]"))  # fmt: skip
+            self.assertLessEqual(rows["newton_iterations"].max(), 6 if friction == 0 else 12)
+            moved = sum(rows[f"above_{c}"][-1] - rows[f"below_{c}"][-1] for c in "xy") / 2**0.5
+            stress = rows["reaction_y:top"][-1] / 0.080 / 1e-3
+            return moved / (4 * 0.5 * stress * 0.010 / 3e9)
+
+        open_crack = slip(-0.1, 0.0)
+        self.assertAlmostEqual(open_crack, 1.12, delta=0.03)
+        # The strip between the two rows shears by the friction, (mu / G + 2 mu / E) times half of the pressure.
+        for friction, shear in ((0.0, 0.0), (0.3, 0.035), (0.6, 0.120)):
+            ratio = slip(0.1, friction) / (1 - friction) / open_crack
+            self.assertGreater(ratio, 1.0)
+            self.assertLess(ratio, 1.02 + shear)
 
     def test_refused(self):
         text = HEAD + FACES + PRESSED

@@ -6,10 +6,12 @@ from tests.reference.body import pairs_within
 from tests.reference.face_contact import FaceContact
 
 
+NODES, WEIGHTS = numpy.polynomial.legendre.leggauss(60)
+
+
 def law(x, bend):
     """b and b', by quadrature of b' = s / (1 - s): the closed forms of the program are not used."""
     value, first = numpy.zeros_like(x), numpy.zeros_like(x)
-    nodes, weights = numpy.polynomial.legendre.leggauss(60)
 
     def slope(depth):
         s = numpy.where(depth.real <= bend, depth**2 / (2 * bend), depth - bend / 2)
@@ -20,8 +22,8 @@ def law(x, bend):
     first[touches] = slope(depth)
     in_onset = numpy.where(depth.real < bend, depth, bend)
     for begin, end in ((0 * depth, in_onset), (in_onset, depth)):
-        at = begin[:, None] + (end - begin)[:, None] * (nodes + 1) / 2
-        value[touches] += (end - begin) / 2 * (slope(at) * weights).sum(axis=1)
+        at = begin[:, None] + (end - begin)[:, None] * (NODES + 1) / 2
+        value[touches] += (end - begin) / 2 * (slope(at) * WEIGHTS).sum(axis=1)
     return value, first
 
 

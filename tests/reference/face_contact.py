@@ -43,6 +43,7 @@ class FaceContact:
         for number, facet in enumerate(self.facets):
             for corner in facet:
                 self.at_corner[corner].append(number)
+        self.sides = {id(table): [side.tolist() for side in pairs.sides(table)] for table in pairs.tables}
         self.facing = []  # point, table, d, k, its facets
         for table in pairs.tables:
             if table.get("shape") != "faces":
@@ -53,7 +54,8 @@ class FaceContact:
                     continue
                 distance = table.get("distance", size[point])
                 facets = [f for f, facet in enumerate(self.facets) if self.touches(point, facet, table)]
-                near = [self.distance(point, self.facets[f], numpy.zeros_like(self.body.reference))[0] for f in facets]
+                rest = numpy.zeros_like(self.body.reference)
+                near = [self.distance(point, self.facets[f], rest)[0] for f in self.within(point, facets, rest, distance)]
                 opposite = other if one[point] else one
                 modulus = pairs.modulus[point]
                 if "with" in table:
@@ -62,6 +64,15 @@ class FaceContact:
                 section = {2: self.body.cross_section * size[point], 3: size[point] ** 2}[self.dimension]
                 gap = min([distance, *near])
                 self.facing.append((point, table, gap, table.get("stiffness", 1.0) * modulus * section / gap / 2, facets))
+
+    def within(self, point, facets, u, distance):
+        """Those of the facets that may be within a distance of a point."""
+        if not facets:
+            return []
+        place = (self.body.reference + u).real
+        corners = place[numpy.array(self.facets)[facets]]
+        outside = numpy.maximum(corners.min(axis=1) - place[point], place[point] - corners.max(axis=1))
+        return numpy.array(facets)[(outside <= distance * (1 + 1e-9)).all(axis=1)].tolist()
 
     def bonded(self, i, j):
         return min(i, j) * len(self.pairs.size) + max(i, j) in self.body.bond_number
@@ -87,7 +98,7 @@ class FaceContact:
         return sorted(facet for facet, count in times.items() if count == 1)
 
     def touches(self, point, facet, table):
-        one, other = self.pairs.sides(table)
+        one, other = self.sides[id(table)]
         across = all((one[point] and other[k]) or (other[point] and one[k]) for k in facet)
         return across and point not in facet and not any(self.bonded(point, k) for k in facet)
 
@@ -99,8 +110,10 @@ class FaceContact:
     def left_to_pairs(self, i, j, table, integrity):
         """Share of the contact of each pair of points without a bond that is not that of faces."""
         share, whole = numpy.ones(len(i)), self.whole(integrity)
+        if table.get("shape") != "faces":
+            return share
         for k, ends in enumerate(zip(i.tolist(), j.tolist())):
-            if table.get("shape") != "faces" or self.bonded(*ends):
+            if self.bonded(*ends):
                 continue
             taken = [
                 point in self.at_corner and any(whole[f] and self.touches(point, self.facets[f], table) for f in self.at_corner.get(corner, []))
@@ -121,11 +134,7 @@ class FaceContact:
         """Parts that press: point, corners, weights, energy, force on the point."""
         found, whole = [], self.whole(integrity)
         for point, table, gap, stiffness, facets in self.facing:
-            place = (self.body.reference + u).real
-            reach = 3 * gap + 2 * self.pairs.size.max()
-            near = [
-                f for f in facets if whole[f] and abs(place[list(self.facets[f])] - place[point]).max() < reach
-            ]
+            near = [f for f in self.within(point, facets, u, gap) if whole[f]]
             coefficients = {}
             for size in range(self.dimension, 0, -1):
                 parts = {part for f in near for part in itertools.combinations(self.facets[f], size)}
@@ -139,9 +148,10 @@ class FaceContact:
                 rest = -weights @ (self.body.reference[list(part)] - self.body.reference[point])
                 change = ((arm - rest) * (arm + rest)).sum()
                 overlap = (gap**2 - (rest**2).sum() - change) / (gap + distance)
+                if coefficient == 0 or not overlap.real > 0:
+                    continue
                 value, first = law(numpy.atleast_1d(overlap / deepest), bend)
-                if coefficient and abs(value[0]) > 0:
-                    energy = coefficient * stiffness * deepest**2 * value[0]
-                    force = coefficient * stiffness * deepest * first[0] / distance * arm
-                    found.append((point, part, weights, energy, force))
+                energy = coefficient * stiffness * deepest**2 * value[0]
+                force = coefficient * stiffness * deepest * first[0] / distance * arm
+                found.append((point, part, weights, energy, force))
         return found

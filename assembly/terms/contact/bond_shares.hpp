@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <span>
 
 #include "assembly/energy/history.hpp"
@@ -8,12 +7,6 @@
 #include "assembly/terms/model.hpp"
 
 namespace peristat {
-
-/// Side of a facet.
-struct FacetSide {
-  std::size_t facet = 0;
-  Offset bond = -1;
-};
 
 /// Calls visit(item, 1 - T) for each item whose bond has lost integrity; without a bond, -1, all is
 /// lost.

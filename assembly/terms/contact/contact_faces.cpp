@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t points_per_part = 512;
 
 /// Share of its integrity that a bond must have lost for the facets beside it to be gone.
-constexpr double torn = 0.5;
+constexpr double torn_share = 0.5;
 
 /// Box of a set of points and of their ways.
 struct WayBox {
@@ -126,19 +126,30 @@ void ContactFaces::find_facing() {
   }
 }
 
-std::vector<char> ContactFaces::whole(const Model& model, const History& history) const {
+std::vector<char> ContactFaces::whole(const History& history) const {
   std::vector<char> whole(facets_.size(), 1);
-  std::vector<FacetSide> sides;
+  for (const Index facet : history.torn_facets()) whole[std::size_t(facet)] = 0;
+  return whole;
+}
+
+std::vector<Index> ContactFaces::torn(const Model& model, const History& history) const {
+  struct Side {
+    Index facet;
+    Offset bond;
+  };
+  std::vector<Side> sides;
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     for (const Offset bond : facets_[f].bond) {
-      if (bond >= 0) sides.push_back({f, bond});
+      if (bond >= 0) sides.push_back({Index(f), bond});
     }
   }
-  for_each_lost_share(model, history, std::span<const FacetSide>(sides),
-                      [&](const FacetSide& side, double lost) {
-                        if (lost > torn) whole[side.facet] = 0;
-                      });
-  return whole;
+  std::vector<Index> torn(history.torn_facets().begin(), history.torn_facets().end());
+  for_each_lost_share(model, history, sides, [&](const Side& side, double lost) {
+    if (lost > torn_share) torn.push_back(side.facet);
+  });
+  std::ranges::sort(torn);
+  torn.erase(std::ranges::unique(torn).begin(), torn.end());
+  return torn;
 }
 
 bool ContactFaces::touches(Index point, const Facet& facet, std::size_t rule) const {

@@ -56,8 +56,11 @@ class ContactFaces {
   [[nodiscard]] std::size_t facets() const { return facets_.size(); }
   [[nodiscard]] double bytes() const;
 
-  /// Facets that are whole: those of whose sides no bond has lost more than half of its integrity.
-  [[nodiscard]] std::vector<char> whole(const Model& model, const History& history) const;
+  /// Facets that a history leaves whole.
+  [[nodiscard]] std::vector<char> whole(const History& history) const;
+  /// Facets that have torn: those that had already, and those with a side whose bond has lost more
+  /// than half of its integrity.
+  [[nodiscard]] std::vector<Index> torn(const Model& model, const History& history) const;
 
   /// Share of the contact of two points that no bond has joined that is left to the pair: a half
   /// for each of them that does not touch a whole facet of the other.

@@ -35,8 +35,9 @@ class FaceContactPasses : public TermPasses, BlockTangent {
         faces_(term.contacts().faces),
         points_(setting.points),
         pattern_(setting.pattern),
-        near_(pairs_, faces_, setting.model, setting.workspace.threads()),
-        near_foreseen_(pairs_, faces_, setting.model, setting.workspace.threads()),
+        model_(setting.model),
+        near_(pairs_, faces_, setting.workspace.threads()),
+        near_foreseen_(pairs_, faces_, setting.workspace.threads()),
         friction_(points_.dimension),
         rows_(points_.count()) {
     for (const PairContactRule& rule : pairs_.rules()) {
@@ -80,8 +81,16 @@ class FaceContactPasses : public TermPasses, BlockTangent {
       dissipated = now.dissipated;
       history.replace_slips(std::move(now.slips), Rub::faces);
     }
+    std::vector<Index> torn = faces_.torn(model_, history);
+    const bool tears = torn.size() > history.torn_facets().size();
+    if (tears) {  // pairs of points take the place of the facets: what these stored is set free
+      dissipated += this->gradient(at, {}, Write::over).energy;
+      history.replace_torn_facets(std::move(torn));
+    }
     Evaluation found = this->gradient(at, gradient, how);
+    if (tears) dissipated -= found.energy;
     found.released += dissipated;
+    found.moves_equilibrium = tears;
     return found;
   }
 
@@ -453,6 +462,7 @@ class FaceContactPasses : public TermPasses, BlockTangent {
   const ContactFaces& faces_;
   const Points& points_;
   const BlockPattern& pattern_;
+  const Model& model_;
   NearFaces near_, near_foreseen_;
   PointFriction friction_;
   ContactRows rows_;

@@ -24,7 +24,7 @@ FacetArms moved(const FacetArms& arms, const FacetArms& by, double time) {
 void NearFaces::find_whole(const History& history) {
   if (version_ == history.version()) return;
   version_ = history.version();
-  std::vector<char> now = faces_.whole(model_, history);
+  std::vector<char> now = faces_.whole(history);
   if (now != whole_) found_at_.clear();
   whole_ = std::move(now);
 }

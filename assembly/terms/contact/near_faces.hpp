@@ -14,8 +14,8 @@ namespace peristat {
 class NearFaces {
  public:
   /// All arguments outlive it.
-  NearFaces(const ContactPairs& pairs, const ContactFaces& faces, const Model& model, int threads)
-      : pairs_(pairs), faces_(faces), model_(model), threads_(threads) {}
+  NearFaces(const ContactPairs& pairs, const ContactFaces& faces, int threads)
+      : pairs_(pairs), faces_(faces), threads_(threads) {}
 
   /// @param displacement finite
   [[nodiscard]] const FacingPoints& at(std::span<const double> displacement,
@@ -43,7 +43,6 @@ class NearFaces {
 
   const ContactPairs& pairs_;
   const ContactFaces& faces_;
-  const Model& model_;
   int threads_;
   std::vector<double> found_at_;
   FacingPoints near_;

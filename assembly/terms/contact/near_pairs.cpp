@@ -59,7 +59,7 @@ std::span<const NearPairs::Open> NearPairs::found_at(std::span<const double> dis
 void NearPairs::find_whole(const History& history) {
   if (whole_for_ == history.version()) return;
   whole_for_ = history.version();
-  whole_ = faces_.whole(model_, history);
+  whole_ = faces_.whole(history);
 }
 
 double NearPairs::share(const ContactPair& pair, const History& history) {
