@@ -62,6 +62,7 @@ class FaceContactPasses : public TermPasses, BlockTangent {
     }) || found.degenerate;
     for_each_rubbing(at, [&](const PointFriction::Rubbing& rubbing) {
       found.energy += rubbing.energy;
+      found.round_off += rubbing.round_off;
       if (gradient.empty()) return;
       add_to(rubbing.slip.point, 1.0, rubbing.force, gradient);
       for (const auto& [partner, share] : rubbing.slip.partners) {

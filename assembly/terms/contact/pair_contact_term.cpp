@@ -61,6 +61,7 @@ class PairContactPasses : public TermPasses, BlockTangent {
     }) || found.degenerate;
     for_each_rubbing(at, [&](const PointFriction::Rubbing& rubbing) {
       found.energy += rubbing.energy;
+      found.round_off += rubbing.round_off;
       for (std::size_t c = 0; c < std::size_t(points_.dimension) && !gradient.empty(); ++c) {
         gradient[place_of(rubbing.slip.point) + c] -= rubbing.force[c];
         gradient[place_of(partner(rubbing)) + c] += rubbing.force[c];

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -34,6 +36,7 @@ class PointFriction {
     double energy = 0.0;                    ///< D [J]
     double stiffness = 0.0, sliding = 0.0;  ///< [N/m]; 1 if it slides, otherwise 0
     Coordinates direction{};                ///< y / |y|
+    double round_off = 0.0;                 ///< of the energy [J]
 
     /// Entry of d2D/dX2 = stiffness (P - sliding y y^T / |y|^2). The projection takes its share of
     /// the second part away: where all points slide nothing else resists.
@@ -54,9 +57,11 @@ class PointFriction {
       const double size = length(y), bearable = limit / slip.stiffness;
       const bool slides = size > bearable;
       const Coordinates direction = size > 0.0 ? scaled(1.0 / size, y) : Coordinates{};
-      visit(Rubbing{slip, scaled(-(slides ? limit : slip.stiffness * size), direction),
+      const double force = slides ? limit : slip.stiffness * size;
+      visit(Rubbing{slip, scaled(-force, direction),
                     slides ? limit * (size - 0.5 * bearable) : 0.5 * slip.stiffness * size * size,
-                    slides ? limit / size : slip.stiffness, slides ? 1.0 : 0.0, direction});
+                    slides ? limit / size : slip.stiffness, slides ? 1.0 : 0.0, direction,
+                    force * round_off_of_place(slip, displacement)});
     }
   }
 
@@ -86,6 +91,15 @@ class PointFriction {
   /// X [m]
   [[nodiscard]] Coordinates relative(Index point, const std::vector<Slip::Partner>& partners,
                                      std::span<const double> displacement) const;
+  /// Round-off of X [m].
+  [[nodiscard]] double round_off_of_place(const Slip& slip,
+                                          std::span<const double> displacement) const {
+    double largest = 0.0;
+    for (std::size_t c = 0; c < dimension_; ++c) {
+      largest = std::max(largest, std::abs(displacement[std::size_t(slip.point) * dimension_ + c]));
+    }
+    return std::numeric_limits<double>::epsilon() * largest;
+  }
   /// y [m]
   [[nodiscard]] Coordinates slipped(const Slip& slip, std::span<const double> displacement) const {
     const Coordinates moved = minus(relative(slip.point, slip.partners, displacement), slip.start);
