@@ -236,6 +236,16 @@ def curve(steps: list[Step]) -> Iterator[str]:
             yield f"{sum(step.release * step.part for step in inside) / growth:.3f} from {number}"
 
 
+def standard(name: str, steps: int) -> Strip:
+    """The strip that the tables tell."""
+    plain = Strip(name, steps)
+    if plain.kind == "planes":
+        return replace(plain, ratio=2.015, width=1)
+    if plain.dimension == 3:  # A lower strip has to be opened farther until the process zone has developed.
+        return replace(plain, steps=2 * steps, length=26, crack=8, height=14, growing=2 * GROWING_PART, ratio=2.015)
+    return plain
+
+
 def sized(strip: Strip, sizes: list[str]) -> Strip:
     """The strip with values KEY=VALUE in the place of its own."""
     types = {field.name: float if field.type in (float, "float") else int for field in fields(Strip) if field.name not in ("name", "steps")}
@@ -258,10 +268,7 @@ def main() -> None:
     print("| strip, Poisson's ratio | steps | tear / G_c | G / G_c | drained / dissipated | tear (1 + drained / dissipated) / G_c |\n|---|---|---|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory() as name:
         for strip in asked.names:
-            in_space = Strip(strip, 1).dimension == 3
-            # A lower strip has to be opened farther until the process zone has developed.
-            size = {"length": 26, "crack": 8, "height": 14, "growing": 2 * GROWING_PART, "ratio": 2.015} if in_space else {}
-            one = sized(Strip(strip, asked.steps * (1 + in_space), **size), asked.strip)
+            one = sized(standard(strip, asked.steps), asked.strip)
             steps = steps_of(one, asked.work or Path(name))
             if asked.curve:
                 print("G / G_c by growth [spacings]:", ", ".join(curve(steps)))
