@@ -27,6 +27,7 @@ struct DamageGrowth {
 /// Result of a pass over the interactions, beside the arrays that it fills.
 struct Evaluation {
   double energy = 0.0;      ///< [J]
+  double potential = 0.0;   ///< of the forces on obstacles, with which it has the gradient [J]
   bool degenerate = false;  ///< a measure has reached zero, where it has no gradient, or a value is
                             ///< not finite: reject the state
   DamageGrowth growth{};    ///< only from a pass that commits
@@ -44,6 +45,7 @@ struct Evaluation {
   /// Adds what another term has found.
   void operator+=(const Evaluation& other) {
     energy += other.energy;
+    potential += other.potential;
     round_off += other.round_off;
     degenerate |= other.degenerate;
     growth += other.growth;
