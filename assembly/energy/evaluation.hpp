@@ -27,7 +27,6 @@ struct DamageGrowth {
 /// Result of a pass over the interactions, beside the arrays that it fills.
 struct Evaluation {
   double energy = 0.0;      ///< [J]
-  double potential = 0.0;   ///< of the forces on obstacles, with which it has the gradient [J]
   bool degenerate = false;  ///< a measure has reached zero, where it has no gradient, or a value is
                             ///< not finite: reject the state
   DamageGrowth growth{};    ///< only from a pass that commits
@@ -41,6 +40,8 @@ struct Evaluation {
   /// Magnitude of the terms whose difference the energy is, times the unit round-off [J]; 0: the
   /// energy's own round-off suffices.
   double round_off = 0.0;
+  /// Of the forces that drive obstacles [J]: the gradient is that of the energy and this.
+  double potential = 0.0;
 
   /// Adds what another term has found.
   void operator+=(const Evaluation& other) {

@@ -33,7 +33,8 @@ std::vector<ProbeColumns> constraint_columns(const Case& from) {
     }
     for (int c = 0; c < from.dimension; ++c) {
       if (obstacle.displacement[std::size_t(c)] != "free") continue;
-      columns.push_back({column("displacement", c, obstacle.name), 1, "m"});
+      columns.push_back({column("displacement", c, obstacle.name), 1, "m",
+                         "displacement of " + obstacle.name + ", which a force drives"});
     }
   }
   for (const PeriodSpecification& period : from.constraints.periods) {
