@@ -32,7 +32,7 @@ Evaluation sum_of(const Communicator& ranks, const Evaluation& mine) {
   const std::vector<double> sums =
       ranks.sum({mine.energy, mine.round_off, mine.released, double(mine.degenerate),
                  double(mine.moves_equilibrium), double(mine.growth.degrading),
-                 double(mine.growth.breaking), mine.potential});
+                 double(mine.growth.breaking)});
   Evaluation all;
   all.energy = sums[0];
   all.round_off = sums[1];
@@ -40,7 +40,6 @@ Evaluation sum_of(const Communicator& ranks, const Evaluation& mine) {
   all.degenerate = sums[3] > 0.0 || !std::isfinite(all.energy);
   all.moves_equilibrium = sums[4] > 0.0;
   all.growth = {Index(sums[5]), Index(sums[6])};
-  all.potential = sums[7];
   return all;
 }
 

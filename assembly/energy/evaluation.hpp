@@ -40,13 +40,10 @@ struct Evaluation {
   /// Magnitude of the terms whose difference the energy is, times the unit round-off [J]; 0: the
   /// energy's own round-off suffices.
   double round_off = 0.0;
-  /// Of the forces that drive obstacles [J]: the gradient is that of the energy and this.
-  double potential = 0.0;
 
   /// Adds what another term has found.
   void operator+=(const Evaluation& other) {
     energy += other.energy;
-    potential += other.potential;
     round_off += other.round_off;
     degenerate |= other.degenerate;
     growth += other.growth;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "src/conditions/obstacles.hpp"
+#include "src/core/coordinates.hpp"
 #include "src/core/input_error.hpp"
 #include "src/core/number_text.hpp"
 
@@ -39,8 +40,8 @@ Obstacles::Ranges Obstacles::ranges_of(const Obstacle& of, std::span<const doubl
     } else if (shifts) {
       // It is on the side of the point on which it began.
       const bool is_plane = of.surface.kind == RigidSurface::Kind::plane;
-      const bool is_ahead =
-          is_plane ? shifts->last == infinite : reference_[c][*of.free_axis] >= 0.0;
+      const Coordinates arm = minus(reference_[c], of.surface.lever(reference_[c]));
+      const bool is_ahead = is_plane ? shifts->last == infinite : dot(arm, axis) >= 0.0;
       if (is_ahead) {
         range.last = std::min(range.last, shifts->first);
       } else {
@@ -150,6 +151,19 @@ Obstacles::Place Obstacles::place_at(std::size_t obstacle, std::span<const doubl
   const Coordinates given = moved(obstacle, environment);
   if (!obstacles_[obstacle].free_axis) return {given};
   return place_under(force_on(obstacle, environment), obstacles_[obstacle], displacement, given);
+}
+
+double Obstacles::potential(std::span<const double> displacement,
+                            const SharedEnvironment& environment) const {
+  double potential = 0.0;
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const auto& axis = obstacles_[k].free_axis;
+    const double force = force_on(k, environment);
+    if (force != 0.0) {
+      potential -= force * place_at(k, displacement, environment).displacement[*axis];
+    }
+  }
+  return potential;
 }
 
 SharedEnvironment Obstacles::under_forces_of(const SharedEnvironment& forces,

@@ -83,10 +83,9 @@ class Obstacles {
     bool touches = true;         ///< false: it has no force, and gives way to the body
     bool is_borne = true;        ///< false: nowhere do the points bear its force
   };
-  /// What the forces that drive obstacles add to a state.
+  /// Of the forces that drive obstacles at a state.
   struct Driving {
-    double potential = 0.0;  ///< - sum F o [J]
-    double round_off = 0.0;  ///< of that [J]
+    double round_off = 0.0;  ///< of their potential [J]
     bool is_borne = true;    ///< see Place
   };
   /// A contact in a state.
@@ -167,6 +166,10 @@ class Obstacles {
   /// it is at the start, or where the body pushes it.
   [[nodiscard]] Place place_at(std::size_t obstacle, std::span<const double> displacement,
                                const SharedEnvironment& environment) const;
+  /// Potential of the forces that drive obstacles, - sum F o [J]: forces on points are the
+  /// derivative of the contacts' energy and this.
+  [[nodiscard]] double potential(std::span<const double> displacement,
+                                 const SharedEnvironment& environment) const;
   /// Environment with the places of one and the forces on obstacles of another.
   [[nodiscard]] SharedEnvironment under_forces_of(const SharedEnvironment& forces,
                                                   const SharedEnvironment& places) const;
@@ -349,9 +352,8 @@ Obstacles::Driving Obstacles::for_each_pressed(std::span<const double> displacem
     double further = 0.0;
     if (of.free_axis) {
       if (is_foreseen) further = foreseen_way(of, displacement, at, foreseen, there);
-      const double potential = -at.force * (at.displacement[*of.free_axis] + further);
-      driving.potential += potential;
-      driving.round_off += std::numeric_limits<double>::epsilon() * std::abs(potential);
+      driving.round_off += std::numeric_limits<double>::epsilon() *
+                           std::abs(at.force * at.displacement[*of.free_axis]);
     }
     for (std::size_t c = of.first; c < of.last; ++c) {
       const Contact& contact = contacts_[c];

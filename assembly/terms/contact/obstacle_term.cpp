@@ -46,7 +46,6 @@ class ObstaclePasses : public TermPasses, BlockTangent {
         own[c] -= contact.force() * contact.depth.change.gradient[c];
       }
     });
-    found.potential = driving.potential;
     found.round_off += driving.round_off;
     found.degenerate |= !driving.is_borne;
     for_each_rubbing(at, [&](const Rubbing& friction) {
