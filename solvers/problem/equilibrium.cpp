@@ -195,8 +195,9 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
   fold_followers(problem, external_force, trial);
   trial.stored_energy = found.energy;
   trial.energy_round_off = found.round_off;
-  trial.total_energy =
-      found.energy + found.potential - problem.sums().dot(external_force, trial.displacement);
+  const Obstacles& obstacles = problem.conditions.obstacles();
+  trial.total_energy = found.energy + obstacles.potential(trial.displacement, trial.environment) -
+                       problem.sums().dot(external_force, trial.displacement);
   trial.residual_norm = problem.sums().norm_of(problem.free.dof.size(), [&](std::size_t e) {
     const Index dof = problem.free.dof[e];
     return external_force[dof] - trial.gradient[dof];

@@ -89,9 +89,10 @@ class Relaxation {
     at_.stored_energy = found.energy;
     // The work of forces on obstacles is what heating counts, which is of the whole energy, less
     // the change of their potential.
-    if (has_potential_) add_work_of_body(potential_ - found.potential);
+    const double potential = potential_under(at_.environment);
+    if (has_potential_) add_work_of_body(potential_ - potential);
     has_potential_ = true;
-    potential_ = found.potential;
+    potential_ = potential;
     at_.energy_round_off = found.round_off;
     if (!at_.follower_force.empty()) {
       last_follower_force_.swap(at_.follower_force);
@@ -274,10 +275,14 @@ class Relaxation {
     if (problem_.assembler.index_map().is_first_rank()) result_.external_work += work;
   }
 
+  [[nodiscard]] double potential_under(const SharedEnvironment& environment) const {
+    return problem_.conditions.obstacles().potential(at_.displacement, environment);
+  }
+
   [[nodiscard]] double energy_under(const SharedEnvironment& environment) {
     const Evaluation found =
         problem_.assembler.energy({at_.displacement, at_.history, Damage::grows, environment});
-    return found.energy + found.potential;
+    return found.energy + potential_under(environment);
   }
 
   /// Sums over the equations of all ranks.
@@ -360,7 +365,7 @@ class Relaxation {
   double kinetic_energy_ = 0.0, relative_change_ = 1.0;
   double mean_speed_ = 0.0;  // root mean square of the velocities of the last move
   bool has_potential_ = false;
-  double potential_ = 0.0;  // of the forces on obstacles, see Evaluation [J]
+  double potential_ = 0.0;  // Obstacles::potential [J]
   double share_ = 0.0, share_change_ = 0.0;
 };
 

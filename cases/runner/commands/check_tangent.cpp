@@ -472,17 +472,20 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
     throw InputError("", "", "the case has no bonds whose derivatives could be checked");
   }
 
+  const Obstacles& obstacles = body.conditions->obstacles();
   std::vector<double> residual_errors, tangent_errors;
   constexpr int halvings = 20;
   double step = largest_step;
   for (int k = 0; k < halvings; ++k, step *= 0.5) {
     shifted = displacement;
     add_scaled(shifted, step, direction);
-    const double potential_ahead = reduced.gradient(shifted, forward).potential;
+    static_cast<void>(reduced.gradient(shifted, forward));
+    const double potential_ahead = obstacles.potential(shifted, environment);
     const std::vector<double> ahead = reduced.point_energies(shifted);
     shifted = displacement;
     add_scaled(shifted, -step, direction);
-    const double potential_behind = reduced.gradient(shifted, backward).potential;
+    static_cast<void>(reduced.gradient(shifted, backward));
+    const double potential_behind = obstacles.potential(shifted, environment);
     const std::vector<double> behind = reduced.point_energies(shifted);
     // Point by point: differences of the whole energy would be lost in the round-off of its sum.
     double difference = potential_ahead - potential_behind;

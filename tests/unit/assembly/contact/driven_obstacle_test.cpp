@@ -145,7 +145,7 @@ TEST_P(DrivenObstacles, GradientIsDerivativeOfEnergyAndHessianOfGradient) {
       const Evaluation of_state =
           driven.assembler.gradient({place, none, Damage::grows, environment}, found.gradient);
       EXPECT_FALSE(of_state.degenerate);
-      found.energy = of_state.energy + of_state.potential;
+      found.energy = of_state.energy + driven.obstacles.potential(place, environment);
       return found;
     };
     const At here = at(0.0);
