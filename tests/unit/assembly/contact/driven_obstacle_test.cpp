@@ -80,15 +80,15 @@ std::vector<ObstacleSpecification> moved_obstacles(int dimension) {
   ObstacleSpecification plane{.name = "plane"};
   plane.surface = {Kind::plane, {0.0, y, z}, {2.0, 0.0, 0.0}};
   ObstacleSpecification slope{.name = "slope"};
-  slope.surface = {Kind::plane, {-0.03, 0.0, z}, {1.0, 0.2, 0.0}};
+  slope.surface = {Kind::plane, {0.0008, 0.0, z}, {1.0, 0.02, 0.0}};
   const Coordinates axis = unit(Coordinates{0.0, dimension > 2 ? 0.3 : 0.0, 1.0});
   ObstacleSpecification cylinder{.name = "cylinder"};
-  cylinder.surface = {Kind::cylinder, {-0.4, y, z}, axis, 0.4};
+  cylinder.surface = {Kind::cylinder, {-4.0, y, z}, axis, 4.0};
   ObstacleSpecification pipe{.name = "pipe"};
   const double reach = std::sqrt(0.95 * 0.95 - 0.2 * 0.2);
   pipe.surface = {Kind::cylinder, {0.05 + reach, y, z}, {0.0, 0.0, 1.0}, 1.0, true};
   ObstacleSpecification ball{.name = "ball"};
-  ball.surface = {Kind::sphere, {-0.4, y, z}, {}, 0.4};
+  ball.surface = {Kind::sphere, {-4.0, y, z}, {}, 4.0};
   std::vector<ObstacleSpecification> all{plane};
   if (dimension > 1) all.insert(all.end(), {slope, cylinder, pipe});
   if (dimension > 2) all.push_back(ball);
@@ -120,7 +120,7 @@ TEST_P(DrivenObstacles, IsWhereItsForceComesFrom) {
     const auto action = driven.obstacles.actions(u, driven.under(1.0), {}).at(of.name);
     EXPECT_NEAR(action.displacement[0], 3e-3, 1e-14);
     EXPECT_NEAR(action.force[0], force, 1e-12 * force);
-    for (const double share : {1e-12, 1e-6, 0.1, 10.0, 1000.0}) {
+    for (const double share : {1e-12, 1e-6, 0.1, 10.0}) {
       const auto borne = driven.obstacles.actions(u, driven.under(share), {}).at(of.name);
       EXPECT_NEAR(borne.force[0], share * force, 1e-11 * std::max(share, 1.0) * force) << share;
     }
@@ -149,6 +149,8 @@ TEST_P(DrivenObstacles, GradientIsDerivativeOfEnergyAndHessianOfGradient) {
       return found;
     };
     const At here = at(0.0);
+    // A single contact has no stiffness: the obstacle follows its point.
+    const double whole = driven.obstacles.contacts()[0].stiffness * norm(v);
     constexpr double h = 2e-4 * spacing;
     const At ahead = at(h), behind = at(-h), far_ahead = at(2 * h), far_behind = at(-2 * h);
     const double slope =
@@ -162,23 +164,26 @@ TEST_P(DrivenObstacles, GradientIsDerivativeOfEnergyAndHessianOfGradient) {
                       (12.0 * h);
     }
     const StateView view(u, none, Damage::grows, environment);
+    if (GetParam() > 1) {
+      ASSERT_GT(driven.assembler.closed_contacts(view).size(), 1U);
+    }
     driven.assembler.product(view, v, image);
-    EXPECT_LT(tests::distance(difference, image), 1e-8 * norm(image));
+    EXPECT_LE(tests::distance(difference, image), 1e-8 * norm(image) + 1e-12 * whole);
     Tangent tangent(driven.assembler);
     std::vector<double> stored(u.size());
     for (const double projection : {0.0, 0.7, 1.0}) {
       tangent.linearise(driven.assembler, view, projection);
       tangent.multiply(v, stored);
       driven.assembler.product(view, v, image, projection);
-      EXPECT_LT(tests::distance(stored, image), 1e-13 * norm(image)) << projection;
+      EXPECT_LE(tests::distance(stored, image), 1e-15 * whole) << projection;
     }
-    EXPECT_GE(tests::dot(v, stored), 0.0);  // projected
+    EXPECT_GE(tests::dot(v, stored), -1e-15 * whole * norm(v));  // projected
     // A body that moves along the axis takes the obstacle with it.
     std::vector<double> along(u.size(), 0.0);
     for (std::size_t k = 0; k < u.size(); k += std::size_t(GetParam())) along[k] = 1.0;
     driven.assembler.product(view, along, image);
     driven.assembler.product(view, v, stored);
-    EXPECT_LT(norm(image), 1e-12 * norm(stored));
+    EXPECT_LE(norm(image), 1e-14 * whole);
   }
 }
 
@@ -253,15 +258,14 @@ TEST_P(DrivenObstacles, AForceThatNothingBearsIsNoticed) {
 
 INSTANTIATE_TEST_SUITE_P(InDimension, DrivenObstacles, testing::Values(1, 2, 3));
 
-/// A disk in a ring that is open on no side: it is pushed to either, and squeezed.
-TEST(DrivenObstacle, InAPipeIsPushedToEitherSideAndSqueezed) {
+TEST(DrivenObstacle, PipeIsPushedToEitherSideAndSqueezed) {
   ObstacleSpecification pipe{.name = "pipe"};
-  pipe.surface = {Kind::cylinder, {0.2, 0.15, 0.0}, {0.0, 0.0, 1.0}, 0.4, true};
+  pipe.surface = {Kind::cylinder, {0.25, 0.2, 0.0}, {0.0, 0.0, 1.0}, 0.4, true};
   Driven driven(2, {driven_by(pipe, 1e-3)});
   const auto at = [&](double stretch, double load) {
     std::vector<double> u(driven.body.dofs(), 0.0);
     for (std::size_t k = 0; k < u.size(); k += 2) {
-      u[k] = stretch * (driven.body.points.reference[k] - 0.2);
+      u[k] = stretch * (driven.body.points.reference[k] - 0.25);
     }
     return driven.obstacles.actions(u, driven.under(load), {}).at("pipe");
   };
@@ -271,11 +275,11 @@ TEST(DrivenObstacle, InAPipeIsPushedToEitherSideAndSqueezed) {
   EXPECT_EQ(at(0.0, 0.0).displacement[0], 0.0);
   EXPECT_EQ(at(0.0, 0.0).force[0], 0.0);
   // Larger than the pipe: both sides press, and without a force as much.
-  const auto squeezed = at(0.55, 0.0);
+  const auto squeezed = at(0.6, 0.0);
   EXPECT_NEAR(squeezed.displacement[0], 0.0, 1e-12);
   EXPECT_NEAR(squeezed.force[0], 0.0, 1e-12);
-  EXPECT_NEAR(at(0.55, 1.0).force[0], 1e-3, 1e-12);
-  EXPECT_GT(at(0.55, 1.0).displacement[0], 0.0);
+  EXPECT_NEAR(at(0.6, 1.0).force[0], 1e-3, 1e-12);
+  EXPECT_GT(at(0.6, 1.0).displacement[0], 0.0);
 }
 
 /// Springs in a line: the work of a force is the energy that they store.
@@ -306,7 +310,7 @@ TEST(DrivenObstacle, BadOnesAreRefused) {
     ObstacleSpecification of = driven_by(moved_obstacles(dimension)[which], 1.0);
     change(of);
     try {
-      Driven(dimension, {of}).under(1.0);
+      static_cast<void>(Driven(dimension, {of}).under(1.0));
     } catch (const InputError& error) {
       return error.key();
     }
