@@ -85,8 +85,8 @@ std::vector<ObstacleSpecification> moved_obstacles(int dimension) {
   ObstacleSpecification cylinder{.name = "cylinder"};
   cylinder.surface = {Kind::cylinder, {-4.0, y, z}, axis, 4.0};
   ObstacleSpecification pipe{.name = "pipe"};
-  const double reach = std::sqrt(0.95 * 0.95 - 0.2 * 0.2);
-  pipe.surface = {Kind::cylinder, {0.05 + reach, y, z}, {0.0, 0.0, 1.0}, 1.0, true};
+  const double reach = std::sqrt(0.95 * 0.95 - 0.15 * 0.15);
+  pipe.surface = {Kind::cylinder, {0.05 + reach, 0.2, z}, {0.0, 0.0, 1.0}, 1.0, true};
   ObstacleSpecification ball{.name = "ball"};
   ball.surface = {Kind::sphere, {-4.0, y, z}, {}, 4.0};
   std::vector<ObstacleSpecification> all{plane};
