@@ -26,7 +26,7 @@ name = "pin"
 shape = "cylinder"
 point = [8e-3, 8e-3]
 radius = 4e-3
-displacement = ["-0.6e-3*load", 0]
+displacement = ["-0.2e-3*load", 0]
 """
 BEAM = """\
 dimension = 2
