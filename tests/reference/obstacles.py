@@ -30,6 +30,7 @@ def law(x, bend):
 class Obstacles:
     def __init__(self, case, conditions):
         self.case, self.conditions, self.tables = case, conditions, case.get("obstacle")
+        self.places = {}  # of obstacles that a force drives, which are costly to find
         if not self.tables:
             return
         dimension = conditions.reference.shape[1]
@@ -54,7 +55,12 @@ class Obstacles:
     def moved(self, table, load, displacement):
         """Displacement of the obstacle, which depends on that of the points where a force drives it."""
         given = self.given(table, load)
-        return self.driven(table, displacement.real, load, given)[0] if "force" in table else given
+        if "force" not in table:
+            return given
+        key = table["name"], displacement.real.tobytes(), self.value(table["force"], load), given.tobytes()
+        if key not in self.places:
+            self.places = dict(list(self.places.items())[-50:]) | {key: self.driven(table, displacement.real, load, given)[0]}
+        return self.places[key]
 
     def driven(self, table, displacement, load, given):
         """Place at which the points bear the force, and where it touches them under a force of this sign. By steps of an
