@@ -45,6 +45,8 @@ class Obstacles:
         self.stiffness = modulus * case.cross_section * size ** (dimension - 1) / self.distance
 
     def value(self, text, load):
+        if load is None:  # before the loads at load 0 are applied
+            return 0.0
         place = numpy.zeros((1, self.conditions.reference.shape[1]))
         return float(numpy.ravel(evaluate(text, place, load, self.conditions.spacing))[0])
 
