@@ -538,7 +538,9 @@ class Obstacle(Table):
     inside: bool
     """`cylinder`, `sphere`: the body is inside of it. Default: false. Allowed: true, false"""
     displacement: List
-    """displacement of the obstacle, per component [m]. Default: `['0', '0']`. Allowed: number or expression of `load` (`t`) alone"""
+    """displacement of the obstacle, per component; `'free'` for the one along which a force drives it [m]. Default: `['0', '0']`. Allowed: number or expression of `load` (`t`) alone, or `'free'`"""
+    force: Expression
+    """force that drives the obstacle along the component of its displacement that is `'free'`, and that it exerts on the body [N]. none; required if a component is `'free'`. Allowed: number, or expression of `load` alone"""
     stiffness: float
     """stiffness of the contact relative to that of the point's cell, Young's modulus times its section over half a spacing. Default: 1. Allowed: positive"""
     depth: float
@@ -786,7 +788,7 @@ class CaseTable(Table):
     def add_contact(self, *, set: str = ..., with_: str = ..., shape: Literal["points", "faces"] = ..., distance: Quantity = ..., stiffness: float = ..., depth: float = ..., softness: float = ..., friction: float = ..., tangential_stiffness: float = ...) -> Contact: ...
     contact: Array[Contact]
     """tables: contact of points that no whole bond joins. Default: none"""
-    def add_obstacle(self, *, name: str = ..., set: str = ..., shape: Literal["plane", "cylinder", "sphere"] = ..., point: List = ..., normal: List = ..., axis: List = ..., radius: Quantity = ..., inside: bool = ..., displacement: List = ..., stiffness: float = ..., depth: float = ..., softness: float = ..., friction: float = ..., tangential_stiffness: float = ...) -> Obstacle: ...
+    def add_obstacle(self, *, name: str = ..., set: str = ..., shape: Literal["plane", "cylinder", "sphere"] = ..., point: List = ..., normal: List = ..., axis: List = ..., radius: Quantity = ..., inside: bool = ..., displacement: List = ..., force: Expression = ..., stiffness: float = ..., depth: float = ..., softness: float = ..., friction: float = ..., tangential_stiffness: float = ...) -> Obstacle: ...
     obstacle: Array[Obstacle]
     """tables: rigid bodies that press on points. Default: none"""
     def add_eigenstrain(self, *, set: str = ..., strain: Expression = ...) -> Eigenstrain: ...

@@ -342,7 +342,9 @@ void refuse_without_ranks(const BodySpecification& of) {
   if (!of.controls.empty()) refuse("controls");
   if (!of.contacts.empty()) refuse("contacts");
   for (std::size_t k = 0; k < of.obstacles.size(); ++k) {
-    if (of.obstacles[k].friction > 0.0) refuse("obstacles[" + std::to_string(k) + "].friction");
+    const std::string table = "obstacles[" + std::to_string(k) + "]";
+    if (of.obstacles[k].friction > 0.0) refuse(table + ".friction");
+    if (!of.obstacles[k].force.empty()) refuse(table + ".force");
   }
   if (cuts_struts(of)) refuse("damage.struts");
   for (std::size_t k = 0; k < of.loads.size(); ++k) {

@@ -77,8 +77,10 @@ std::vector<std::string> describe_constraints(const Body& body) {
   }
   for (const Obstacles::Obstacle& of : body.conditions->obstacles().all()) {
     constexpr std::array kinds{"plane", "cylinder", "sphere"};
-    lines.push_back(fmt::format("{}: a {} that {} points may touch", of.name,
-                                kinds[std::size_t(of.surface.kind)], of.last - of.first));
+    const std::string driven =
+        of.free_axis ? fmt::format(", driven along {} by a force", "xyz"[*of.free_axis]) : "";
+    lines.push_back(fmt::format("{}: a {} that {} points may touch{}", of.name,
+                                kinds[std::size_t(of.surface.kind)], of.last - of.first, driven));
   }
   if (const auto* const contact = body.model.find<PairContactTerm>()) {
     const std::vector<ContactPair> near =

@@ -130,6 +130,10 @@ std::string complete(Path& path, Attempt& attempt, FoundStep& found) {
                                       assembler.has_potential() && attempt.largest_residual >= 0.0;
   if (!found.energies.intact) {
     found.energies.heating = heating_work(assembler, path.state().accepted, attempt.state.at());
+  } else {  // obstacles that a force drives have moved since
+    const StateView intact(found.energies.intact->displacement, attempt.state.history, Damage::held,
+                           attempt.state.environment);
+    found.energies.heating += assembler.work_of_obstacles(intact, attempt.state.at());
   }
   found.ledger =
       ledger.with_step(path.problem().sums(), path.state().accepted.displacement, attempt.state,

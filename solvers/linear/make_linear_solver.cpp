@@ -335,6 +335,17 @@ bool can_be_matrix_free(const LinearSolverOptions& options) {
          options.preconditioner != PreconditionerKind::multigrid;
 }
 
+namespace {
+
+/// The solver that is asked for, on a ladder without others: contacts change the pattern, which is
+/// then analysed anew.
+std::unique_ptr<LinearSolver> alone(std::function<std::unique_ptr<LinearSolver>()> make) {
+  return std::make_unique<SolverLadder>(
+      std::vector<SolverLadder::Rung>{{"the solver", std::move(make)}}, nullptr);
+}
+
+}  // namespace
+
 ChosenSolver make_linear_solver(const LinearSolverOptions& options, const LinearProblem& problem,
                                 SolverLadder::Reporter tell) {
   if (!problem.is_symmetric) return make_unsymmetric_solver(options, problem, std::move(tell));
@@ -344,16 +355,20 @@ ChosenSolver make_linear_solver(const LinearSolverOptions& options, const Linear
   }
   switch (options.method) {
     case LinearMethod::cholesky:
-      return {std::make_unique<Cholesky>(FactorReuse{}, problem.available_bytes), true,
-              Seconds(problem).direct, "as the case asks"};
+      return {alone([available = problem.available_bytes] {
+                return std::make_unique<Cholesky>(FactorReuse{}, available);
+              }),
+              true, Seconds(problem).direct, "as the case asks"};
     case LinearMethod::ldlt:
-      return {std::make_unique<Ldlt>(), true, Seconds(problem).direct,
+      return {alone([] { return std::make_unique<Ldlt>(); }), true, Seconds(problem).direct,
               "it handles the negative pivots beyond a limit point, and counts them"};
     case LinearMethod::conjugate_gradients:
     case LinearMethod::minres:
     case LinearMethod::gmres:
-      return {make_iterative(options.preconditioner, most_iterations, problem.box,
-                             krylov_method(options.method), *problem.index_map),
+      return {alone([options, box = problem.box, &index_map = *problem.index_map] {
+                return make_iterative(options.preconditioner, most_iterations, box,
+                                      krylov_method(options.method), index_map);
+              }),
               false, Seconds(problem).iterative, "as the case asks"};
     case LinearMethod::automatic:
     case LinearMethod::lu:

@@ -73,7 +73,7 @@ std::string explanation(Outcome outcome) {
       return "no step along the Newton direction lowers the energy";
     case Outcome::degenerate:
       return "bonds collapse to zero length, points go too deep into what they touch or through "
-             "it, or values are not finite";
+             "it, no place of an obstacle bears its force, or values are not finite";
     case Outcome::out_of_memory:
       return "the factorisation does not fit in memory";
     case Outcome::linear_solver_inaccurate:
@@ -153,7 +153,9 @@ double heating_work(Assembler& assembler, const StateView& from, const StateView
   const bool is_same = before == after || (before && after && *before == *after);
   // Points of this rank may see no change where those of other ranks do.
   const Sums sums(assembler.index_map(), assembler.points().dimension);
-  if (sums.largest_of_all(is_same ? 0.0 : 1.0) == 0.0) return 0.0;
+  // Obstacles that a force drives move under a constant one, too.
+  const double of_obstacles = assembler.work_of_obstacles(from, to);
+  if (sums.largest_of_all(is_same ? 0.0 : 1.0) == 0.0) return of_obstacles;
   const auto added_at = [&](const StateView& at) {
     const auto energy_under = [&](const SharedEnvironment& environment) {
       StateView view(at.displacement, at.history, Damage::held, environment);
@@ -162,7 +164,7 @@ double heating_work(Assembler& assembler, const StateView& from, const StateView
     };
     return energy_under(after) - energy_under(before);
   };
-  return 0.5 * (added_at(from) + added_at(to)) + assembler.work_of_obstacles(from, to);
+  return 0.5 * (added_at(from) + added_at(to)) + of_obstacles;
 }
 
 double environment_norm(const EquilibriumProblem& problem, const StateView& at,
@@ -193,7 +195,9 @@ void evaluate(const EquilibriumProblem& problem, std::span<const double> externa
   fold_followers(problem, external_force, trial);
   trial.stored_energy = found.energy;
   trial.energy_round_off = found.round_off;
-  trial.total_energy = found.energy - problem.sums().dot(external_force, trial.displacement);
+  const Obstacles& obstacles = problem.conditions.obstacles();
+  trial.total_energy = found.energy + obstacles.potential(trial.displacement, trial.environment) -
+                       problem.sums().dot(external_force, trial.displacement);
   trial.residual_norm = problem.sums().norm_of(problem.free.dof.size(), [&](std::size_t e) {
     const Index dof = problem.free.dof[e];
     return external_force[dof] - trial.gradient[dof];

@@ -67,7 +67,7 @@ struct Trial {
   std::vector<double> follower_force;  ///< of pressures [N]; empty: none
   double stored_energy = 0.0;          ///< [J]
   double energy_round_off = 0.0;       ///< of that, see Evaluation [J]
-  double total_energy = 0.0;           ///< stored energy - f_ext.u [J]
+  double total_energy = 0.0;           ///< stored energy - f_ext.u + Obstacles::potential [J]
   double residual_norm = 0.0;          ///< 2-norm of f_ext - dE/dx over free degrees of freedom [N]
   bool degenerate = false;
   std::span<const double> foreseen{};  ///< see StateView

@@ -87,6 +87,12 @@ class Relaxation {
     result_.growth += found.growth;
     result_.released_energy += found.released;
     at_.stored_energy = found.energy;
+    // The work of forces on obstacles is what heating counts, which is of the whole energy, less
+    // the change of their potential.
+    const double potential = potential_under(at_.environment);
+    if (has_potential_) add_work_of_body(potential_ - potential);
+    has_potential_ = true;
+    potential_ = potential;
     at_.energy_round_off = found.round_off;
     if (!at_.follower_force.empty()) {
       last_follower_force_.swap(at_.follower_force);
@@ -191,7 +197,7 @@ class Relaxation {
                                (at_.displacement[k] - last_displacement_[k]);
     });
     if (last_environment_ != at_.environment) {
-      add_work_of_body(0.5 * (at_.stored_energy - energy_under(last_environment_)));
+      add_work_of_body(0.5 * (at_.stored_energy + potential_ - energy_under(last_environment_)));
       last_environment_ = at_.environment;
     }
     for (std::size_t k = 0; k < held_.size(); ++k) {
@@ -218,7 +224,8 @@ class Relaxation {
     row.iteration = result_.iterations;
     row.residual = at_.residual_norm;
     row.relative_residual = result_.scale > 0.0 ? at_.residual_norm / result_.scale : 0.0;
-    row.energy = at_.stored_energy - of_body_.dot(result_.external_force, at_.displacement);
+    row.energy =
+        at_.stored_energy + potential_ - of_body_.dot(result_.external_force, at_.displacement);
     row.step_length = 1.0;
     row.changed_bonds = result_.growth.degrading;
     return row;
@@ -259,7 +266,7 @@ class Relaxation {
     last_environment_ = at_.environment;
     if (share == share_ || !way_.end_environment()) return;
     at_.environment = way_.environment(share);
-    add_work_of_body(0.5 * (energy_under(at_.environment) - at_.stored_energy));
+    add_work_of_body(0.5 * (energy_under(at_.environment) - at_.stored_energy - potential_));
   }
 
   /// Adds work that all ranks know, at rank 0 alone: contributions of the ranks are summed at the
@@ -268,9 +275,14 @@ class Relaxation {
     if (problem_.assembler.index_map().is_first_rank()) result_.external_work += work;
   }
 
+  [[nodiscard]] double potential_under(const SharedEnvironment& environment) const {
+    return problem_.conditions.obstacles().potential(at_.displacement, environment);
+  }
+
   [[nodiscard]] double energy_under(const SharedEnvironment& environment) {
-    return problem_.assembler.energy({at_.displacement, at_.history, Damage::grows, environment})
-        .energy;
+    const Evaluation found =
+        problem_.assembler.energy({at_.displacement, at_.history, Damage::grows, environment});
+    return found.energy + potential_under(environment);
   }
 
   /// Sums over the equations of all ranks.
@@ -352,6 +364,8 @@ class Relaxation {
   double quotient_ = 0.0;  // U.K1 U / U.U
   double kinetic_energy_ = 0.0, relative_change_ = 1.0;
   double mean_speed_ = 0.0;  // root mean square of the velocities of the last move
+  bool has_potential_ = false;
+  double potential_ = 0.0;  // Obstacles::potential [J]
   double share_ = 0.0, share_change_ = 0.0;
 };
 

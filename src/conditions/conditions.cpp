@@ -378,6 +378,7 @@ void Conditions::try_stages() {
     if (floats) external_force(at, force);
     try_tables_of_loads(at);
     const SharedEnvironment there = environment(at);
+    if (obstacles_.are_driven()) obstacles_.refuse_idle_forces(there);
     if (floats && !pressures_.empty()) {
       require_balance(face_forces(pressed_, there->pressure, points_.dimension),
                       pressures_.front().key);

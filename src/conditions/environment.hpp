@@ -24,7 +24,7 @@ struct Environment {
   /// Displacement of the ground below each spring of the foundations, springs x dimension [m].
   /// Empty: none.
   std::vector<double> ground{};
-  /// Displacement of the obstacles, obstacles x dimension [m]. Empty: none moves.
+  /// Displacement of obstacles, obstacles x dimension [m], or their force [N]. Empty: none moves.
   std::vector<double> obstacles{};
   InertialSprings inertia{};
   /// Traction on the surface at points, points x dimension [Pa]; empty: surfaces are free.

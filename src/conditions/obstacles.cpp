@@ -53,6 +53,40 @@ std::vector<Index> touchable_points(const Points& points, const std::string& set
   return members;
 }
 
+/// The axis along which a force drives an obstacle; nothing if none does.
+std::optional<std::size_t> free_axis_of(const ObstacleSpecification& of,
+                                        const RigidSurface& surface, int dimension,
+                                        const std::string& table) {
+  std::optional<std::size_t> axis;
+  for (std::size_t c = 0; c < std::size_t(dimension); ++c) {
+    if (of.displacement[c] != "free") continue;
+    const std::string key = indexed(table + ".displacement", c);
+    if (of.force.empty()) throw InputError(key, "free", "needs a force that drives the obstacle");
+    if (axis) throw InputError(key, "free", "is for one component, along which the force acts");
+    axis = c;
+  }
+  if (!axis) {
+    if (of.force.empty()) return axis;
+    throw InputError(table + ".force", of.force,
+                     "needs a component of displacement that is \"free\", along which it acts");
+  }
+  if (of.friction > 0.0) {
+    throw InputError(table + ".force", of.force, "is not for an obstacle with friction yet");
+  }
+  Coordinates along{};
+  along[*axis] = 1.0;
+  const bool is_plane = surface.kind == RigidSurface::Kind::plane;
+  const double share =
+      is_plane ? std::abs(dot(along, surface.direction)) : std::sqrt(surface.share_across(along));
+  constexpr double least = 1e-3;
+  if (share < least) {
+    throw InputError(table + ".force", of.force,
+                     std::string("acts along the ") + (is_plane ? "plane" : "cylinder") +
+                         ", so that the body can't bear it; free another component");
+  }
+  return axis;
+}
+
 /// A cylinder or sphere below two spacings presses on single points.
 void refuse_small_radius(const RigidSurface& surface, double size, const std::string& table) {
   if (surface.kind == RigidSurface::Kind::plane) return;
@@ -69,7 +103,7 @@ void refuse_small_radius(const RigidSurface& surface, double size, const std::st
 Obstacles::Obstacles(const Points& points, const std::vector<ObstacleSpecification>& specifications,
                      const std::vector<std::string>& parameters, const ObstacleSetting& setting,
                      const Communicator& ranks)
-    : dimension_(points.dimension) {
+    : dimension_(points.dimension), points_(std::size_t(points.count())) {
   for (std::size_t k = 0; k < specifications.size(); ++k) {
     const ObstacleSpecification& of = specifications[k];
     const std::string table = indexed("obstacles", k);
@@ -96,7 +130,9 @@ Obstacles::Obstacles(const Points& points, const std::vector<ObstacleSpecificati
                   of.tangential_stiffness,
                   contacts_.size(),
                   0,
+                  {},
                   {}};
+    made.free_axis = free_axis_of(of, made.surface, dimension_, table);
     double largest = 0.0;
     for (const Index point : touchable_points(points, of.set, table + ".set")) {
       // Points of a refined lattice have sizes of their own, as those of a cloud.
@@ -114,10 +150,12 @@ Obstacles::Obstacles(const Points& points, const std::vector<ObstacleSpecificati
     refuse_small_radius(made.surface, ranks.max(largest), table);
     made.last = contacts_.size();
     for (int c = 0; c < dimension_; ++c) {
-      const std::string key = indexed(table + ".displacement", std::size_t(c));
+      const bool is_free = made.free_axis == std::size_t(c);
+      const std::string key =
+          is_free ? table + ".force" : indexed(table + ".displacement", std::size_t(c));
       made.displacement.push_back(with_key(key, [&] {
-        return Expression(of.displacement[std::size_t(c)], 0, points.spacing, parameters,
-                          points.columns, functions_of(points.functions));
+        return Expression(is_free ? of.force : of.displacement[std::size_t(c)], 0, points.spacing,
+                          parameters, points.columns, functions_of(points.functions));
       }));
     }
     obstacles_.push_back(std::move(made));
@@ -126,9 +164,14 @@ Obstacles::Obstacles(const Points& points, const std::vector<ObstacleSpecificati
 
 bool Obstacles::move() const {
   return std::ranges::any_of(obstacles_, [](const Obstacle& of) {
-    return std::ranges::any_of(of.displacement,
-                               [](const Expression& along) { return along.text() != "0"; });
+    return of.free_axis || std::ranges::any_of(of.displacement, [](const Expression& along) {
+             return along.text() != "0";
+           });
   });
+}
+
+bool Obstacles::are_driven() const {
+  return std::ranges::any_of(obstacles_, [](const Obstacle& of) { return !!of.free_axis; });
 }
 
 bool Obstacles::rub() const {
@@ -244,8 +287,9 @@ std::vector<double> Obstacles::displacements(std::span<const double> loads) cons
   std::vector<double> all;
   for (const Obstacle& of : obstacles_) {
     for (std::size_t c = 0; c < of.displacement.size(); ++c) {
-      all.push_back(with_key(indexed(of.table + ".displacement", c),
-                             [&] { return of.displacement[c]({}, loads); }));
+      const std::string key =
+          of.free_axis == c ? of.table + ".force" : indexed(of.table + ".displacement", c);
+      all.push_back(with_key(key, [&] { return of.displacement[c]({}, loads); }));
     }
   }
   return all;
@@ -255,7 +299,9 @@ Coordinates Obstacles::moved(std::size_t obstacle, const SharedEnvironment& envi
   Coordinates moved{};
   if (!environment || environment->obstacles.empty()) return moved;
   const auto d = std::size_t(dimension_);
-  for (std::size_t c = 0; c < d; ++c) moved[c] = environment->obstacles[obstacle * d + c];
+  for (std::size_t c = 0; c < d; ++c) {
+    if (obstacles_[obstacle].free_axis != c) moved[c] = environment->obstacles[obstacle * d + c];
+  }
   return moved;
 }
 
@@ -312,7 +358,7 @@ std::map<std::string, Obstacles::Action> Obstacles::actions(std::span<const doub
                                                             const Slips& slips) const {
   std::map<std::string, Action> actions;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    actions[obstacles_[k].name].displacement = moved(k, environment);
+    actions[obstacles_[k].name].displacement = place_at(k, displacement, environment).displacement;
   }
   const auto add = [&](const Obstacle& of, const Coordinates& force) -> Action& {
     Action& action = actions[of.name];
@@ -339,6 +385,10 @@ double Obstacles::work(std::span<const double> from, const SharedEnvironment& un
   double work = 0.0;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const Obstacle& of = obstacles_[k];
+    if (of.free_axis) {
+      work += work_of_force(k, from, under_from, to, under_to);
+      continue;
+    }
     const Coordinates start = moved(k, under_from), end = moved(k, under_to);
     const Coordinates motion = minus(end, start);
     if (motion == Coordinates{}) continue;

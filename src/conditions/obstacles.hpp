@@ -1,6 +1,10 @@
 #pragma once
 
+#include <array>
+#include <cmath>
+#include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,6 +45,16 @@ struct ObstacleSetting {
 /// is an incremental potential: a search holds lambda and n, and takes them anew until they are
 /// those of the state. Then e becomes y min(1, R / |y|), D keeps k_t |e|^2 / 2, and
 /// mu lambda (|y| - R) is dissipated.
+///
+/// An obstacle that a force F drives has no mass. Its displacement o along an axis e is that at
+/// which the points bear the force,
+///
+///   sum k a d b' (n.e) = F,
+///
+/// a function of their displacements u. Forces on points are then the derivative of E(u, o(u)) -
+/// F o(u), and with the blocks B_i of d2E/du2 the second derivative is
+///
+///   B_i delta_ij - (B_i e) (B_j e)^T / sum e.B e.
 class Obstacles {
  public:
   /// A point that an obstacle may touch.
@@ -59,6 +73,20 @@ class Obstacles {
     double tangential = 0.0;          ///< beta
     std::size_t first = 0, last = 0;  ///< of its contacts
     std::vector<Expression> displacement{};
+    /// Axis along which a force drives it: its `displacement` there is this force [N].
+    std::optional<std::size_t> free_axis{};
+  };
+  /// Where an obstacle is at a state.
+  struct Place {
+    Coordinates displacement{};  ///< [m]
+    double force = 0.0;          ///< that drives it [N]
+    bool touches = true;         ///< false: it has no force, and gives way to the body
+    bool is_borne = true;        ///< false: nowhere do the points bear its force
+  };
+  /// Of the forces that drive obstacles at a state.
+  struct Driving {
+    double round_off = 0.0;  ///< of their potential [J]
+    bool is_borne = true;    ///< see Place
   };
   /// A contact in a state.
   struct Depth {
@@ -121,7 +149,9 @@ class Obstacles {
   [[nodiscard]] bool move() const;
   /// True if any has friction.
   [[nodiscard]] bool rub() const;
-  /// Displacement of all, obstacles x dimension [m].
+  /// True if forces drive some.
+  [[nodiscard]] bool are_driven() const;
+  /// Displacement of all, obstacles x dimension [m]; along a free axis the force [N].
   /// @throws InputError if it is not finite
   [[nodiscard]] std::vector<double> displacements(std::span<const double> loads) const;
 
@@ -129,11 +159,28 @@ class Obstacles {
   /// Collective.
   void refuse_overlap(const Communicator& ranks) const;
 
+  /// @throws InputError if nothing of the undeformed body is in the way of a force.
+  void refuse_idle_forces(const SharedEnvironment& environment) const;
+
+  /// Place of an obstacle. Along a free axis it depends on nothing but the state; without a force
+  /// it is at the start, or where the body pushes it.
+  [[nodiscard]] Place place_at(std::size_t obstacle, std::span<const double> displacement,
+                               const SharedEnvironment& environment) const;
+  /// Potential of the forces that drive obstacles, - sum F o [J]: forces on points are the
+  /// derivative of the contacts' energy and this.
+  [[nodiscard]] double potential(std::span<const double> displacement,
+                                 const SharedEnvironment& environment) const;
+  /// Environment with the places of one and the forces on obstacles of another.
+  [[nodiscard]] SharedEnvironment under_forces_of(const SharedEnvironment& forces,
+                                                  const SharedEnvironment& places) const;
+  /// Pairs of points that a force couples where its obstacle begins to touch the undeformed body.
+  [[nodiscard]] double coupled_pairs() const;
+
   /// Calls visit(Pressed) for every contact with an energy, in the order of the contacts.
-  /// @param foreseen see StateView
+  /// @param foreseen see StateView: obstacles that forces drive are where its springs bear them
   template <class Visit>
-  void for_each_pressed(std::span<const double> displacement, std::span<const double> foreseen,
-                        const SharedEnvironment& environment, const Visit& visit) const;
+  Driving for_each_pressed(std::span<const double> displacement, std::span<const double> foreseen,
+                           const SharedEnvironment& environment, const Visit& visit) const;
 
   /// Calls visit(number of the contact, obstacle, place of its point relative to the obstacle) for
   /// every contact.
@@ -176,7 +223,8 @@ class Obstacles {
 
   /// Work that the obstacles do on the body from one state to another [J]: the mean of the forces
   /// before and after, times the motion. A contact that sets in works from where the obstacle meets
-  /// the old place of its point, one that ends up to where it leaves the new place.
+  /// the old place of its point, one that ends up to where it leaves the new place. That of a force
+  /// is the mean of the force times the motion while it touches.
   [[nodiscard]] double work(std::span<const double> from, const SharedEnvironment& under_from,
                             const Slips& slips_from, std::span<const double> to,
                             const SharedEnvironment& under_to, const Slips& slips_to) const;
@@ -198,7 +246,47 @@ class Obstacles {
     const Contact& at = contacts_[contact];
     return {change, -(at.gap + change.value) / (of.depth * at.distance)};
   }
+  /// Displacement that is given, 0 along a free axis [m].
   [[nodiscard]] Coordinates moved(std::size_t obstacle, const SharedEnvironment& environment) const;
+  /// Force along the free axis [N].
+  [[nodiscard]] double force_on(std::size_t obstacle, const SharedEnvironment& environment) const;
+
+  /// Places on a free axis [m]: where no point touches, and where none is too deep. Empty if the
+  /// first is above the second.
+  struct Range {
+    double first, last;
+  };
+  struct Ranges {
+    Range untouched, allowed;
+  };
+  [[nodiscard]] Ranges ranges_of(const Obstacle& of, std::span<const double> displacement,
+                                 const Coordinates& given) const;
+  [[nodiscard]] Place place_under(double force, const Obstacle& of,
+                                  std::span<const double> displacement,
+                                  const Coordinates& given) const;
+  /// Contacts that touch somewhere in a range.
+  [[nodiscard]] std::vector<std::size_t> within(const Range& range, const Obstacle& of,
+                                                std::span<const double> displacement,
+                                                const Coordinates& given) const;
+  /// Force of contacts on the points along the free axis less the force [N], and its slope [N/m].
+  [[nodiscard]] std::array<double, 2> excess(const Place& at, const Obstacle& of,
+                                             std::span<const std::size_t> contacts,
+                                             std::span<const double> displacement) const;
+  /// How much farther an obstacle goes until the springs that are foreseen bear its force [m].
+  [[nodiscard]] double foreseen_way(const Obstacle& of, std::span<const double> displacement,
+                                    const Place& at, std::span<const double> foreseen,
+                                    const Place& there) const;
+  [[nodiscard]] bool is_foreseen_closed(std::size_t contact, const Obstacle& of,
+                                        std::span<const double> foreseen,
+                                        const Place& there) const {
+    constexpr double round_off = 1e-9;  // a contact at rest counts as touching
+    return depth_of(contact, of, foreseen, there.displacement).relative > -round_off;
+  }
+  [[nodiscard]] double work_of_force(std::size_t obstacle, std::span<const double> from,
+                                     const SharedEnvironment& under_from,
+                                     std::span<const double> to,
+                                     const SharedEnvironment& under_to) const;
+
   /// y of a slip [m].
   [[nodiscard]] static Coordinates slipped(const Slip& slip, const Coordinates& step) {
     const Coordinates moved = minus(step, slip.start);
@@ -211,6 +299,7 @@ class Obstacles {
                                   const Coordinates& of_obstacle) const;
 
   int dimension_ = 0;
+  std::size_t points_ = 0;
   std::vector<Contact> contacts_;
   std::vector<Coordinates> reference_;  // of the contacts' points, relative to their obstacle [m]
   std::vector<Obstacle> obstacles_;
@@ -220,7 +309,7 @@ template <class Visit>
 void Obstacles::for_each_place(std::span<const double> displacement,
                                const SharedEnvironment& environment, const Visit& visit) const {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    const Coordinates of_obstacle = moved(k, environment);
+    const Coordinates of_obstacle = place_at(k, displacement, environment).displacement;
     for (std::size_t c = obstacles_[k].first; c < obstacles_[k].last; ++c) {
       visit(c, obstacles_[k], place(c, displacement, of_obstacle));
     }
@@ -248,29 +337,38 @@ void Obstacles::for_each_rubbing(std::span<const double> displacement,
 }
 
 template <class Visit>
-void Obstacles::for_each_pressed(std::span<const double> displacement,
-                                 std::span<const double> foreseen,
-                                 const SharedEnvironment& environment, const Visit& visit) const {
-  // A contact at rest counts as touching in spite of round-off.
-  constexpr double round_off = 1e-9;
+Obstacles::Driving Obstacles::for_each_pressed(std::span<const double> displacement,
+                                               std::span<const double> foreseen,
+                                               const SharedEnvironment& environment,
+                                               const Visit& visit) const {
+  const bool is_foreseen = !foreseen.empty();
+  Driving driving;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const Obstacle& of = obstacles_[k];
-    const Coordinates of_obstacle = moved(k, environment);
+    const Place at = place_at(k, displacement, environment);
+    driving.is_borne &= at.is_borne;
+    if (!at.touches) continue;
+    const Place there = is_foreseen ? place_at(k, foreseen, environment) : at;
+    double further = 0.0;
+    if (of.free_axis) {
+      if (is_foreseen) further = foreseen_way(of, displacement, at, foreseen, there);
+      driving.round_off += std::numeric_limits<double>::epsilon() *
+                           std::abs(at.force * at.displacement[*of.free_axis]);
+    }
     for (std::size_t c = of.first; c < of.last; ++c) {
       const Contact& contact = contacts_[c];
-      const auto depth_at = [&](std::span<const double> at) {
-        return depth_of(c, of, at, of_obstacle);
-      };
-      const bool is_foreseen = !foreseen.empty();
-      const Depth depth = depth_at(displacement);
+      const double scale = of.depth * contact.distance;
+      Depth depth = depth_of(c, of, displacement, at.displacement);
       const bool is_closed =
-          is_foreseen ? depth_at(foreseen).relative > -round_off : depth.relative > 0.0;
+          is_foreseen ? is_foreseen_closed(c, of, foreseen, there) : depth.relative > 0.0;
       if (!is_closed) continue;
+      if (further != 0.0) depth.relative += depth.change.gradient[*of.free_axis] * further / scale;
       visit(Pressed{contact.point, c, of, depth,
-                    is_foreseen ? closed_contact(depth.relative) : of.law(depth.relative),
-                    of.depth * contact.distance, contact.stiffness, is_foreseen});
+                    is_foreseen ? closed_contact(depth.relative) : of.law(depth.relative), scale,
+                    contact.stiffness, is_foreseen});
     }
   }
+  return driving;
 }
 
 }  // namespace peristat

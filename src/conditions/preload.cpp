@@ -26,8 +26,8 @@ std::string short_text(double value) {
 }  // namespace
 
 bool Preload::acts() const {
-  return std::max({displacement, force_size, eigenstretch, pressure, traction, ground, obstacles}) >
-         0.0;
+  return std::max({displacement, force_size, eigenstretch, pressure, traction, ground, obstacles,
+                   on_obstacles}) > 0.0;
 }
 
 std::string Preload::description() const {
@@ -43,6 +43,7 @@ std::string Preload::description() const {
   add(traction, "tractions up to " + short_text(traction) + " Pa");
   add(ground, "ground displacements up to " + short_text(ground) + " m");
   add(obstacles, "obstacles displaced by up to " + short_text(obstacles) + " m");
+  add(on_obstacles, "forces on obstacles up to " + short_text(on_obstacles) + " N");
   return text;
 }
 
@@ -63,12 +64,17 @@ Preload find_preload(const Conditions& conditions, const Communicator& ranks) {
     preload.pressure = largest_size(environment->pressure);
     preload.traction = largest_size(environment->traction);
     preload.ground = largest_size(environment->ground);
-    preload.obstacles = largest_size(environment->obstacles);
+    for (std::size_t k = 0; k < environment->obstacles.size(); ++k) {
+      const auto& axis = conditions.obstacles().all()[k / d].free_axis;
+      double& size = axis == k % d ? preload.on_obstacles : preload.obstacles;
+      size = std::max(size, std::abs(environment->obstacles[k]));
+    }
   }
   for (double& component : preload.force) component = ranks.sum(component);
   preload.force_size = ranks.sum(preload.force_size);
-  for (double* const size : {&preload.displacement, &preload.eigenstretch, &preload.pressure,
-                             &preload.traction, &preload.ground, &preload.obstacles}) {
+  for (double* const size :
+       {&preload.displacement, &preload.eigenstretch, &preload.pressure, &preload.traction,
+        &preload.ground, &preload.obstacles, &preload.on_obstacles}) {
     *size = ranks.max(*size);
   }
   return preload;

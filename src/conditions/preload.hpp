@@ -19,6 +19,7 @@ struct Preload {
   double traction = 0.0;      ///< on the surface [Pa]
   double ground = 0.0;        ///< displacement below foundations [m]
   double obstacles = 0.0;     ///< displacement of obstacles [m]
+  double on_obstacles = 0.0;  ///< forces that drive obstacles [N]
 
   [[nodiscard]] bool acts() const;
   /// "loads of 12 N (in sum 0, -12, 0 N), prescribed displacements up to 0.001 m"; empty if nothing

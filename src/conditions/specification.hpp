@@ -78,7 +78,9 @@ struct ObstacleSpecification {
   std::string name{};
   std::string set{};  ///< points that it may touch; empty: all
   RigidSurface surface{};
-  std::array<std::string, 3> displacement{"0", "0", "0"};  ///< an expression of load alone [m]
+  /// Expressions of load alone [m]; "free" for the component along which the force drives it.
+  std::array<std::string, 3> displacement{"0", "0", "0"};
+  std::string force{};     ///< on the body, an expression of load alone [N]; empty: none drives it
   double stiffness = 1.0;  ///< relative to that of the points' cells
   double depth = 0.25;     ///< largest depth over half a spacing, between 0 and 1
   double softness = 1e-4;  ///< depth over half a spacing within which the stiffness sets in

@@ -69,6 +69,30 @@ double RigidSurface::share_to_level(const Coordinates& place, const Coordinates&
   return c >= 0.0 && b < 0.0 ? c / (root - b) : never;
 }
 
+std::optional<RigidSurface::Shifts> RigidSurface::shifts_to_level(const Coordinates& place,
+                                                                  const Coordinates& axis,
+                                                                  double level) const {
+  if (kind == Kind::plane) {
+    const double gap = dot(place, direction) - level, closing = dot(axis, direction);
+    if (closing == 0.0) return std::nullopt;
+    return closing > 0.0 ? Shifts{gap / closing, never} : Shifts{-never, gap / closing};
+  }
+  const Coordinates arm = across(place), along = across(axis);
+  const double rho = is_hollow ? radius - level : radius + level, squared = dot(along, along);
+  if (squared == 0.0) return std::nullopt;
+  const double middle = dot(arm, along) / squared;
+  const double aside = length(minus(arm, scaled(middle, along)));
+  if (!(aside < rho)) return std::nullopt;
+  const double half = std::sqrt((rho - aside) * (rho + aside) / squared);
+  return Shifts{middle - half, middle + half};
+}
+
+double RigidSurface::share_across(const Coordinates& vector) const {
+  if (kind != Kind::cylinder) return 1.0;
+  const Coordinates part = across(vector);
+  return dot(part, part);
+}
+
 double RigidSurface::least_distance_passed(const Coordinates& place,
                                            const Coordinates& step) const {
   if (kind == Kind::plane || is_hollow) return never;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "src/core/types.hpp"
 
 namespace peristat {
@@ -35,6 +37,19 @@ struct RigidSurface {
   /// present value; infinite if it never does.
   [[nodiscard]] double share_to_level(const Coordinates& place, const Coordinates& step,
                                       double level) const;
+
+  /// Shifts t of the surface along a unit vector, from `first` to `last`, for which
+  /// phi(place - t axis) is below a level; of a hollow surface those for which it is not. Infinite
+  /// if there is no end, nothing if there are none.
+  struct Shifts {
+    double first = 0.0, last = 0.0;
+  };
+  [[nodiscard]] std::optional<Shifts> shifts_to_level(const Coordinates& place,
+                                                      const Coordinates& axis, double level) const;
+
+  /// Square of the part of a unit vector along which the distance can change: 1 for a plane and a
+  /// sphere, 1 - (axis.v)^2 for a cylinder.
+  [[nodiscard]] double share_across(const Coordinates& vector) const;
 
   /// Least phi on the straight way of a step, if the place comes nearer at first and withdraws at
   /// the end; otherwise infinite. Planes have no far side.

@@ -234,7 +234,7 @@ class Obstacles(Pressed):
             (block, "obstacle[0].softness=0.3", "below depth"),
             (block, "obstacle[0].point=[8e-3, 7.99e-3]", "begins inside the body"),
             (block, 'obstacle[0].name="foot"', "already a support"),
-            (block, 'obstacle[0].displacement=["free", 0]', "can't be free"),
+            (block, 'obstacle[0].displacement=["free", 0]', "needs a force"),
             (block, 'obstacle[0].displacement=[0, "1e-3*y"]', "y"),
             (block, 'obstacle[0].set="none"', "none"),
             (BLOCK + PLANE, "solver={tangent=\"matrix_free\", linear=\"pcg\"}", "needs the stored tangent"),

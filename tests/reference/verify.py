@@ -402,12 +402,15 @@ class Verification:
         for table in self.obstacles.tables:
             name, force = table["name"], forces[table["name"]]
             scale = max(largest, numpy.abs(force).max()) * len(force)
-            moved = self.obstacles.moved(table, step.loads)
+            moved = self.obstacles.moved(table, step.loads, step.displacement)
             moment = self.obstacles.moment(table, force, step.displacement, step.loads)
             reach = size + numpy.abs(numpy.array(table["point"], float) + moved).max()
             for c, (axis, component) in enumerate(zip("xyz", force.sum(axis=0))):
                 self.compare(step, "reaction", row[f"reaction_{axis}:{name}"], component, scale)
                 self.compare(step, "obstacle", row.get(f"displacement_{axis}:{name}", 0.0), moved[c], size)
+            if "force" in table:
+                axis, driving = table["displacement"].index("free"), self.obstacles.value(table["force"], step.loads)
+                self.compare(step, "force on an obstacle", row[f"reaction_{'xyz'[axis]}:{name}"], driving, scale)
             for axis in {1: "", 2: "z", 3: "xyz"}[force.shape[1]]:
                 self.compare(step, "moment", row[f"moment_{axis}:{name}"], moment["xyz".index(axis)], scale * reach)
 

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "src/core/coordinates.hpp"
 
@@ -13,15 +16,27 @@ namespace {
 using Pressed = Obstacles::Pressed;
 using Rubbing = Obstacles::Rubbing;
 
+/// Points that press on an obstacle that a force drives, with what its motion adds to the forces on
+/// them.
+struct DrivenTogether {
+  std::vector<Index> points;
+  std::vector<Coordinates> stiffness;  ///< B e of each [N/m]
+  double whole = 0.0;                  ///< sum of e.B e [N/m]
+};
+
 class ObstaclePasses : public TermPasses, BlockTangent {
  public:
-  ObstaclePasses(const Obstacles& obstacles, int dimension)
-      : obstacles_(obstacles), dimension_(std::size_t(dimension)) {}
+  ObstaclePasses(const Obstacles& obstacles, const TermSetting& setting)
+      : obstacles_(obstacles),
+        pattern_(setting.pattern),
+        dimension_(std::size_t(setting.points.dimension)),
+        coupled_(obstacles.all().size()),
+        offset_(std::size_t(setting.points.count()) + 1, 0) {}
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
     if (how == Write::over) std::fill(gradient.begin(), gradient.end(), 0.0);
     Evaluation found;
-    for_each(at, [&](const Pressed& contact) {
+    const Obstacles::Driving driving = for_each(at, [&](const Pressed& contact) {
       found.energy += contact.energy();
       found.degenerate |= !contact.is_foreseen && !(contact.depth.relative < 1.0);
       found.round_off += contact.force() * round_off_of_place(at, contact.point);
@@ -31,6 +46,8 @@ class ObstaclePasses : public TermPasses, BlockTangent {
         own[c] -= contact.force() * contact.depth.change.gradient[c];
       }
     });
+    found.round_off += driving.round_off;
+    found.degenerate |= !driving.is_borne;
     for_each_rubbing(at, [&](const Rubbing& friction) {
       found.energy += friction.energy;
       if (gradient.empty()) return;
@@ -82,6 +99,7 @@ class ObstaclePasses : public TermPasses, BlockTangent {
         for (std::size_t c = 0; c < dimension_; ++c) own[r * dimension_ + c] += block[r][c];
       }
     });
+    for_each_driven(at, projection, [&](const DrivenTogether& driven) { add(driven, tangent); });
   }
 
   void product(const StateView& at, std::span<const double> v, double projection,
@@ -94,6 +112,13 @@ class ObstaclePasses : public TermPasses, BlockTangent {
           product[first + r] += block[r][c] * v[first + c];
         }
       }
+    });
+    for_each_driven(at, projection, [&](const DrivenTogether& driven) {
+      double force = 0.0;
+      for_each_entry(driven, [&](std::size_t dof, double entry) { force += entry * v[dof]; });
+      for_each_entry(driven, [&](std::size_t dof, double entry) {
+        product[dof] -= entry * force / driven.whole;
+      });
     });
   }
 
@@ -125,6 +150,7 @@ class ObstaclePasses : public TermPasses, BlockTangent {
     obstacles_.for_each_place(
         at.displacement, at.environment,
         [&](std::size_t c, const Obstacles::Obstacle& of, const Coordinates& place) {
+          if (of.free_axis) return;  // it gives way until the points bear its force
           const double level = level_of(of, c, share_of_depth);
           longest = std::min(longest, of.surface.share_to_level(place, step_of(c, step), level));
         });
@@ -174,6 +200,25 @@ class ObstaclePasses : public TermPasses, BlockTangent {
         });
   }
 
+  /// Points that press on the same driven obstacle. A predictor, which begins a search, looks anew,
+  /// so that what follows does not depend on earlier searches.
+  std::optional<Couplings> contact_couplings(const StateView& at) override {
+    if (!obstacles_.are_driven()) return std::nullopt;
+    bool are_covered = at.foreseen.empty();
+    if (!are_covered) coupled_.assign(coupled_.size(), {});
+    for_each(at, [&](const Pressed& contact) {
+      if (!contact.obstacle.free_axis) return;
+      std::vector<Index>& of = coupled_[std::size_t(&contact.obstacle - obstacles_.all().data())];
+      const auto next = std::ranges::lower_bound(of, contact.point);
+      if (next != of.end() && *next == contact.point) return;
+      of.insert(next, contact.point);
+      are_covered = false;
+    });
+    if (!are_covered) take_rows();
+    if (partner_.empty()) return std::nullopt;
+    return Couplings(offset_, partner_);
+  }
+
   [[nodiscard]] double work_of_obstacles(const StateView& from, const StateView& to) override {
     return obstacles_.work(from.displacement, from.environment, from.history.slips(),
                            to.displacement, to.environment, to.history.slips());
@@ -181,9 +226,9 @@ class ObstaclePasses : public TermPasses, BlockTangent {
 
  private:
   template <class Visit>
-  void for_each(const StateView& at, const Visit& visit) const {
-    if (!at.has_contacts) return;
-    obstacles_.for_each_pressed(at.displacement, at.foreseen, at.environment, visit);
+  Obstacles::Driving for_each(const StateView& at, const Visit& visit) const {
+    if (!at.has_contacts) return {};
+    return obstacles_.for_each_pressed(at.displacement, at.foreseen, at.environment, visit);
   }
 
   template <class Visit>
@@ -202,6 +247,87 @@ class ObstaclePasses : public TermPasses, BlockTangent {
     });
   }
 
+  /// Calls visit(DrivenTogether) for every obstacle that a force drives and points press on.
+  template <class Visit>
+  void for_each_driven(const StateView& at, double projection, const Visit& visit) const {
+    if (!obstacles_.are_driven()) return;
+    std::vector<DrivenTogether> all(obstacles_.all().size());
+    for_each(at, [&](const Pressed& contact) {
+      const auto& axis = contact.obstacle.free_axis;
+      if (!axis) return;
+      DrivenTogether& of = all[std::size_t(&contact.obstacle - obstacles_.all().data())];
+      const Tensor block = block_of(contact, projection);
+      of.points.push_back(contact.point);
+      of.stiffness.push_back({block[0][*axis], block[1][*axis], block[2][*axis]});
+      of.whole += block[*axis][*axis];
+    });
+    for (const DrivenTogether& of : all) {
+      if (of.whole > 0.0) visit(of);
+    }
+  }
+
+  template <class Visit>
+  void for_each_entry(const DrivenTogether& driven, const Visit& visit) const {
+    for (std::size_t k = 0; k < driven.points.size(); ++k) {
+      for (std::size_t c = 0; c < dimension_; ++c) {
+        visit(std::size_t(driven.points[k]) * dimension_ + c, driven.stiffness[k][c]);
+      }
+    }
+  }
+
+  /// Adds the second part of d2E/du2, see Obstacles.
+  void add(const DrivenTogether& driven, Tangent& tangent) const {
+    std::vector<double> block(dimension_ * dimension_);
+    for (std::size_t a = 0; a < driven.points.size(); ++a) {
+      for (std::size_t b = a; b < driven.points.size(); ++b) {
+        const bool is_ordered = driven.points[a] <= driven.points[b];
+        const std::size_t one = is_ordered ? a : b, other = is_ordered ? b : a;
+        const Index i = driven.points[one], j = driven.points[other];
+        for (std::size_t r = 0; r < dimension_; ++r) {
+          for (std::size_t c = 0; c < dimension_; ++c) {
+            block[r * dimension_ + c] =
+                -driven.stiffness[one][r] * driven.stiffness[other][c] / driven.whole;
+          }
+        }
+        if (i != j) {
+          tangent.add_to_block(block_between(i, j), block);
+          continue;
+        }
+        double* const own = &tangent.diagonal[std::size_t(i) * block.size()];
+        for (std::size_t k = 0; k < block.size(); ++k) own[k] += block[k];
+      }
+    }
+  }
+
+  /// Place of the block (i, j), i < j, in the pattern.
+  [[nodiscard]] Offset block_between(Index i, Index j) const {
+    const std::span<const Index> row = pattern_.of(i);
+    const auto found = std::ranges::lower_bound(row, j);
+    if (found == row.end() || *found != j) {
+      throw std::logic_error("the pattern of the tangent lacks points that press on an obstacle");
+    }
+    return pattern_.offset[std::size_t(i)] + (found - row.begin());
+  }
+
+  /// Rows of contact_couplings from the points that are coupled.
+  void take_rows() {
+    std::vector<std::pair<Index, Index>> pairs;
+    for (const std::vector<Index>& of : coupled_) {
+      for (std::size_t a = 0; a < of.size(); ++a) {
+        for (std::size_t b = a + 1; b < of.size(); ++b) pairs.emplace_back(of[a], of[b]);
+      }
+    }
+    std::ranges::sort(pairs);
+    pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
+    std::ranges::fill(offset_, Offset(0));
+    partner_.clear();
+    for (const auto& [i, j] : pairs) {
+      ++offset_[std::size_t(i) + 1];
+      partner_.push_back(j);
+    }
+    for (std::size_t i = 1; i < offset_.size(); ++i) offset_[i] += offset_[i - 1];
+  }
+
   /// k (P - s y y^T / |y|^2), s = 1 where the contact slides. The projection takes its share of the
   /// second part away: where all points slide nothing else resists.
   [[nodiscard]] static Tensor block_of(const Rubbing& friction, double projection) {
@@ -217,7 +343,8 @@ class ObstaclePasses : public TermPasses, BlockTangent {
     return block;
   }
 
-  /// Calls visit(number, obstacle, place, step of the place relative to the obstacle).
+  /// Calls visit(number, obstacle, place, step of the place relative to the obstacle). Forces act
+  /// as in the end: what they do at once is no way of the body.
   template <class Visit>
   void for_each_way(const StateView& from, const StateView& to, const Visit& visit) const {
     std::vector<Coordinates> after;
@@ -226,7 +353,7 @@ class ObstaclePasses : public TermPasses, BlockTangent {
                               [&](std::size_t, const Obstacles::Obstacle&,
                                   const Coordinates& place) { after.push_back(place); });
     obstacles_.for_each_place(
-        from.displacement, from.environment,
+        from.displacement, obstacles_.under_forces_of(to.environment, from.environment),
         [&](std::size_t c, const Obstacles::Obstacle& of, const Coordinates& before) {
           visit(c, of, before, minus(after[c], before));
         });
@@ -276,7 +403,11 @@ class ObstaclePasses : public TermPasses, BlockTangent {
   }
 
   const Obstacles& obstacles_;
+  const BlockPattern& pattern_;
   std::size_t dimension_;
+  std::vector<std::vector<Index>> coupled_;  // per obstacle, ascending
+  std::vector<Offset> offset_;               // rows of contact_couplings
+  std::vector<Index> partner_;
 };
 
 }  // namespace
@@ -286,8 +417,14 @@ double ObstacleTerm::stored_bytes() const {
          double(obstacles_.contacts().size() * (sizeof(Obstacles::Contact) + sizeof(Coordinates)));
 }
 
+bool ObstacleTerm::has_symmetric_blocks() const {
+  return std::ranges::none_of(obstacles_.all(), [](const Obstacles::Obstacle& of) {
+    return of.free_axis && of.surface.kind != RigidSurface::Kind::plane;
+  });
+}
+
 std::unique_ptr<TermPasses> ObstacleTerm::passes(const TermSetting& setting) const {
-  return std::make_unique<ObstaclePasses>(obstacles_, setting.points.dimension);
+  return std::make_unique<ObstaclePasses>(obstacles_, setting);
 }
 
 }  // namespace peristat

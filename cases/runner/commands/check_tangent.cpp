@@ -127,6 +127,13 @@ class Reduced {
     return energies;
   }
 
+  /// Potential of the forces on obstacles, which no point has a part of.
+  [[nodiscard]] double potential(const Obstacles& obstacles,
+                                 std::vector<double> displacement) const {
+    if (!constraints_.none()) constraints_.move(displacement);
+    return obstacles.potential(displacement, environment_);
+  }
+
   /// Adds forces on dependent degrees of freedom to those that they follow.
   void fold(const std::vector<double>& displacement, std::vector<double>& forces) const {
     if (constraints_.none()) return;
@@ -472,6 +479,7 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
     throw InputError("", "", "the case has no bonds whose derivatives could be checked");
   }
 
+  const Obstacles& obstacles = body.conditions->obstacles();
   std::vector<double> residual_errors, tangent_errors;
   constexpr int halvings = 20;
   double step = largest_step;
@@ -479,13 +487,15 @@ Exit check_tangent(const Case& from, const std::string& deformation, int threads
     shifted = displacement;
     add_scaled(shifted, step, direction);
     static_cast<void>(reduced.gradient(shifted, forward));
+    const double potential_ahead = reduced.potential(obstacles, shifted);
     const std::vector<double> ahead = reduced.point_energies(shifted);
     shifted = displacement;
     add_scaled(shifted, -step, direction);
     static_cast<void>(reduced.gradient(shifted, backward));
+    const double potential_behind = reduced.potential(obstacles, shifted);
     const std::vector<double> behind = reduced.point_energies(shifted);
     // Point by point: differences of the whole energy would be lost in the round-off of its sum.
-    double difference = 0.0;
+    double difference = potential_ahead - potential_behind;
     for (std::size_t i = 0; i < ahead.size(); ++i) difference += ahead[i] - behind[i];
     difference /= 2.0 * step;
     residual_errors.push_back(std::abs(difference - slope) / energy_scale);

@@ -1,5 +1,7 @@
 #include "cases/runner/input/constraint_keys.hpp"
 
+#include <algorithm>
+
 #include "cases/runner/input/key_kinds.hpp"
 
 namespace peristat {
@@ -164,7 +166,19 @@ Table<ObstacleSpecification> obstacle_keys() {
          "`cylinder`, `sphere`: the body is inside of it")
            .unless(is_plane, "is for shapes \"cylinder\" and \"sphere\""),
        K("displacement", &Spec::displacement, obstacle_displacement(),
-         "displacement of the obstacle, per component"),
+         "displacement of the obstacle, per component; `\"free\"` for the one along which a force "
+         "drives it")
+           .early(),
+       K("force", &Spec::force, expression_of_load("N"),
+         "[force](contact.md#forces) that drives the obstacle along the component of its "
+         "displacement that is `\"free\"`, and that it exerts on the body")
+           .written_if([](auto& of, auto&) { return !of.force.empty(); })
+           .unless(
+               [](auto& of, auto&) {
+                 return std::ranges::find(of.displacement, "free") == of.displacement.end();
+               },
+               "needs a component of displacement that is \"free\", along which it acts")
+           .default_words("none; required if a component is `\"free\"`"),
        K("stiffness", &Spec::stiffness, positive(""),
          "stiffness of the contact relative to that of the point's cell, Young's modulus times its "
          "section over half a spacing"),

@@ -86,9 +86,13 @@ class Collection {
     }
     for (std::size_t k = 0; k < from_.obstacles.size(); ++k) {
       const ObstacleSpecification& of = from_.obstacles[k];
-      add_components(
-          {ValueKind::displacement, indexed("obstacle", k) + ".displacement", "", "m", of.name, ""},
-          of.displacement, dimension_);
+      const std::string table = indexed("obstacle", k);
+      for (std::size_t c = 0; c < dimension_; ++c) {
+        if (of.displacement[c] == "free") continue;
+        add({ValueKind::displacement, indexed(table + ".displacement", c), of.displacement[c], "m",
+             of.name, ""});
+      }
+      if (!of.force.empty()) add({ValueKind::load, table + ".force", of.force, "N", of.name, ""});
     }
   }
 

@@ -456,7 +456,7 @@ Kind<std::array<std::optional<std::string>, 3>> free_components(Components kind,
 
 namespace {
 
-Kind<std::string> expression(bool of_place, bool or_free) {
+Kind<std::string> expression(bool of_place, bool or_free, const std::string& unit) {
   const auto read = [=](const Entry& at) {
     const std::string text = at.from.is_string(at.key)
                                  ? at.from.string(at.key)
@@ -473,7 +473,7 @@ Kind<std::string> expression(bool of_place, bool or_free) {
           expression_schema(),
           std::string("number, or expression of ") +
               (of_place ? "place and `load`" : "`load` alone") + (or_free ? ", or `\"free\"`" : ""),
-          "m",
+          unit,
           ValueForm::expression};
 }
 
@@ -502,8 +502,10 @@ Kind<std::array<std::string, 3>> components_of_place(const std::string& unit) {
           ValueForm::expression};
 }
 
-Kind<std::string> expression_or_free() { return expression(true, true); }
-Kind<std::string> expression_of_load() { return expression(false, false); }
+Kind<std::string> expression_or_free() { return expression(true, true, "m"); }
+Kind<std::string> expression_of_load(const std::string& unit) {
+  return expression(false, false, unit);
+}
 
 Kind<double> stretch() {
   const Range range = Range::between(1e-9, 1e3);
@@ -574,14 +576,18 @@ Kind<std::string> field_of_place(const std::string& unit) {
 namespace {
 
 /// An expression per component: of load, and of place if `has_place`.
+/// @param against_free why no component can be "free"; empty: they can
 Kind<std::array<std::string, 3>> located_components(bool has_place, const std::string& against_free,
                                                     const std::string& unit) {
   const auto read = [=](const Entry& at) {
     std::array<std::string, 3> values{"0", "0", "0"};
     const auto components = at.from.components(at.key, dimension_of(at.so_far));
     for (std::size_t c = 0; c < components.size(); ++c) {
-      if (components[c] == "free") at.from.refuse(at.key, c, against_free);
-      values[c] = checked_component(at, c, components[c], has_place ? at.so_far.dimension : 0);
+      const bool is_free = components[c] == "free";
+      if (is_free && !against_free.empty()) at.from.refuse(at.key, c, against_free);
+      values[c] =
+          is_free ? components[c]
+                  : checked_component(at, c, components[c], has_place ? at.so_far.dimension : 0);
     }
     return values;
   };
@@ -590,8 +596,9 @@ Kind<std::array<std::string, 3>> located_components(bool has_place, const std::s
             return array_text(components_of(values, from), toml_string);
           },
           components_schema(expression_schema()),
-          has_place ? "number or expression of place and `load` (mode `dynamics`: `t`)"
-                    : "number or expression of `load` (`t`) alone",
+          std::string(has_place ? "number or expression of place and `load` (mode `dynamics`: `t`)"
+                                : "number or expression of `load` (`t`) alone") +
+              (against_free.empty() ? ", or `\"free\"`" : ""),
           unit,
           ValueForm::expression};
 }
@@ -606,8 +613,7 @@ Kind<std::array<std::string, 3>> displacement_components() {
 }
 
 Kind<std::array<std::string, 3>> obstacle_displacement() {
-  return located_components(
-      false, "an obstacle can't be free; its motion is given in all components", "m");
+  return located_components(false, "", "m");
 }
 
 Kind<std::vector<std::string>> stress_components() {

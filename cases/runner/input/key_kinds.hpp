@@ -92,7 +92,7 @@ enum class Components { axes, rotations, of_load };
 /// An expression of place and load, or "free".
 [[nodiscard]] Kind<std::string> expression_or_free();
 /// An expression of load alone.
-[[nodiscard]] Kind<std::string> expression_of_load();
+[[nodiscard]] Kind<std::string> expression_of_load(const std::string& unit = "m");
 /// Per component an expression of place.
 [[nodiscard]] Kind<std::array<std::string, 3>> components_of_place(const std::string& unit);
 /// A stretch of a bond: a number, or an expression of `horizon` and, on a lattice, of `spacing`.

@@ -31,6 +31,11 @@ std::vector<ProbeColumns> constraint_columns(const Case& from) {
     for (const int axis : axes_of(from.dimension)) {
       columns.push_back({column("moment", axis, obstacle.name), 1, "N m"});
     }
+    for (int c = 0; c < from.dimension; ++c) {
+      if (obstacle.displacement[std::size_t(c)] != "free") continue;
+      columns.push_back({column("displacement", c, obstacle.name), 1, "m",
+                         "displacement of " + obstacle.name + ", which a force drives"});
+    }
   }
   for (const PeriodSpecification& period : from.constraints.periods) {
     for (int c = 0; c < from.dimension; ++c) {
@@ -52,6 +57,13 @@ void add_constraint_values(const Conditions& conditions, const Trial& state,
       values[column("moment", axis, set)] = {moment[std::size_t(axis)]};
       values[column("rotation", axis, set)] = {rotations.at(set)[std::size_t(axis)]};
     }
+  }
+  for (const Obstacles::Obstacle& of : conditions.obstacles().all()) {
+    if (!of.free_axis) continue;
+    const auto k = std::size_t(&of - conditions.obstacles().all().data());
+    const Coordinates place =
+        conditions.obstacles().place_at(k, state.displacement, state.environment).displacement;
+    values[column("displacement", int(*of.free_axis), of.name)] = {place[*of.free_axis]};
   }
   for (const auto& [name, action] : conditions.obstacles().actions(
            state.displacement, state.environment, state.history.slips())) {

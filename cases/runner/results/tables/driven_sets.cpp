@@ -118,7 +118,7 @@ std::vector<Driven> driven_by(const Case& from) {
   for (const ObstacleSpecification& obstacle : from.obstacles) {
     for (int c = 0; c < from.dimension; ++c) {
       const std::string& displacement = obstacle.displacement[std::size_t(c)];
-      if (is_number_zero(displacement)) continue;
+      if (displacement == "free" || is_number_zero(displacement)) continue;
       list.add({.name = obstacle.name, .component = c, .value = displacement});
     }
   }
