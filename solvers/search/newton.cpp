@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "solvers/search/convergence.hpp"
+#include "solvers/search/foreseen_contacts.hpp"
 #include "solvers/search/linearisation.hpp"
 #include "src/core/vector_verbs.hpp"
 
@@ -226,34 +227,22 @@ class NewtonSearch {
     return linear;
   }
 
-  /// Finds the direction of the predictor. Contacts have no stiffness before they press: those that
-  /// the predictor foresees as closed count as springs, in rounds until they are those that it
-  /// closes.
+  /// Finds the direction of the predictor.
   LinearOutcome predict(double projection, FactorUse use, double tolerance) {
-    constexpr int most_rounds = 6;
-    Assembler& assembler = problem_.assembler;
-    if (!assembler.has_contacts()) return solve_at_start(projection, use, tolerance);
     // A projected tangent is that of the last exact one.
-    if (has_predicted_) return solve_at_start(projection, use, tolerance);
-    has_predicted_ = true;
-    std::vector<Index> closed = assembler.closed_contacts(start());
-    LinearOutcome linear = LinearOutcome::solved;
-    for (int round = 0; round < most_rounds; ++round) {
-      find_start_gradient();
-      linear = solve_at_start(projection, use, tolerance);
-      if (linear != LinearOutcome::solved) return linear;
-      std::vector<double> next = current_.displacement;
-      add_scaled(next, 1.0, direction_);
-      foreseen_.swap(next);
-      std::vector<Index> now = assembler.closed_contacts(start());
-      const bool stays = problem_.sums().largest_of_all(now == closed ? 0.0 : 1.0) == 0.0;
-      if (stays || round + 1 == most_rounds) {
-        foreseen_.swap(next);  // the one of the tangent
-        break;
-      }
-      closed = std::move(now);
+    if (!problem_.assembler.has_contacts() || has_predicted_) {
+      return solve_at_start(projection, use, tolerance);
     }
-    return linear;
+    has_predicted_ = true;
+    return predict_with_contacts(
+        problem_, foreseen_, [this] { return start(); },
+        [&](std::vector<double>& next) {
+          find_start_gradient();
+          const LinearOutcome linear = solve_at_start(projection, use, tolerance);
+          next = current_.displacement;
+          if (linear == LinearOutcome::solved) add_scaled(next, 1.0, direction_);
+          return linear;
+        });
   }
 
   LinearOutcome solve_at_start(double projection, FactorUse use, double tolerance) {
