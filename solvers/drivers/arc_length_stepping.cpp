@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solvers/search/foreseen_contacts.hpp"
 #include "solvers/search/linearisation.hpp"
 #include "solvers/search/softest_mode.hpp"
 #include "src/core/number_text.hpp"
@@ -21,6 +22,9 @@ constexpr double straight_cosine = 0.99;
 /// A critical point is located to this fraction of the step, the onset of damage to this fraction
 /// of the first step.
 constexpr double share_of_located = 1e-4, share_of_onset = 1e-3;
+
+/// Contacts that close within this fraction of the first step count as closed at its begin.
+constexpr double share_of_closed = 1e-3;
 
 /// Largest number of steps of a path for which none is given.
 constexpr int most_steps = 10'000;
@@ -108,9 +112,21 @@ Advance ArcLengthStepping::put_on_preload() {
 Advance ArcLengthStepping::begin() {
   PathState& state = path_.state();
   const SolvedBody& body = path_.body();
-  std::vector<double> rate;
-  const LinearOutcome outcome = find_rate(path_.problem(), body.solver, body.tangent,
-                                          {state.accepted}, at_stage, state.accepted.stage, rate);
+  std::vector<double> rate, foreseen;
+  if (body.assembler.has_contacts()) foreseen = state.accepted.displacement;
+  const auto start = [&] {
+    StateView at(state.accepted);
+    at.foreseen = foreseen;
+    return at;
+  };
+  const auto solve = [&](std::vector<double>& next) {
+    const LinearOutcome found = find_rate(path_.problem(), body.solver, body.tangent, start(),
+                                          at_stage, state.accepted.stage, rate);
+    next = state.accepted.displacement;
+    if (found == LinearOutcome::solved) add_scaled(next, share_of_closed * increment_.value(), rate);
+    return found;
+  };
+  const LinearOutcome outcome = predict_with_contacts(path_.problem(), foreseen, start, solve);
   if (outcome != LinearOutcome::solved) {
     Attempt attempt = undefined_attempt(state.accepted, load_point(state.accepted));
     attempt.outcome = outcome_of(outcome);

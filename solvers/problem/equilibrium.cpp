@@ -128,10 +128,10 @@ void share_out_jump(const EquilibriumProblem& problem, std::span<const double> f
   constraints.share_out_jump(from, stays, displacement);
 }
 
-void move_followers(const EquilibriumProblem& problem, Trial& trial) {
+void move_followers(const EquilibriumProblem& problem, std::span<double> displacement) {
   const Constraints& constraints = problem.conditions.constraints();
-  problem.assembler.index_map().update_ghosts(trial.displacement);
-  if (!constraints.none()) constraints.move(trial.displacement);
+  problem.assembler.index_map().update_ghosts(displacement);
+  if (!constraints.none()) constraints.move(displacement);
 }
 
 void fold_followers(const EquilibriumProblem& problem, std::span<const double> external_force,
@@ -146,6 +146,16 @@ void fold_followers(const EquilibriumProblem& problem, std::span<const double> e
   for (Tensor& block : trial.curvature) {
     for (auto& row : block) sums.add_up(row);
   }
+}
+
+double longest_step(const EquilibriumProblem& problem, const StateView& at,
+                    std::span<const double> step) {
+  if (!problem.assembler.has_contacts()) return 1.0;
+  std::vector<double> of_all(step.begin(), step.end());
+  problem.assembler.index_map().update_ghosts(of_all);
+  const Constraints& constraints = problem.conditions.constraints();
+  if (!constraints.none()) constraints.extend(at.displacement, of_all);
+  return problem.assembler.longest_step(at, of_all);
 }
 
 double heating_work(Assembler& assembler, const StateView& from, const StateView& to) {

@@ -1,5 +1,6 @@
 #include "solvers/study/study.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -92,9 +93,9 @@ void refuse_modes_with_contacts(const Body& body, const StudyOptions& options) {
   const std::string cannot = "does not follow contacts that close and open," + with + "; take ";
   const LoadSteppingOptions& loading = options.loading;
   const Mode mode = loading.mode;
-  if (mode == Mode::path || mode == Mode::arc_length) {
+  if (mode == Mode::path) {
     throw InputError("loading.mode", std::string(mode.name),
-                     cannot + "newton, adaptive, relaxation or dynamics");
+                     cannot + "newton, adaptive, relaxation, arc_length or dynamics");
   }
   const bool relaxes = mode == Mode::relaxation || mode == Mode::adaptive;
   if (relaxes && loading.relaxation.method == RelaxationMethod::flow) {
@@ -107,9 +108,13 @@ void refuse_modes_with_contacts(const Body& body, const StudyOptions& options) {
                      "is constant, while contacts make the stable step shorter," + with +
                          "; take dynamics.step_share");
   }
-  if (body.conditions->control()) {
-    throw InputError("controls", "", cannot + "prescribed displacements");
-  }
+  const Obstacles& obstacles = body.conditions->obstacles();
+  if (!finds_loads(options, *body.conditions) || !obstacles.rub()) return;
+  const auto rubs = std::ranges::find_if(
+      obstacles.all(), [](const Obstacles::Obstacle& of) { return of.friction > 0.0; });
+  throw InputError(rubs->table + ".friction", number_text(rubs->friction),
+                   "is for prescribed displacements and loads, not for loads that are found by " +
+                       std::string(mode == Mode::arc_length ? "mode arc_length" : "a control"));
 }
 
 /// Points that fail one by one have no strength that a step could be led to, and what follows one
