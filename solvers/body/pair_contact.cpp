@@ -5,7 +5,6 @@
 
 #include "assembly/terms/contact/pair_contact_term.hpp"
 #include "solvers/body/youngs_moduli.hpp"
-#include "src/core/input_error.hpp"
 #include "src/geometry/point_sizes.hpp"
 
 namespace peristat {
@@ -21,8 +20,12 @@ PairContactRule rule_of(const ContactSpecification& of, const Points& points) {
   if (of.set.empty()) return rule;
   rule.side.assign(std::size_t(points.count()), 0);
   for (const Index point : points.sets.at(of.set)) rule.side[std::size_t(point)] = 1;
-  if (of.with.empty()) return rule;
-  for (const Index point : points.sets.at(of.with)) rule.side[std::size_t(point)] = 2;
+  if (!of.with.empty()) {
+    for (const Index point : points.sets.at(of.with)) rule.side[std::size_t(point)] = 2;
+  }
+  for (Index image = points.own(); image < points.count(); ++image) {
+    rule.side[std::size_t(image)] = rule.side[std::size_t(points.source(image))];
+  }
   return rule;
 }
 
@@ -41,14 +44,6 @@ std::shared_ptr<Term> make_pair_contact(const Body& body) {
   return std::make_shared<PairContactTerm>(
       ContactPairs(points, body.model.bonds(), std::move(rules), std::move(size),
                    youngs_moduli(body), body.model.failing_bonds() != nullptr));
-}
-
-void refuse_contacts_with_images(const BodySpecification& of) {
-  if (of.contacts.empty()) return;
-  if (of.constraints.symmetries.empty() && of.constraints.periods.empty()) return;
-  throw InputError("contacts", "",
-                   "contact of points is not for bodies with planes of symmetry and periods yet, "
-                   "whose images it would not see; take the whole body");
 }
 
 }  // namespace peristat

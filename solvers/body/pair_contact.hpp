@@ -10,9 +10,4 @@ namespace peristat {
 /// Makes the contacts of a body's points by its specification, on the bonds of its model.
 /// @return null if it has none
 [[nodiscard]] std::shared_ptr<Term> make_pair_contact(const Body& body);
-
-/// Refuses contacts of bodies with planes of symmetry and periods.
-/// @throws InputError ("contacts")
-void refuse_contacts_with_images(const BodySpecification& of);
-
 }  // namespace peristat

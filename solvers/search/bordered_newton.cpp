@@ -148,7 +148,7 @@ class BorderedSearch {
   void go_towards(const Prediction& next, IterationRecord& row) {
     std::vector<double> step = next.displacement;
     add_scaled(step, -1.0, current_.displacement);
-    row.step_length = longest_step(problem_, current_.at(Damage::held), step);
+    row.step_length = allowed_share(problem_, current_.at(Damage::held), step);
     if (row.step_length == 1.0) {
       current_.displacement = next.displacement;
       unknown_ = next.unknown;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "assembly/terms/contact/image_cover.hpp"
 #include "assembly/terms/contact/near_pairs.hpp"
 #include "assembly/terms/contact/swept_pairs.hpp"
 #include "assembly/terms/workspace.hpp"
@@ -46,11 +47,18 @@ class PairContactPasses : public TermPasses, BlockTangent {
         threads_(setting.workspace.threads()),
         near_(pairs_, setting.model, threads_),
         near_foreseen_(pairs_, setting.model, threads_),
+        cover_(points_, pairs_.reach()),
         offset_(std::size_t(points_.count()) + 1, 0) {}
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
     if (how == Write::over) std::ranges::fill(gradient, 0.0);
     Evaluation found;
+    if (at.has_contacts && is_finite(at.displacement) && !cover_.holds(at.displacement)) {
+      // Explicit steps look at the forces alone.
+      if (!gradient.empty()) gradient[0] = std::numeric_limits<double>::quiet_NaN();
+      found.degenerate = true;
+      return found;
+    }
     found.degenerate = !for_each_touching(at, [&](const TouchingPair& contact) {
       found.energy += contact.energy;
       found.round_off += std::abs(contact.force) * contact.gap.round_off;
@@ -172,7 +180,8 @@ class PairContactPasses : public TermPasses, BlockTangent {
   }
 
   /// With the depths after a fifth of the gaps has closed. A row of k b'' n n^T has the sum
-  /// 2 k b'' |n_c| sum |n|.
+  /// 2 k b'' |n_c| sum |n|. Contact with an image is one half of two alike, of which the other one
+  /// adds as much to the point itself.
   void add_contact_stiffness(const StateView& at, double most_depth,
                              std::span<double> stiffness) override {
     constexpr double closes = 0.2;
@@ -188,12 +197,13 @@ class PairContactPasses : public TermPasses, BlockTangent {
       const double along = open.share * open.pair.stiffness * of_law.second;
       const double across =
           open.share * open.pair.stiffness * most * of_law.first / open.pair.distance;
+      const double halves = points_.is_image(open.pair.j) ? 2.0 : 1.0;
       double of_normal = 0.0;
       for (std::size_t c = 0; c < d; ++c) of_normal += std::abs(now.normal[c]);
       for (const Index point : {open.pair.i, open.pair.j}) {
         for (std::size_t c = 0; c < d; ++c) {
           stiffness[std::size_t(point) * d + c] +=
-              2.0 * (along * std::abs(now.normal[c]) * of_normal + across * double(d));
+              2.0 * halves * (along * std::abs(now.normal[c]) * of_normal + across * double(d));
         }
       }
     }
@@ -349,6 +359,7 @@ class PairContactPasses : public TermPasses, BlockTangent {
   const BlockPattern& pattern_;
   int threads_;
   NearPairs near_, near_foreseen_;
+  ImageCover cover_;
   std::vector<Offset> offset_;  // rows of contact_couplings
   std::vector<Index> partner_;
 };

@@ -7,25 +7,31 @@ namespace peristat {
 Table<ContactSpecification> contact_keys() {
   using Spec = ContactSpecification;
   using K = Key<Spec>;
-  return {"contact",
-          {K("set", &Spec::set, known_set(), "set whose points touch")
-               .written_if([](auto& of, auto&) { return !of.set.empty(); })
-               .default_words("all points"),
-           K("with", &Spec::with, known_set(),
-             "another set, which the points of `set` touch, and not one another")
-               .written_if([](auto& of, auto&) { return !of.with.empty(); })
-               .default_words("the points of `set` touch one another"),
-           K("distance", &Spec::distance, positive("m"), "distance at which two points touch")
-               .written_if([](auto& of, auto&) { return of.distance > 0.0; })
-               .default_words("the mean of the two points' sizes, on a lattice the spacing"),
-           K("stiffness", &Spec::stiffness, between(1e-3, 1e3),
-             "stiffness over that of the bar of material between two points"),
-           K("depth", &Spec::depth, between(0.01, 0.5),
-             "largest depth of the contact over its distance; the force grows without limit "
-             "towards it"),
-           K("softness", &Spec::softness, between(1e-9, 0.25),
-             "strain of the gap over which the stiffness sets in; at most a tenth of the strains "
-             "of interest")}};
+  return {
+      "contact",
+      {K("set", &Spec::set, known_set(), "set whose points touch")
+           .written_if([](auto& of, auto&) { return !of.set.empty(); })
+           .default_words("all points"),
+       K("with", &Spec::with, known_set(),
+         "another set, which the points of `set` touch, and not one another")
+           .written_if([](auto& of, auto&) { return !of.with.empty(); })
+           .default_words("the points of `set` touch one another"),
+       K("distance", &Spec::distance, positive("m"), "distance at which two points touch")
+           .written_if([](auto& of, auto&) { return of.distance > 0.0; })
+           .default_words("the mean of the two points' sizes, on a lattice the spacing"),
+       K("reach", &Spec::reach, positive("m"),
+         "with planes of symmetry and periods: distance from the body up to which points beyond "
+         "them are modelled. A state in which others might touch is refused")
+           .written_if([](auto& of, auto&) { return of.reach > 0.0; })
+           .default_words("the horizon"),
+       K("stiffness", &Spec::stiffness, between(1e-3, 1e3),
+         "stiffness over that of the bar of material between two points"),
+       K("depth", &Spec::depth, between(0.01, 0.5),
+         "largest depth of the contact over its distance; the force grows without limit "
+         "towards it"),
+       K("softness", &Spec::softness, between(1e-9, 0.25),
+         "strain of the gap over which the stiffness sets in; at most a tenth of the strains "
+         "of interest")}};
 }
 
 }  // namespace peristat

@@ -44,6 +44,9 @@ void check_contacts(const BodySpecification& of, const Points& points) {
     require(contact.distance >= 0.0 && contact.distance <= of.horizon, table + ".distance",
             number_text(contact.distance),
             "must be positive and no longer than the horizon, " + number_text(of.horizon) + " m");
+    const bool has_images = !of.constraints.symmetries.empty() || !of.constraints.periods.empty();
+    require_absent(contact.reach > 0.0 && !has_images, table + ".reach",
+                   "is for bodies with planes of symmetry or periods");
     require_absent(!contact.with.empty() && contact.set.empty(), table + ".with",
                    "needs the other set, " + table + ".set");
     Sides sides{points_that_touch(points, contact.set, table + ".set"), {}};

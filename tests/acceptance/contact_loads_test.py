@@ -1,0 +1,175 @@
+"""Contacts where the load is found: by a control, and along the arc length."""
+
+import numpy
+
+from tests.acceptance.folder import Folder
+from tests.acceptance.motions import columns
+from tests.reference.results import Results
+from tests.same_results import differences
+
+# A bar with an edge crack 1e-6 m open, which closes when it is pressed.
+NOTCHED = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3.015
+thickness = 1e-3
+shape = [{ add = "box", min = [0, 0], max = [0.024, 0.006] }]
+[[set]]
+name = "left"
+where = "x < spacing"
+[[set]]
+name = "right"
+where = "x > 0.024 - spacing"
+[quadrature]
+volume_correction = "linear"
+[material]
+youngs_modulus = 70e9
+[[crack]]
+from = [0.012, -1e-3]
+to = [0.012, 3e-3]
+[[contact]]
+softness = 1e-4
+distance = 0.9995e-3
+[[support]]
+set = "left"
+displacement = [0, 0]
+[[load]]
+set = "right"
+force = ["-20*load", 0]
+[[probe]]
+name = "right"
+set = "right"
+field = "displacement"
+"""
+CONTROL = """\
+[[control]]
+set = "right"
+weights = [-1, 0]
+"""
+# A block whose foot moves against a cylinder.
+HERTZ = """\
+dimension = 2
+[lattice]
+spacing = 1e-3
+horizon_ratio = 3.015
+thickness = 1e-3
+shape = [{ add = "box", min = [-0.012, -0.010], max = [0.012, 0] }]
+[[set]]
+name = "foot"
+where = "y < -0.010 + 2*spacing"
+[[set]]
+name = "top"
+where = "y > -spacing && abs(x) < spacing"
+[material]
+youngs_modulus = 70e9
+[[support]]
+set = "foot"
+displacement = [0, "FOOT"]
+[[obstacle]]
+name = "cylinder"
+shape = "cylinder"
+point = [0, 0.080]
+radius = 0.080
+displacement = [0, "CYLINDER"]
+softness = 1e-4
+[[probe]]
+name = "top"
+set = "top"
+field = "displacement"
+"""
+INDENTED = """\
+[[control]]
+set = "foot"
+weights = [0, 1]
+[[control]]
+set = "top"
+weights = [0, -1]
+"""
+# A shallow arch that snaps through onto a plane, 0.075 below its middle.
+ARCH = """\
+dimension = 2
+[lattice]
+spacing = 0.02
+horizon_ratio = 3.015
+thickness = 0.01
+shape = [{ add = "polygon", points = [POINTS] }]
+[material]
+youngs_modulus = 200e9
+[[set]]
+name = "ends"
+where = "x < 0.06 || x > 2.34"
+[[set]]
+name = "middle"
+where = "abs(x - 1.2) < 0.03"
+[[support]]
+set = "ends"
+displacement = [0, 0]
+[[load]]
+body_force = [0, "4e7*load*cos(2*pi*x/2.4)"]
+[[probe]]
+name = "middle"
+set = "middle"
+field = "displacement"
+"""
+
+
+def steps(*values):
+    return f"[loading]\ntable = {list(values)}\nsteps = 1\n"
+
+
+def mode(name):
+    return f'[solver]\nmode = "{name}"\n'
+
+
+class LoadsThatAreFound(Folder):
+    def assert_same_states(self, found, text, case_of_load, accuracy=1e-7):
+        """Newton's method finds the same states at the loads of a folder."""
+        rows, states = columns(found), Results(found).steps
+        loads = rows["load_factor"][1:]
+        self.assertGreater(len(loads), 2)
+        again = self.run_case(text + steps(0, *loads), name="again")
+        at_loads = columns(again)
+        for state, other in zip(states[1:], Results(again).steps[1:], strict=True):
+            size = abs(other.displacement).max()
+            numpy.testing.assert_allclose(state.displacement, other.displacement, atol=accuracy * size)
+        for name in case_of_load:
+            numpy.testing.assert_allclose(rows[name][1:], at_loads[name][1:], rtol=10 * accuracy, atol=1e-9)
+
+    def test_a_control_finds_the_load_of_a_closed_crack(self):
+        text = NOTCHED + CONTROL + steps(0, 2e-7, 5e-7, 2e-6, 4e-6, 3e-7, -1e-6)
+        folder = self.run_case(text)
+        rows = columns(folder)
+        numpy.testing.assert_allclose(-rows["right_x"], rows["control"], atol=1e-15)
+        self.assertLessEqual(rows["newton_iterations"].max(), 7)
+        stiffness = rows["load_factor"][1:] / rows["control"][1:]
+        self.assertGreater(stiffness[3] / stiffness[0], 1.1)  # closed
+        self.assertAlmostEqual(stiffness[-1] / stiffness[0], 1.0, places=3)  # open again
+        self.assert_same_states(folder, NOTCHED, ["stored_energy"])
+
+    def test_a_control_finds_the_load_of_hertz(self):
+        for foot, cylinder in (("1e-4*load", "0"), ("0", "-1e-4*load")):
+            text = HERTZ.replace("FOOT", foot).replace("CYLINDER", cylinder)
+            control = INDENTED if cylinder == "0" else INDENTED.split("[[control]]\nset = \"top\"")[0].replace("foot", "top").replace("1]", "-1]")
+            folder = self.run_case(text + control + steps(0, 5e-6, 2e-5, 4e-5, 1e-5), name=f"found{len(foot)}")
+            rows = columns(folder)
+            self.assertGreater(abs(rows["reaction_y:cylinder"]).max(), 100.0)
+            self.assertLessEqual(rows["newton_iterations"].max(), 7)
+            self.assert_same_states(folder, text, ["stored_energy", "reaction_y:cylinder"])
+
+    def test_along_the_arc_through_the_closing_of_a_gap(self):
+        folder = self.run_case(NOTCHED + mode("arc_length"), "loading.steps=10")
+        rows = columns(folder)
+        self.assertEqual(rows["load_factor"][-1], 1.0)
+        self.assertFalse(rows["negative_pivots"].any())
+        self.assert_same_states(folder, NOTCHED, ["stored_energy"])
+
+    def test_along_the_arc_against_an_obstacle(self):
+        for foot, cylinder in (("1e-4*load", "0"), ("0", "-1e-4*load")):
+            text = HERTZ.replace("FOOT", foot).replace("CYLINDER", cylinder)
+            for changes in ((), ("obstacle[0].point=[0, 0.08002]",) if cylinder == "0" else ()):
+                folder = self.run_case(text + mode("arc_length"), "loading.steps=5", *changes)
+                rows = columns(folder)
+                self.assertEqual(rows["load_factor"][-1], 1.0)
+                changed = text.replace("point = [0, 0.080]", "point = [0, 0.08002]") if changes else text
+                self.assert_same_states(folder, changed, ["stored_energy", "reaction_y:cylinder"])
