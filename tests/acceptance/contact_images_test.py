@@ -5,7 +5,6 @@ import numpy
 from tests.acceptance.folder import Folder
 from tests.acceptance.motions import columns
 from tests.reference.results import Results
-from tests.same_results import differences
 
 # A bar that is cut in its middle, pulled and pressed.
 BAR = """\
@@ -91,7 +90,7 @@ set = "foot"
 displacement = [0, 0]
 [[support]]
 set = "top"
-displacement = ["4.2e-3*load", "0.05e-3*sin(pi*min(2*load, 1)) + 0.02e-3*load"]
+displacement = ["4.2e-3*load", "-0.01e-3*min(20*load, 1)"]
 [loading]
 steps = 42
 """
@@ -138,7 +137,7 @@ class ContactOfImages(Folder):
             whole = self.run_case(WHOLE + changes, name="whole")
             rows = columns(whole)
             self.assertLess(rows["reaction_x:right"][1], -1.0)
-            self.assertEqual(abs(rows["reaction_x:right"][2]) < 1e-6, law == CUT or rows["broken_bonds"][2] >= 0)
+            self.assertLess(abs(rows["reaction_x:right"][2]), 1e-6)  # apart
             for k, (text, share) in enumerate(self.halves(changes)):
                 part = self.run_case(text, name=f"part{k}")
                 self.assert_part_of(part, whole)
@@ -179,13 +178,10 @@ class ContactOfImages(Folder):
         numpy.testing.assert_allclose(2.0 * rows["reaction_x:top"], of_two["reaction_x:top"], rtol=1e-6, atol=1e-6)
 
     def test_a_row_that_is_pressed_over_its_period(self):
-        for d, section, low, high in ((1, "area = 1e-6", [0], [0.012]), (2, "thickness = 1e-3", [0, 0], [0.012, 0.004]),
+        for d, section, low, high in ((2, "thickness = 1e-3", [0, 0], [0.012, 0.004]),
                                       (3, "", [0, 0, 0], [0.012, 0.004, 0.004])):  # fmt: skip
-            cracks = {1: lambda x: f"[[crack]]\nat = {x}\n",
-                      2: lambda x: f"[[crack]]\nfrom = [{x}, -1]\nto = [{x}, 1]\n",
+            cracks = {2: lambda x: f"[[crack]]\nfrom = [{x}, -1]\nto = [{x}, 1]\n",
                       3: lambda x: f"[[crack]]\nvertices = [[{x}, -1, -1], [{x}, 1, -1], [{x}, 1, 1], [{x}, -1, 1]]\n"}  # fmt: skip
-            if d == 1:
-                continue
             zeros = ", 0" * (d - 1)
             rows = []
             for length, cuts in ((0.012, (0.0,)), (0.024, (0.0, 0.012))):
@@ -193,8 +189,7 @@ class ContactOfImages(Folder):
                 text = ROW.replace("DIMENSION", str(d)).replace("SECTION", section).replace("LOW", str(low)).replace("HIGH", str(high))
                 text += "".join(cracks[d](x) for x in cuts)
                 text += f'[[period]]\naxis = "x"\nfrom = 0\nto = {length}\ngradient = ["1e-4*load"{zeros}]\n'
-                text += f'[[support]]\nset = "middle"\ndisplacement = [0{zeros}]\n' if len(cuts) == 1 else (
-                    f'[[support]]\nset = "middle"\ndisplacement = [0{zeros}]\n')
+                text += f'[[support]]\nset = "middle"\ndisplacement = [0{zeros}]\n'
                 text += "[loading]\ntable = [0, -1, 0.5, -2]\nsteps = 1\n"
                 if len(cuts) == 2:  # its second half hangs on contact
                     text += f'[[set]]\nname = "second"\nwhere = "abs(x - 0.018) < spacing"\n'

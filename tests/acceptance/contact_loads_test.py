@@ -4,7 +4,9 @@ import numpy
 
 from tests.acceptance.folder import Folder
 from tests.acceptance.motions import columns
+from tests.reference.program import CASES
 from tests.reference.results import Results
+from tests.reference.verify import Verification
 from tests.same_results import differences
 
 # A bar with an edge crack 1e-6 m open, which closes when it is pressed.
@@ -36,7 +38,7 @@ set = "left"
 displacement = [0, 0]
 [[load]]
 set = "right"
-force = ["-20*load", 0]
+total_force = ["-20*load", 0]
 [[probe]]
 name = "right"
 set = "right"
@@ -86,31 +88,15 @@ weights = [0, 1]
 set = "top"
 weights = [0, -1]
 """
-# A shallow arch that snaps through onto a plane, 0.075 below its middle.
-ARCH = """\
-dimension = 2
-[lattice]
-spacing = 0.02
-horizon_ratio = 3.015
-thickness = 0.01
-shape = [{ add = "polygon", points = [POINTS] }]
-[material]
-youngs_modulus = 200e9
-[[set]]
-name = "ends"
-where = "x < 0.06 || x > 2.34"
-[[set]]
-name = "middle"
-where = "abs(x - 1.2) < 0.03"
-[[support]]
-set = "ends"
-displacement = [0, 0]
-[[load]]
-body_force = [0, "4e7*load*cos(2*pi*x/2.4)"]
-[[probe]]
-name = "middle"
-set = "middle"
-field = "displacement"
+# Onto this plane the shipped arch snaps through: its middle meets it where the arch is unstable.
+ARCH = (CASES / "buckling/arch.toml").read_text().replace('file = "arch.csv"', f'file = "{CASES / "buckling/arch.csv"}"')
+GROUND = """\
+[[obstacle]]
+name = "ground"
+shape = "plane"
+point = [0, -0.04]
+normal = [0, 1]
+softness = 1e-3
 """
 
 
@@ -173,3 +159,32 @@ class LoadsThatAreFound(Folder):
                 self.assertEqual(rows["load_factor"][-1], 1.0)
                 changed = text.replace("point = [0, 0.080]", "point = [0, 0.08002]") if changes else text
                 self.assert_same_states(folder, changed, ["stored_energy", "reaction_y:cylinder"])
+
+    def test_an_arch_that_snaps_onto_an_obstacle(self):
+        free, stopped = (self.run_case(ARCH + ground, name=f"arch{len(ground)}") for ground in ("", GROUND))
+        verification = Verification(stopped, ARCH + GROUND)
+        verification.run()
+        self.assertEqual(verification.complaints, [])
+        path, rows = columns(free), columns(stopped)
+        touches = rows["reaction_y:ground"] > 0.0
+        self.assertTrue(rows["negative_pivots"][~touches].any())
+        self.assertFalse(rows["negative_pivots"][-1])
+        self.assertEqual(rows["load_factor"][-1], 1.0)
+        self.assertLess(abs(rows["middle_y"][touches] - rows["middle_y"][touches][0]).max(), 0.02)
+        # Before it touches it goes the way of the free arch.
+        order = numpy.argsort(-path["middle_y"])
+        along = numpy.interp(-rows["middle_y"][~touches], -path["middle_y"][order], path["load_factor"][order])
+        self.assertLess(abs(along - rows["load_factor"][~touches]).max(), 0.02)
+
+    def test_resumed(self):
+        text = NOTCHED + mode("arc_length") + "[loading]\nsteps = 10\n"
+        whole = self.run_case(text, name="whole")
+        self.run_case(text, name="split", words=("--stop-after", 2), code=130)
+        self.resume("split")
+        self.assertEqual(differences(whole, self.folder / "split"), [])
+
+    def test_refused(self):
+        text = HERTZ.replace("FOOT", "0").replace("CYLINDER", "-1e-4*load").replace('[0, 0.080]', '[0, 0.081]')
+        self.assertIn("from the start", self.refusal(text + mode("arc_length")))
+        rubbing = HERTZ.replace("FOOT", "1e-4*load").replace("CYLINDER", "0") + mode("arc_length")
+        self.assertIn("friction", self.refusal(rubbing, "obstacle[0].friction=0.1"))
