@@ -52,8 +52,7 @@ class BorderedSearch {
 
  private:
   Outcome search() {
-    problem_.conditions.external_force(step_.loads(unknown_), external_force_);
-    current_.environment = problem_.conditions.environment(step_.loads(unknown_));
+    take_loads();
     evaluate(problem_, external_force_, current_, Damage::held);
     old_scale_ = load_norm();
     old_border_size_ = border_sum().size;
@@ -82,7 +81,9 @@ class BorderedSearch {
   /// linear problem about the old state leads.
   Outcome begin() {
     if (problem_.assembler.has_contacts()) {
-      foreseen_ = step_.prediction ? step_.prediction->displacement : from_.displacement;
+      foreseen_ = !step_.prediction                    ? from_.displacement
+                  : step_.prediction->foreseen.empty() ? step_.prediction->displacement
+                                                       : step_.prediction->foreseen;
       problem_.assembler.cover_contacts(start());
     }
     if (!step_.prediction || changes_contacts()) return iterate(1, Damage::held);
@@ -100,13 +101,16 @@ class BorderedSearch {
     return view;
   }
 
-  /// True if other contacts are closed in the foreseen state than in the old one.
+  /// True if other contacts are closed in the predicted state than in the old one.
   [[nodiscard]] bool changes_contacts() {
     if (foreseen_.empty()) return false;
     Assembler& assembler = problem_.assembler;
-    StateView before = start();
-    before.foreseen = from_.displacement;
-    const bool changes = assembler.closed_contacts(start()) != assembler.closed_contacts(before);
+    StateView view = start();
+    view.foreseen = from_.displacement;
+    const std::vector<Index> before = assembler.closed_contacts(view);
+    view.foreseen = foreseen_;
+    view.environment = problem_.conditions.environment(step_.loads(step_.prediction->unknown));
+    const bool changes = assembler.closed_contacts(view) != before;
     return problem_.sums().largest_of_all(changes ? 1.0 : 0.0) > 0.0;
   }
 
@@ -121,14 +125,21 @@ class BorderedSearch {
                                 ? correct_at_start(row, next)
                                 : correct(current_.at(damage), current_.gradient, row, next);
     if (outcome != Outcome::converged) return outcome;
-    go_towards(next, row);
+    // The predictor foresees what closes; if not, its state is judged as it is.
+    const bool is_predictor = iteration == 1 && !foreseen_.empty();
+    go_towards(next, is_predictor ? 1.0 : share_of(next), row);
     stand_at_unknown();
     result_.iterations = iteration;
     return interrupts(row) ? Outcome::interrupted : Outcome::converged;
   }
 
+  /// Linearises about the old state. The loads are those of the last round, whose obstacles close
+  /// the contacts.
   Outcome correct_at_start(IterationRecord& row, Prediction& next) {
     Outcome outcome = Outcome::converged;
+    const double before = unknown_;
+    if (step_.prediction) unknown_ = step_.prediction->unknown;
+    take_loads();
     static_cast<void>(predict_with_contacts(
         problem_, foreseen_, [this] { return start(); },
         [&](std::vector<double>& leads_to) {
@@ -138,32 +149,46 @@ class BorderedSearch {
           start_.foreseen = foreseen_;
           evaluate(problem_, external_force_, start_, Damage::held);
           outcome = correct(start(), start_.gradient, row, next);
+          if (outcome != Outcome::converged) return LinearOutcome::singular;
           leads_to = next.displacement;
-          return outcome == Outcome::converged ? LinearOutcome::solved : LinearOutcome::singular;
+          unknown_ = next.unknown;
+          take_loads();
+          return LinearOutcome::solved;
         }));
+    unknown_ = before;
     return outcome;
   }
 
-  /// Takes a whole step, or as much of it as contacts allow.
-  void go_towards(const Prediction& next, IterationRecord& row) {
+  /// Share of the way to a state that contacts allow.
+  [[nodiscard]] double share_of(const Prediction& next) const {
     std::vector<double> step = next.displacement;
     add_scaled(step, -1.0, current_.displacement);
-    row.step_length = allowed_share(problem_, current_.at(Damage::held), step);
-    if (row.step_length == 1.0) {
+    return allowed_share(problem_, current_.at(Damage::held), step);
+  }
+
+  void go_towards(const Prediction& next, double share, IterationRecord& row) {
+    row.step_length = share;
+    if (share == 1.0) {
       current_.displacement = next.displacement;
       unknown_ = next.unknown;
       return;
     }
-    add_scaled(current_.displacement, row.step_length, step);
-    unknown_ += row.step_length * (next.unknown - unknown_);
+    for (std::size_t dof = 0; dof < current_.displacement.size(); ++dof) {
+      current_.displacement[dof] += share * (next.displacement[dof] - current_.displacement[dof]);
+    }
+    unknown_ += share * (next.unknown - unknown_);
+  }
+
+  void take_loads() {
+    const LoadPoint at = step_.loads(unknown_);
+    problem_.conditions.external_force(at, external_force_);
+    current_.environment = problem_.conditions.environment(at);
   }
 
   /// Moves supports and loads to the present unknown, and evaluates the state.
   void stand_at_unknown() {
-    const LoadPoint at = step_.loads(unknown_);
-    problem_.conditions.prescribe(at, current_.displacement);
-    problem_.conditions.external_force(at, external_force_);
-    current_.environment = problem_.conditions.environment(at);
+    problem_.conditions.prescribe(step_.loads(unknown_), current_.displacement);
+    take_loads();
     evaluate(problem_, external_force_, current_, options_.damage);
     result_.scale = options_.scale > 0.0 ? options_.scale : std::max(old_scale_, load_norm());
   }

@@ -27,6 +27,9 @@ struct BorderEquation {
 struct Prediction {
   std::vector<double> displacement;
   double unknown = 0.0;
+  /// Displacement at which contacts are closed that the search is to close; empty: the predicted
+  /// one.
+  std::vector<double> foreseen{};
 };
 
 /// Definition of a bordered search.

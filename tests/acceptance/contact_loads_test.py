@@ -1,14 +1,16 @@
 """Contacts where the load is found: by a control, and along the arc length."""
 
+import pathlib
+
 import numpy
 
 from tests.acceptance.folder import Folder
 from tests.acceptance.motions import columns
-from tests.reference.program import CASES
 from tests.reference.results import Results
 from tests.reference.verify import Verification
 from tests.same_results import differences
 
+CASES = pathlib.Path(__file__).resolve().parents[2] / "cases"
 # A bar with an edge crack 1e-6 m open, which closes when it is pressed.
 NOTCHED = """\
 dimension = 2
@@ -49,7 +51,7 @@ CONTROL = """\
 set = "right"
 weights = [-1, 0]
 """
-# A block whose foot moves against a cylinder.
+# A block whose foot moves against a cylinder that touches two of its points, or that a plane presses on.
 HERTZ = """\
 dimension = 2
 [lattice]
@@ -67,23 +69,35 @@ where = "y > -spacing && abs(x) < spacing"
 youngs_modulus = 70e9
 [[support]]
 set = "foot"
-displacement = [0, "FOOT"]
+displacement = [0, "1e-4*load"]
 [[obstacle]]
-name = "cylinder"
+name = "punch"
 shape = "cylinder"
-point = [0, 0.080]
+point = [0, PLACE]
 radius = 0.080
-displacement = [0, "CYLINDER"]
 softness = 1e-4
-[[probe]]
-name = "top"
+"""
+TOUCHING = HERTZ.replace("PLACE", repr(float(numpy.sqrt(0.0805**2 - 0.5e-3**2) - 0.5e-3)))
+APART = HERTZ.replace("PLACE", "0.08002")
+PRESSED = TOUCHING.replace('"1e-4*load"', "0").split("[[obstacle]]")[0] + """\
+[[obstacle]]
+name = "punch"
+shape = "plane"
 set = "top"
-field = "displacement"
+point = [0, 0]
+normal = [0, -1]
+displacement = [0, "-1e-4*load"]
+softness = 1e-4
 """
 INDENTED = """\
 [[control]]
 set = "foot"
 weights = [0, 1]
+[[control]]
+set = "top"
+weights = [0, -1]
+"""
+SUNK = """\
 [[control]]
 set = "top"
 weights = [0, -1]
@@ -133,15 +147,13 @@ class LoadsThatAreFound(Folder):
         self.assertAlmostEqual(stiffness[-1] / stiffness[0], 1.0, places=3)  # open again
         self.assert_same_states(folder, NOTCHED, ["stored_energy"])
 
-    def test_a_control_finds_the_load_of_hertz(self):
-        for foot, cylinder in (("1e-4*load", "0"), ("0", "-1e-4*load")):
-            text = HERTZ.replace("FOOT", foot).replace("CYLINDER", cylinder)
-            control = INDENTED if cylinder == "0" else INDENTED.split("[[control]]\nset = \"top\"")[0].replace("foot", "top").replace("1]", "-1]")
-            folder = self.run_case(text + control + steps(0, 5e-6, 2e-5, 4e-5, 1e-5), name=f"found{len(foot)}")
+    def test_a_control_finds_the_load_of_an_obstacle(self):
+        for text, control in ((TOUCHING, INDENTED), (PRESSED, SUNK)):
+            folder = self.run_case(text + control + steps(0, 5e-6, 2e-5, 4e-5, 1e-5), name="found" + control[20:23])
             rows = columns(folder)
-            self.assertGreater(abs(rows["reaction_y:cylinder"]).max(), 100.0)
+            self.assertGreater(abs(rows["reaction_y:punch"]).max(), 100.0)
             self.assertLessEqual(rows["newton_iterations"].max(), 7)
-            self.assert_same_states(folder, text, ["stored_energy", "reaction_y:cylinder"])
+            self.assert_same_states(folder, text, ["stored_energy", "reaction_y:punch"])
 
     def test_along_the_arc_through_the_closing_of_a_gap(self):
         folder = self.run_case(NOTCHED + mode("arc_length"), "loading.steps=10")
@@ -151,14 +163,12 @@ class LoadsThatAreFound(Folder):
         self.assert_same_states(folder, NOTCHED, ["stored_energy"])
 
     def test_along_the_arc_against_an_obstacle(self):
-        for foot, cylinder in (("1e-4*load", "0"), ("0", "-1e-4*load")):
-            text = HERTZ.replace("FOOT", foot).replace("CYLINDER", cylinder)
-            for changes in ((), ("obstacle[0].point=[0, 0.08002]",) if cylinder == "0" else ()):
-                folder = self.run_case(text + mode("arc_length"), "loading.steps=5", *changes)
-                rows = columns(folder)
-                self.assertEqual(rows["load_factor"][-1], 1.0)
-                changed = text.replace("point = [0, 0.080]", "point = [0, 0.08002]") if changes else text
-                self.assert_same_states(folder, changed, ["stored_energy", "reaction_y:cylinder"])
+        for k, text in enumerate((TOUCHING, APART, PRESSED)):
+            folder = self.run_case(text + mode("arc_length"), "loading.steps=5", name=f"arc{k}")
+            rows = columns(folder)
+            self.assertEqual(rows["load_factor"][-1], 1.0)
+            self.assertGreater(abs(rows["reaction_y:punch"]).max(), 100.0)
+            self.assert_same_states(folder, text, ["stored_energy", "reaction_y:punch"])
 
     def test_an_arch_that_snaps_onto_an_obstacle(self):
         free, stopped = (self.run_case(ARCH + ground, name=f"arch{len(ground)}") for ground in ("", GROUND))
@@ -184,7 +194,8 @@ class LoadsThatAreFound(Folder):
         self.assertEqual(differences(whole, self.folder / "split"), [])
 
     def test_refused(self):
-        text = HERTZ.replace("FOOT", "0").replace("CYLINDER", "-1e-4*load").replace('[0, 0.080]', '[0, 0.081]')
-        self.assertIn("from the start", self.refusal(text + mode("arc_length")))
-        rubbing = HERTZ.replace("FOOT", "1e-4*load").replace("CYLINDER", "0") + mode("arc_length")
-        self.assertIn("friction", self.refusal(rubbing, "obstacle[0].friction=0.1"))
+        away = PRESSED.replace("point = [0, 0]", "point = [0, 1e-5]")
+        self.assertIn("from the start", self.refusal(away + mode("arc_length")))
+        self.assertIn("from the start", self.refusal(away + SUNK + steps(0, 1e-6)))
+        for found in (mode("arc_length"), INDENTED + steps(0, 1e-6)):
+            self.assertIn("friction", self.refusal(TOUCHING.replace("softness", "friction = 0.1\nsoftness") + found))
