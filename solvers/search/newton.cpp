@@ -69,6 +69,7 @@ class NewtonSearch {
             std::max(result_.scale, environment_norm(problem, start(), start_gradient_));
       }
     }
+    scale_at_start_ = result_.scale;
   }
 
   [[nodiscard]] NewtonResult run() {
@@ -254,7 +255,12 @@ class NewtonSearch {
     evaluate(problem_, external_force_, current_, damage_);
   }
 
+  /// Contacts that close in the step may bear the only forces of the body.
   [[nodiscard]] bool has_converged() {
+    if (!foreseen_.empty() && options_.scale <= 0.0) {
+      result_.scale = std::max(scale_at_start_,
+                               environment_norm(problem_, current_.at(damage_), current_.gradient));
+    }
     return note_convergence(problem_, tangent_, current_, last_residual_,
                             options_.relative_tolerance, result_);
   }
@@ -284,7 +290,7 @@ class NewtonSearch {
   bool has_predicted_ = false;          // foreseen_ is the predictor's
   std::vector<double> direction_;
   std::optional<Inertia> start_inertia_;
-  double last_residual_ = 0.0, last_projection_ = 0.0;
+  double last_residual_ = 0.0, last_projection_ = 0.0, scale_at_start_ = 0.0;
   NewtonResult result_;
 };
 

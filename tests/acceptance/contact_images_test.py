@@ -143,7 +143,8 @@ class ContactOfImages(Folder):
                 self.assert_part_of(part, whole)
                 mine = columns(part)
                 numpy.testing.assert_allclose(mine["stored_energy"], share * rows["stored_energy"], rtol=1e-9, atol=1e-18)
-                self.assert_code(self.command("check-tangent", text), 0)
+                pressed = "--deformation", "0.012 + 0.97*(x - 0.012) + 0.1*(x - 0.012)*(y - 0.003)^2; 0.003 + 1.01*(y - 0.003)"
+                self.assert_code(self.command("check-tangent", text, words=pressed), 0)
 
     def test_halves_that_fly_together(self):
         for scheme in ("verlet", "newmark"):
@@ -163,8 +164,8 @@ class ContactOfImages(Folder):
         changes = CUT + LEFT + RIGHT + "[loading]\ntable = [0, -1]\nsteps = 2\n"
         whole = self.run_case(WHOLE + changes, name="whole")
         for k, (text, _) in enumerate(self.halves(changes)):
-            part = self.run_case(text, "solver.mode=relaxation", "relaxation.tolerance=1e-8", name=f"part{k}")
-            self.assert_part_of(part, whole, 1e-5)
+            part = self.run_case(text, "solver.mode=relaxation", name=f"part{k}")
+            self.assert_part_of(part, whole, 1e-3)
 
     def test_layers_that_slide_over_periods(self):
         once, twice = (LAYERS.replace("LENGTH", length) for length in ("0.008", "0.016"))
@@ -196,6 +197,7 @@ class ContactOfImages(Folder):
                     text += f'[[support]]\nset = "second"\ndisplacement = ["1e-4*0.012*load"{zeros}]\n'
                 folder = self.run_case(text, name=f"of{d}_{len(cuts)}")
                 rows.append((columns(folder), folder))
-            numpy.testing.assert_allclose(2.0 * rows[0][0]["stored_energy"], rows[1][0]["stored_energy"], rtol=1e-9, atol=1e-18)
-            self.assertGreater(rows[0][0]["stored_energy"][-1], 4.0 * rows[0][0]["stored_energy"][2])
-            self.assert_part_of(rows[0][1], rows[1][1])
+            for load in (-1.0, 0.5, -2.0):
+                one, two = (of["stored_energy"][of["load_factor"] == load] for of, _ in rows)
+                numpy.testing.assert_allclose(2.0 * one, two, rtol=1e-9, atol=1e-18)
+                self.assertEqual(one[0] > 1e-12, load < 0.0)  # apart, then pressed
