@@ -118,17 +118,20 @@ Advance ArcLengthStepping::begin() {
   const SolvedBody& body = path_.body();
   std::vector<double> rate, foreseen;
   if (body.assembler.has_contacts()) foreseen = state.accepted.displacement;
+  const double closes = share_of_closed * increment_.value();
+  const SharedEnvironment environment =
+      path_.setting().conditions.environment(at_stage(state.accepted.stage + closes));
   const auto start = [&] {
     StateView at(state.accepted);
     at.foreseen = foreseen;
+    if (!foreseen.empty()) at.environment = environment;
     return at;
   };
   const auto solve = [&](std::vector<double>& next) {
     const LinearOutcome found = find_rate(path_.problem(), body.solver, body.tangent, start(),
                                           at_stage, state.accepted.stage, rate);
     next = state.accepted.displacement;
-    if (found == LinearOutcome::solved)
-      add_scaled(next, share_of_closed * increment_.value(), rate);
+    if (found == LinearOutcome::solved) add_scaled(next, closes, rate);
     return found;
   };
   const LinearOutcome outcome = predict_with_contacts(path_.problem(), foreseen, start, solve);
@@ -356,6 +359,8 @@ bool ArcLengthStepping::turn(const Step& step) {
   at.foreseen = state.accepted.displacement;
   const std::vector<Index> closed = body.assembler.closed_contacts(at);
   at.foreseen = ahead;
+  at.environment = path_.setting().conditions.environment(
+      at_stage(state.accepted.stage + growth_at_turn * step.attempted * arc.stage_direction));
   if (body.assembler.closed_contacts(at) == closed) return false;
   std::vector<double> rate;
   if (find_rate(path_.problem(), body.solver, body.tangent, at, at_stage, state.accepted.stage,

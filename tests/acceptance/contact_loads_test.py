@@ -86,7 +86,7 @@ shape = "plane"
 set = "top"
 point = [0, 0]
 normal = [0, -1]
-displacement = [0, "-1e-4*load"]
+displacement = [0, "-4e-5*load"]
 softness = 1e-4
 """
 INDENTED = """\
@@ -144,7 +144,7 @@ class LoadsThatAreFound(Folder):
         self.assertLessEqual(rows["newton_iterations"].max(), 7)
         stiffness = rows["load_factor"][1:] / rows["control"][1:]
         self.assertGreater(stiffness[3] / stiffness[0], 1.1)  # closed
-        self.assertAlmostEqual(stiffness[-1] / stiffness[0], 1.0, places=3)  # open again
+        self.assertAlmostEqual(stiffness[-1] / stiffness[0], 1.0, delta=0.01)  # open again
         self.assert_same_states(folder, NOTCHED, ["stored_energy"])
 
     def test_a_control_finds_the_load_of_an_obstacle(self):
@@ -159,7 +159,7 @@ class LoadsThatAreFound(Folder):
         folder = self.run_case(NOTCHED + mode("arc_length"), "loading.steps=10")
         rows = columns(folder)
         self.assertEqual(rows["load_factor"][-1], 1.0)
-        self.assertFalse(rows["negative_pivots"].any())
+        self.assertFalse((rows["negative_pivots"] > 0).any())
         self.assert_same_states(folder, NOTCHED, ["stored_energy"])
 
     def test_along_the_arc_against_an_obstacle(self):
@@ -171,20 +171,24 @@ class LoadsThatAreFound(Folder):
             self.assert_same_states(folder, text, ["stored_energy", "reaction_y:punch"])
 
     def test_an_arch_that_snaps_onto_an_obstacle(self):
-        free, stopped = (self.run_case(ARCH + ground, name=f"arch{len(ground)}") for ground in ("", GROUND))
+        free, stopped = (self.run_case(ARCH + ground, "arc_length.steps=40", name=f"arch{len(ground)}") for ground in ("", GROUND))
         verification = Verification(stopped, ARCH + GROUND)
         verification.run()
         self.assertEqual(verification.complaints, [])
         path, rows = columns(free), columns(stopped)
         touches = rows["reaction_y:ground"] > 0.0
+        self.assertGreater(touches.sum(), 5)
         self.assertTrue(rows["negative_pivots"][~touches].any())
-        self.assertFalse(rows["negative_pivots"][-1])
-        self.assertEqual(rows["load_factor"][-1], 1.0)
-        self.assertLess(abs(rows["middle_y"][touches] - rows["middle_y"][touches][0]).max(), 0.02)
+        self.assertFalse(rows["negative_pivots"][touches].any())
+        # The load falls until the arch touches, and rises again while its middle stays.
+        first = numpy.argmax(touches)
+        self.assertLess(rows["load_factor"][first - 1], 0.46)
+        self.assertTrue((numpy.diff(rows["load_factor"][first:]) > 0.0).all())
+        self.assertLess(numpy.ptp(rows["middle_y"][first:]), 1e-4)
         # Before it touches it goes the way of the free arch.
         order = numpy.argsort(-path["middle_y"])
-        along = numpy.interp(-rows["middle_y"][~touches], -path["middle_y"][order], path["load_factor"][order])
-        self.assertLess(abs(along - rows["load_factor"][~touches]).max(), 0.02)
+        along = numpy.interp(-rows["middle_y"][:first], -path["middle_y"][order], path["load_factor"][order])
+        self.assertLess(abs(along - rows["load_factor"][:first]).max(), 0.01)
 
     def test_resumed(self):
         text = NOTCHED + mode("arc_length") + "[loading]\nsteps = 10\n"
