@@ -507,6 +507,8 @@ class Contact(Table):
     """another set, which the points of `set` touch, and not one another. Default: the points of `set` touch one another. Allowed: name of a set or layer"""
     distance: Quantity
     """distance at which two points touch [m]. Default: the mean of the two points' sizes, on a lattice the spacing. Allowed: positive"""
+    reach: Quantity
+    """with planes of symmetry and periods: distance from the body up to which points beyond them are modelled. A state in which others might touch is refused [m]. Default: the horizon. Allowed: positive"""
     stiffness: float
     """stiffness over that of the bar of material between two points. Default: 1. Allowed: 0.001 to 1000"""
     depth: float
@@ -777,7 +779,7 @@ class CaseTable(Table):
     def add_foundation(self, *, name: str = ..., set: str = ..., side: Literal["x-", "x+", "y-", "y+", "z-", "z+"] = ..., modulus: List = ..., stiffness: List = ..., displacement: List = ...) -> Foundation: ...
     foundation: Array[Foundation]
     """tables: springs between a part of the body and the ground. Default: none"""
-    def add_contact(self, *, set: str = ..., with_: str = ..., distance: Quantity = ..., stiffness: float = ..., depth: float = ..., softness: float = ...) -> Contact: ...
+    def add_contact(self, *, set: str = ..., with_: str = ..., distance: Quantity = ..., reach: Quantity = ..., stiffness: float = ..., depth: float = ..., softness: float = ...) -> Contact: ...
     contact: Array[Contact]
     """tables: contact of points that no whole bond joins. Default: none"""
     def add_obstacle(self, *, name: str = ..., set: str = ..., shape: Literal["plane", "cylinder", "sphere"] = ..., point: List = ..., normal: List = ..., axis: List = ..., radius: Quantity = ..., inside: bool = ..., displacement: List = ..., stiffness: float = ..., depth: float = ..., softness: float = ..., friction: float = ..., tangential_stiffness: float = ...) -> Obstacle: ...
