@@ -509,6 +509,8 @@ class Contact(Table):
     """what touches. `'points'`: points, for cracks that slip by less than a spacing and for fragments; `'faces'`: points and the faces that join surface points, for surfaces that slide. Default: `'points'`. Allowed: `'points'`, `'faces'`"""
     distance: Quantity
     """distance at which two points touch [m]. Default: the mean of the two points' sizes, on a lattice the spacing. Allowed: positive"""
+    reach: Quantity
+    """with planes of symmetry and periods: distance from the body up to which points beyond them are modelled. A state in which others might touch is refused [m]. Default: the horizon. Allowed: positive"""
     stiffness: float
     """stiffness over that of the bar of material between two points. Default: 1. Allowed: 0.001 to 1000"""
     depth: float

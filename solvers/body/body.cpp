@@ -118,7 +118,8 @@ void store_interactions(Body& body, int threads) {
 }
 
 /// Distance up to which images are needed [m]: a partial volume reaches half a cell's diagonal
-/// beyond the horizon, in a cloud half the size of its largest point. Collective.
+/// beyond the horizon, in a cloud half the size of its largest point. Contacts may reach farther.
+/// Collective.
 double reach_of_images(const BodySpecification& of, const Points& points,
                        const Communicator& ranks) {
   double beyond = 0.0;
@@ -129,7 +130,9 @@ double reach_of_images(const BodySpecification& of, const Points& points,
     }
     beyond = std::max(ranks.max(beyond), points.spacing.largest());
   }
-  return of.horizon * farthest_of(of.horizon_shape, points.dimension) + beyond;
+  double reach = of.horizon * farthest_of(of.horizon_shape, points.dimension) + beyond;
+  for (const ContactSpecification& contact : of.contacts) reach = std::max(reach, contact.reach);
+  return reach;
 }
 
 /// A quantity of the points' materials; empty if no material has it.
@@ -308,7 +311,6 @@ std::unique_ptr<const Body> make_body(Points points, const BodySpecification& gi
   BodySpecification of = given;
   take_horizons(points, of, SoleRank());
   check_specification(of, points);
-  refuse_contacts_with_images(of);
   const std::vector<Period> periods(of.constraints.periods.begin(), of.constraints.periods.end());
   add_images(points, of.constraints.symmetries, periods, reach_of_images(of, points, SoleRank()));
   auto body = std::make_unique<Body>();

@@ -26,8 +26,12 @@ PairContactRule rule_of(const ContactSpecification& of, const Points& points) {
   if (of.set.empty()) return rule;
   rule.side.assign(std::size_t(points.count()), 0);
   for (const Index point : points.sets.at(of.set)) rule.side[std::size_t(point)] = 1;
-  if (of.with.empty()) return rule;
-  for (const Index point : points.sets.at(of.with)) rule.side[std::size_t(point)] = 2;
+  if (!of.with.empty()) {
+    for (const Index point : points.sets.at(of.with)) rule.side[std::size_t(point)] = 2;
+  }
+  for (Index image = points.own(); image < points.count(); ++image) {
+    rule.side[std::size_t(image)] = rule.side[std::size_t(points.source(image))];
+  }
   return rule;
 }
 
@@ -50,20 +54,13 @@ void add_contacts(const Body& body, Model& model) {
       bonds);
   for (std::size_t k = 0; k < of.contacts.size(); ++k) {
     if (of.contacts[k].shape == ContactShape::points || !contacts->faces.none()) continue;
-    throw InputError(indexed("contacts", k) + ".shape", "\"faces\"",
-                     "finds no faces: the body is one point thick, or bonds do not reach across the "
-                     "diagonals of its cells; take \"points\"");
+    throw InputError(
+        indexed("contacts", k) + ".shape", "\"faces\"",
+        "finds no faces: the body is one point thick, or bonds do not reach across the "
+        "diagonals of its cells; take \"points\"");
   }
   model.add(std::make_shared<PairContactTerm>(contacts));
   if (!contacts->faces.none()) model.add(std::make_shared<FaceContactTerm>(contacts));
-}
-
-void refuse_contacts_with_images(const BodySpecification& of) {
-  if (of.contacts.empty()) return;
-  if (of.constraints.symmetries.empty() && of.constraints.periods.empty()) return;
-  throw InputError("contacts", "",
-                   "contact of points is not for bodies with planes of symmetry and periods yet, "
-                   "whose images it would not see; take the whole body");
 }
 
 }  // namespace peristat

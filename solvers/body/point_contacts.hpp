@@ -8,8 +8,4 @@ namespace peristat {
 /// Adds the contacts of a body's points by its specification, on the bonds of its model.
 void add_contacts(const Body& body, Model& model);
 
-/// Refuses contacts of bodies with planes of symmetry and periods.
-/// @throws InputError ("contacts")
-void refuse_contacts_with_images(const BodySpecification& of);
-
 }  // namespace peristat

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solvers/search/foreseen_contacts.hpp"
 #include "solvers/search/linearisation.hpp"
 #include "solvers/search/softest_mode.hpp"
 #include "src/core/number_text.hpp"
@@ -21,6 +22,13 @@ constexpr double straight_cosine = 0.99;
 /// A critical point is located to this fraction of the step, the onset of damage to this fraction
 /// of the first step.
 constexpr double share_of_located = 1e-4, share_of_onset = 1e-3;
+
+/// Contacts that close within this fraction of the first step count as closed at its begin.
+constexpr double share_of_closed = 1e-3;
+
+/// Steps shorter than this fraction of the first one that fail may turn where a contact closes. The
+/// next step is longer by a factor.
+constexpr double share_of_turn = 1e-3, growth_at_turn = 16.0;
 
 /// Largest number of steps of a path for which none is given.
 constexpr int most_steps = 10'000;
@@ -108,9 +116,25 @@ Advance ArcLengthStepping::put_on_preload() {
 Advance ArcLengthStepping::begin() {
   PathState& state = path_.state();
   const SolvedBody& body = path_.body();
-  std::vector<double> rate;
-  const LinearOutcome outcome = find_rate(path_.problem(), body.solver, body.tangent,
-                                          {state.accepted}, at_stage, state.accepted.stage, rate);
+  std::vector<double> rate, foreseen;
+  if (body.assembler.has_contacts()) foreseen = state.accepted.displacement;
+  const double closes = share_of_closed * increment_.value();
+  const SharedEnvironment environment =
+      path_.setting().conditions.environment(at_stage(state.accepted.stage + closes));
+  const auto start = [&] {
+    StateView at(state.accepted);
+    at.foreseen = foreseen;
+    if (!foreseen.empty()) at.environment = environment;
+    return at;
+  };
+  const auto solve = [&](std::vector<double>& next) {
+    const LinearOutcome found = find_rate(path_.problem(), body.solver, body.tangent, start(),
+                                          at_stage, state.accepted.stage, rate);
+    next = state.accepted.displacement;
+    if (found == LinearOutcome::solved) add_scaled(next, closes, rate);
+    return found;
+  };
+  const LinearOutcome outcome = predict_with_contacts(path_.problem(), foreseen, start, solve);
   if (outcome != LinearOutcome::solved) {
     Attempt attempt = undefined_attempt(state.accepted, load_point(state.accepted));
     attempt.outcome = outcome_of(outcome);
@@ -154,7 +178,7 @@ Attempt ArcLengthStepping::search_across(double length) {
   for (double& weight : weights) weight *= 0.5 / (arc.displacement_scale * arc.displacement_scale);
   const double stage_weight = 0.5 * arc.stage_direction;
   const double here = dot(weights, from.displacement) + stage_weight * from.stage;
-  Prediction prediction{from.displacement, from.stage + length * arc.stage_direction};
+  Prediction prediction{from.displacement, from.stage + length * arc.stage_direction, foreseen_};
   add_scaled(prediction.displacement, length, arc.direction);
   return path_.search(
       from, {at_stage, {weights, stage_weight, here + length}, from.stage, std::move(prediction)},
@@ -245,6 +269,7 @@ Advance ArcLengthStepping::accept(Step step, const std::string& reason) {
   state.arc.direction = std::move(step.direction);
   state.arc.stage_direction = step.stage_direction;
   state.arc.negative_pivots = step.negative_pivots;
+  foreseen_.clear();
   return peristat::accept(path_, std::move(step.attempt), std::move(step.found),
                           increment_.value());
 }
@@ -318,11 +343,58 @@ Advance ArcLengthStepping::branch_off(std::int64_t modes) {
   return Advance::goes_on;
 }
 
+bool ArcLengthStepping::turn(const Step& step) {
+  PathState& state = path_.state();
+  PathState::Arc& arc = state.arc;
+  const SolvedBody& body = path_.body();
+  const bool is_short = step.attempted < share_of_turn / path_.options().steps;
+  if (!is_short || !worth_cutting(step.attempt) || !body.assembler.has_contacts() ||
+      !foreseen_.empty() || arc.stage_direction == 0.0) {
+    return false;
+  }
+  std::vector<double> ahead = state.accepted.displacement;
+  add_scaled(ahead, growth_at_turn * step.attempted, arc.direction);
+  move_followers(path_.problem(), ahead);
+  StateView at(state.accepted, Damage::held);
+  at.foreseen = state.accepted.displacement;
+  const std::vector<Index> closed = body.assembler.closed_contacts(at);
+  at.foreseen = ahead;
+  at.environment = path_.setting().conditions.environment(
+      at_stage(state.accepted.stage + growth_at_turn * step.attempted * arc.stage_direction));
+  if (body.assembler.closed_contacts(at) == closed) return false;
+  std::vector<double> rate;
+  if (find_rate(path_.problem(), body.solver, body.tangent, at, at_stage, state.accepted.stage,
+                rate) != LinearOutcome::solved) {
+    return false;
+  }
+  const std::int64_t before = arc.negative_pivots, behind = body.solver.inertia()->negative;
+  const bool turns = (before - behind) % 2 != 0;
+  const double sign = (arc.stage_direction > 0.0) == turns ? -1.0 : 1.0;
+  const double size = sign * std::sqrt(product(rate, 1.0, rate, 1.0));
+  for (double& entry : rate) entry /= size;
+  arc.direction = std::move(rate);
+  arc.stage_direction = 1.0 / size;
+  arc.negative_pivots = behind;
+  foreseen_ = std::move(ahead);
+  increment_.enlarge_to(growth_at_turn * step.attempted);
+  path_.tell(load_point(state.accepted),
+             {.increment = step.attempted,
+              .outcome = name(step.attempt.outcome),
+              .action = Decision::locate,
+              .next_increment = increment_.value(),
+              .reason = std::string("a contact closes, and the path turns") +
+                        (turns ? ", a limit point: negative pivots from " + std::to_string(before) +
+                                     " to " + std::to_string(behind)
+                               : "")});
+  return true;
+}
+
 Advance ArcLengthStepping::fail(Step step) {
   Attempt& attempt = step.attempt;
   const std::string reason = reason_of(attempt, step.fault);
   const bool is_located = attempt.outcome == Outcome::damage_begins &&
                           step.attempted < share_of_onset / path_.options().steps;
+  if (turn(step)) return Advance::goes_on;
   if (!is_located && cut(path_, increment_, attempt, step.attempted, reason)) {
     return Advance::goes_on;
   }

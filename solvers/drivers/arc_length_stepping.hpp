@@ -64,6 +64,11 @@ class ArcLengthStepping : public Driver {
   /// Judges whether a step is the next state of the path; sets outcome and fault if it is not.
   void judge(Step& step) const;
   void find_direction(Step& step);
+  /// Turns round the corner of the path where a contact closes just ahead, for a step that cannot
+  /// pass it. The determinant of the bordered tangent keeps its sign along a path: the load turns
+  /// if the number of negative pivots changes by an odd number.
+  /// @return false if none closes
+  [[nodiscard]] bool turn(const Step& step);
   /// Locates the critical point between the accepted state and one with other negative pivots.
   [[nodiscard]] Advance locate(Step beyond);
   /// @param modes number of modes that vanish together
@@ -77,6 +82,9 @@ class ArcLengthStepping : public Driver {
 
   ImplicitStepping implicit_;
   Increment increment_;
+  /// Displacement at which contacts are closed that the next step closes, where the path turns with
+  /// them; empty: none. Found anew after an interruption.
+  std::vector<double> foreseen_;
 };
 
 }  // namespace peristat

@@ -263,7 +263,7 @@ double Dynamics::step_with_contacts(const Motion& motion, double dt) {
   const std::vector<double>& mass = setting().mass;
   const Trial& at = motion.at();
   std::vector<double> stiffness(mass.size(), 0.0);
-  assembler.add_contact_stiffness(at.at(), 1.0, stiffness);
+  add_contact_stiffness(path_.problem(), at.at(), 1.0, stiffness);
   double largest = 0.0;
   for (const Index dof : path_.free().dof) {
     largest = std::max(largest, stiffness[dof] / mass[dof]);
@@ -275,6 +275,7 @@ double Dynamics::step_with_contacts(const Motion& motion, double dt) {
   const double end = path_.setting().conditions.programme().end();
   std::vector<double> next = at.displacement;
   add_scaled(next, dt, motion.velocity());
+  move_followers(path_.problem(), next);
   const StateView there(next, at.history, Damage::held,
                         path_.problem().environment(std::min(motion.time() + dt, end)));
   const double closed = assembler.largest_closing(at.at(), there);

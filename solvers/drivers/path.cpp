@@ -134,7 +134,9 @@ void Path::find_control_sign() {
   const State& from = state_.accepted;  // step 0, unless the rate could not be found there
   std::vector<double> rate;
   const auto loads = [&](double load) { return LoadPoint(from.stage, load); };
-  if (find_rate(problem(), solved.solver, solved.tangent, {from}, loads, from.load.value_or(0.0),
+  StateView at(from);
+  if (solved.assembler.has_contacts()) at.foreseen = from.displacement;  // those that touch press
+  if (find_rate(problem(), solved.solver, solved.tangent, at, loads, from.load.value_or(0.0),
                 rate) != LinearOutcome::solved) {
     return;  // the search reports the failure
   }

@@ -50,6 +50,7 @@ struct Ldlt::Implementation {
   mumps::LowerEntries entries;
   std::vector<std::size_t> begin;  // start of each column in the entries
   std::vector<double> values;
+  int version = 0;  // of the pattern
   const FreeDofs* free = nullptr;
   const Tangent* tangent = nullptr;
   std::optional<Inertia> inertia;
@@ -105,6 +106,11 @@ LinearOutcome Ldlt::factorize(const TangentOperator& tangent, FactorUse /*use*/)
   const Stopwatch watch(own.statistics.seconds);
   own.tangent = tangent.as_tangent();
   if (!own.tangent) throw std::logic_error("a direct solver needs a stored tangent");
+  if (tangent.version != own.version) {
+    own.version = tangent.version;
+    const LinearOutcome outcome = analyze(tangent.pattern, *own.free);
+    if (outcome != LinearOutcome::solved) return outcome;
+  }
   own.inertia.reset();
   const Index size = own.free->count();
   if (size > 0) {

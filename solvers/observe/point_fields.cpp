@@ -41,6 +41,7 @@ std::vector<double> contact_force(Observation& in) {
     static_cast<void>(in.assembler().gradient(view, without));
   }
   for (std::size_t k = 0; k < dofs; ++k) with[k] = without[k] - with[k];
+  in.body().conditions->constraints().fold_images(with);
   return recorded(in, with);
 }
 

@@ -73,7 +73,8 @@ std::string explanation(Outcome outcome) {
       return "no step along the Newton direction lowers the energy";
     case Outcome::degenerate:
       return "bonds collapse to zero length, points go too deep into what they touch or through "
-             "it, no place of an obstacle bears its force, or values are not finite";
+             "it, or near to images that are not modelled (reach of a contact), no place of an "
+             "obstacle bears its force, or values are not finite";
     case Outcome::out_of_memory:
       return "the factorisation does not fit in memory";
     case Outcome::linear_solver_inaccurate:
@@ -128,10 +129,10 @@ void share_out_jump(const EquilibriumProblem& problem, std::span<const double> f
   constraints.share_out_jump(from, stays, displacement);
 }
 
-void move_followers(const EquilibriumProblem& problem, Trial& trial) {
+void move_followers(const EquilibriumProblem& problem, std::span<double> displacement) {
   const Constraints& constraints = problem.conditions.constraints();
-  problem.assembler.index_map().update_ghosts(trial.displacement);
-  if (!constraints.none()) constraints.move(trial.displacement);
+  problem.assembler.index_map().update_ghosts(displacement);
+  if (!constraints.none()) constraints.move(displacement);
 }
 
 void fold_followers(const EquilibriumProblem& problem, std::span<const double> external_force,
@@ -146,6 +147,38 @@ void fold_followers(const EquilibriumProblem& problem, std::span<const double> e
   for (Tensor& block : trial.curvature) {
     for (auto& row : block) sums.add_up(row);
   }
+}
+
+double allowed_share(const EquilibriumProblem& problem, const StateView& at,
+                     std::span<const double> step) {
+  if (!problem.assembler.has_contacts()) return 1.0;
+  std::vector<double> of_all(step.begin(), step.end());
+  problem.assembler.index_map().update_ghosts(of_all);
+  const Constraints& constraints = problem.conditions.constraints();
+  if (!constraints.none()) constraints.extend(at.displacement, of_all);
+  return problem.assembler.longest_step(at, of_all);
+}
+
+void add_contact_stiffness(const EquilibriumProblem& problem, const StateView& at,
+                           double most_depth, std::span<double> stiffness) {
+  const Points& points = problem.assembler.points();
+  const Constraints& constraints = problem.conditions.constraints();
+  const auto d = std::size_t(points.dimension);
+  std::vector<double> of_contacts(stiffness.size(), 0.0);
+  problem.assembler.add_contact_stiffness(at, most_depth, of_contacts);
+  for (Index image = points.own(); image < points.count(); ++image) {
+    for (int axis = 0; axis < points.dimension; ++axis) {
+      const double periods = std::abs(points.image_kind(image).periods[std::size_t(axis)]);
+      if (periods == 0.0) continue;
+      // The row of the jump J in the energy of p J + u_j - u_i; p^2 + 2 p of a row's half.
+      const auto handle = std::size_t(constraints.period_handle(axis));
+      for (std::size_t c = 0; c < d; ++c) {
+        of_contacts[handle * d + c] +=
+            0.5 * periods * (periods + 2.0) * of_contacts[std::size_t(image) * d + c];
+      }
+    }
+  }
+  add_scaled(stiffness, 1.0, of_contacts);
 }
 
 double heating_work(Assembler& assembler, const StateView& from, const StateView& to) {

@@ -94,10 +94,23 @@ void share_out_jump(const EquilibriumProblem& problem, std::span<const double> f
                     std::span<double> displacement);
 /// Moves dependent degrees of freedom to where their masters take them, and ghosts to where their
 /// owners are.
-void move_followers(const EquilibriumProblem& problem, Trial& trial);
+void move_followers(const EquilibriumProblem& problem, std::span<double> displacement);
+inline void move_followers(const EquilibriumProblem& problem, Trial& trial) {
+  move_followers(problem, trial.displacement);
+}
 /// Folds the assembler's gradient onto masters, and finds the curvature of rigid sets.
 void fold_followers(const EquilibriumProblem& problem, std::span<const double> external_force,
                     Trial& trial);
+
+/// Largest share of a step, from 0 to 1, that no contact passes its largest depth within.
+/// @param step of the independent degrees of freedom; followers take part
+[[nodiscard]] double allowed_share(const EquilibriumProblem& problem, const StateView& at,
+                                   std::span<const double> step);
+
+/// Adds to each degree of freedom the stiffness of contacts, see TermPasses; of jumps over periods,
+/// too [N/m].
+void add_contact_stiffness(const EquilibriumProblem& problem, const StateView& at,
+                           double most_depth, std::span<double> stiffness);
 
 /// Work of heating on the way between two states [J], by the trapezoidal rule: the mean of the
 /// energies that the change of the environment would add to either state, with damage held. For

@@ -7,6 +7,7 @@
 
 #include "solvers/search/condition_rates.hpp"
 #include "solvers/search/convergence.hpp"
+#include "solvers/search/foreseen_contacts.hpp"
 #include "solvers/search/linearisation.hpp"
 #include "src/core/vector_verbs.hpp"
 
@@ -27,6 +28,7 @@ class BorderedSearch {
       : problem_(problem),
         solver_(solver),
         tangent_(tangent),
+        from_(from),
         step_(step),
         options_(options),
         observer_(observer),
@@ -39,6 +41,10 @@ class BorderedSearch {
 
   [[nodiscard]] BorderedResult run() {
     result_.outcome = search();
+    if (result_.outcome == Outcome::converged &&
+        problem_.assembler.has_passed(from_, current_.at(options_.damage))) {
+      result_.outcome = Outcome::degenerate;
+    }
     result_.state = std::move(current_);
     result_.external_force = std::move(external_force_);
     return {std::move(result_), unknown_};
@@ -46,12 +52,11 @@ class BorderedSearch {
 
  private:
   Outcome search() {
-    problem_.conditions.external_force(step_.loads(unknown_), external_force_);
-    current_.environment = problem_.conditions.environment(step_.loads(unknown_));
+    take_loads();
     evaluate(problem_, external_force_, current_, Damage::held);
     old_scale_ = load_norm();
     old_border_size_ = border_sum().size;
-    Outcome outcome = step_.prediction ? predict() : iterate(1, Damage::held);
+    Outcome outcome = begin();
     while (outcome == Outcome::converged && !has_converged()) {
       if (current_.degenerate) return Outcome::degenerate;
       if (result_.iterations >= options_.max_iterations || has_stalled()) {
@@ -72,11 +77,41 @@ class BorderedSearch {
     return result_.iterations - least_iteration_ >= most_without_gain;
   }
 
-  Outcome predict() {
+  /// Goes to the prediction or, without one or where it closes or opens contacts, to where the
+  /// linear problem about the old state leads.
+  Outcome begin() {
+    if (problem_.assembler.has_contacts()) {
+      foreseen_ = !step_.prediction                    ? from_.displacement
+                  : step_.prediction->foreseen.empty() ? step_.prediction->displacement
+                                                       : step_.prediction->foreseen;
+      problem_.assembler.cover_contacts(start());
+    }
+    if (!step_.prediction || changes_contacts()) return iterate(1, Damage::held);
     current_.displacement = step_.prediction->displacement;
     unknown_ = step_.prediction->unknown;
     stand_at_unknown();
     return interrupts({}) ? Outcome::interrupted : Outcome::converged;
+  }
+
+  /// The old state, with the contacts that are foreseen as closed.
+  [[nodiscard]] StateView start() const {
+    StateView view(from_.displacement, from_.history, Damage::held, current_.environment);
+    view.curvature = start_.curvature;
+    view.foreseen = foreseen_;
+    return view;
+  }
+
+  /// True if other contacts are closed in the predicted state than in the old one.
+  [[nodiscard]] bool changes_contacts() {
+    if (foreseen_.empty()) return false;
+    Assembler& assembler = problem_.assembler;
+    StateView view = start();
+    view.foreseen = from_.displacement;
+    const std::vector<Index> before = assembler.closed_contacts(view);
+    view.foreseen = foreseen_;
+    view.environment = problem_.conditions.environment(step_.loads(step_.prediction->unknown));
+    const bool changes = assembler.closed_contacts(view) != before;
+    return problem_.sums().largest_of_all(changes ? 1.0 : 0.0) > 0.0;
   }
 
   /// @param damage in the state about which is linearised
@@ -85,31 +120,89 @@ class BorderedSearch {
     row.iteration = iteration;
     row.step_length = 1.0;
     last_residual_ = current_.residual_norm;
-    const Outcome outcome = correct(damage, row);
+    Prediction next;
+    const Outcome outcome = iteration == 1 && !foreseen_.empty()
+                                ? correct_at_start(row, next)
+                                : correct(current_.at(damage), current_.gradient, row, next);
     if (outcome != Outcome::converged) return outcome;
+    // The predictor foresees what closes; if not, its state is judged as it is.
+    const bool is_predictor = iteration == 1 && !foreseen_.empty();
+    go_towards(next, is_predictor ? 1.0 : share_of(next), row);
     stand_at_unknown();
     result_.iterations = iteration;
     return interrupts(row) ? Outcome::interrupted : Outcome::converged;
   }
 
-  /// Moves supports and loads to the present unknown, and evaluates the state.
-  void stand_at_unknown() {
+  /// Linearises about the old state. The loads are those of the last round, whose obstacles close
+  /// the contacts.
+  Outcome correct_at_start(IterationRecord& row, Prediction& next) {
+    Outcome outcome = Outcome::converged;
+    const double before = unknown_;
+    if (step_.prediction) unknown_ = step_.prediction->unknown;
+    take_loads();
+    static_cast<void>(predict_with_contacts(
+        problem_, foreseen_, [this] { return start(); },
+        [&](std::vector<double>& leads_to) {
+          start_.displacement = from_.displacement;
+          start_.history = from_.history;
+          start_.environment = current_.environment;
+          start_.foreseen = foreseen_;
+          evaluate(problem_, external_force_, start_, Damage::held);
+          outcome = correct(start(), start_.gradient, row, next);
+          if (outcome != Outcome::converged) return LinearOutcome::singular;
+          leads_to = next.displacement;
+          unknown_ = next.unknown;
+          take_loads();
+          return LinearOutcome::solved;
+        }));
+    unknown_ = before;
+    return outcome;
+  }
+
+  /// Share of the way to a state that contacts allow.
+  [[nodiscard]] double share_of(const Prediction& next) const {
+    std::vector<double> step = next.displacement;
+    add_scaled(step, -1.0, current_.displacement);
+    return allowed_share(problem_, current_.at(Damage::held), step);
+  }
+
+  void go_towards(const Prediction& next, double share, IterationRecord& row) {
+    row.step_length = share;
+    if (share == 1.0) {
+      current_.displacement = next.displacement;
+      unknown_ = next.unknown;
+      return;
+    }
+    for (std::size_t dof = 0; dof < current_.displacement.size(); ++dof) {
+      current_.displacement[dof] += share * (next.displacement[dof] - current_.displacement[dof]);
+    }
+    unknown_ += share * (next.unknown - unknown_);
+  }
+
+  void take_loads() {
     const LoadPoint at = step_.loads(unknown_);
-    problem_.conditions.prescribe(at, current_.displacement);
     problem_.conditions.external_force(at, external_force_);
     current_.environment = problem_.conditions.environment(at);
+  }
+
+  /// Moves supports and loads to the present unknown, and evaluates the state.
+  void stand_at_unknown() {
+    problem_.conditions.prescribe(step_.loads(unknown_), current_.displacement);
+    take_loads();
     evaluate(problem_, external_force_, current_, options_.damage);
     result_.scale = options_.scale > 0.0 ? options_.scale : std::max(old_scale_, load_norm());
   }
 
-  Outcome correct(Damage damage, IterationRecord& row) {
+  /// Linearises about a state, and finds where that leads to.
+  Outcome correct(const StateView& at, std::span<const double> gradient, IterationRecord& row,
+                  Prediction& next) {
     // If the search begins at the old state, another load parameter may have jumped.
     std::vector<double> after_jump = current_.displacement;
     problem_.conditions.prescribe(step_.loads(unknown_), after_jump);
     const bool jumps = after_jump != current_.displacement;
     std::vector<double> direction;
     LinearOutcome linear = linearisation_.solve(
-        current_.at(damage), current_.gradient, 0.0, FactorUse::factorize_now,
+        at, gradient, 0.0, FactorUse::factorize_now,
         jumps ? std::span<const double>(after_jump) : std::span<const double>(),
         options_.linear_tolerance, direction);
     result_.inertia = solver_.inertia();
@@ -120,22 +213,23 @@ class BorderedSearch {
     if (linear == LinearOutcome::singular && row.iteration > 1) return Outcome::degenerate;
     if (linear != LinearOutcome::solved) return outcome_of(linear);
 
-    const ConditionRates conditions =
-        rates_of(problem_, current_.at(damage), step_.loads, unknown_);
+    const ConditionRates conditions = rates_of(problem_, at, step_.loads, unknown_);
     std::vector<double> rate;
     linear = linearisation_.solve_again(conditions.force, conditions.displacement,
                                         options_.linear_tolerance, rate);
     if (linear != LinearOutcome::solved) return outcome_of(linear);
     add_scaled(rate, 1.0, conditions.displacement);
 
-    current_.displacement = std::move(after_jump);
-    add_scaled(current_.displacement, 1.0, direction);
-    move_followers(problem_, current_);
-    problem_.conditions.constraints().extend(current_.displacement, rate);
-    const std::optional<double> change = change_of_unknown(rate);
+    Trial led_to;
+    led_to.displacement = std::move(after_jump);
+    add_scaled(led_to.displacement, 1.0, direction);
+    move_followers(problem_, led_to);
+    problem_.conditions.constraints().extend(led_to.displacement, rate);
+    const std::optional<double> change = change_of_unknown(led_to.displacement, rate);
     if (!change) return Outcome::no_answer;
-    for (const Index dof : problem_.free.dof) current_.displacement[dof] += *change * rate[dof];
-    unknown_ += *change;
+    next.displacement = std::move(led_to.displacement);
+    for (const Index dof : problem_.free.dof) next.displacement[dof] += *change * rate[dof];
+    next.unknown = unknown_ + *change;
     return Outcome::converged;
   }
 
@@ -164,13 +258,14 @@ class BorderedSearch {
   }
 
   /// Change that fulfils the border; nothing if the border does not depend on the unknown.
-  std::optional<double> change_of_unknown(std::span<const double> rate) {
+  std::optional<double> change_of_unknown(std::span<const double> displacement,
+                                          std::span<const double> rate) {
     const BorderEquation& border = step_.border;
     const std::optional<double> answer = answer_of(border, rate);
     if (!answer) return std::nullopt;
     double missing = border.value - border.unknown_weight * unknown_;
     for (std::size_t dof = 0; dof < border.weights.size(); ++dof) {
-      missing -= border.weights[dof] * current_.displacement[dof];
+      missing -= border.weights[dof] * displacement[dof];
     }
     return missing / *answer;
   }
@@ -194,6 +289,7 @@ class BorderedSearch {
   const EquilibriumProblem& problem_;
   LinearSolver& solver_;
   TangentOperator& tangent_;
+  const State& from_;
   const BorderedStep& step_;
   const NewtonOptions& options_;
   const IterationObserver& observer_;
@@ -201,6 +297,8 @@ class BorderedSearch {
   std::vector<double> external_force_;
   Linearisation linearisation_;
   Trial current_;
+  Trial start_;                   // the old state with foreseen contacts
+  std::vector<double> foreseen_;  // displacement behind the predictor; empty: no contacts
   double last_residual_ = 0.0, old_scale_ = 0.0, old_border_size_ = 0.0;
   double least_residual_ = std::numeric_limits<double>::infinity();
   int least_iteration_ = 0;

@@ -27,6 +27,9 @@ struct BorderEquation {
 struct Prediction {
   std::vector<double> displacement;
   double unknown = 0.0;
+  /// Displacement at which contacts are closed that the search is to close; empty: the predicted
+  /// one.
+  std::vector<double> foreseen{};
 };
 
 /// Definition of a bordered search.
@@ -49,9 +52,13 @@ struct BorderedResult {
 ///
 /// Each iteration solves K_ff a = f_ext - dE/dx_f - K_fp jump_p and K_ff b = df_ext/dl - K_fp
 /// du_p/dl by one factor, and goes to u_f + a + dl b with the dl that fulfils the border (Batoz and
-/// Dhatt, Int. J. Numer. Methods Eng. 14, 1979). Steps are always full: between two limit points
-/// the energy is no merit function. The tangent may have negative pivots, which the solver must
-/// accept.
+/// Dhatt, Int. J. Numer. Methods Eng. 14, 1979). Steps are full, except where contacts would pass
+/// their largest depth: between two limit points the energy is no merit function. The tangent may
+/// have negative pivots, which the solver must accept.
+///
+/// With contacts the first iteration is that of predict_with_contacts about the old state, also
+/// instead of a prediction that closes or opens some. A state in which a contact has been passed
+/// through is degenerate.
 ///
 /// Rates of supports and loads are central differences over 2^-13, to about 1e-9; for conditions
 /// that are linear in the load they are exact to round-off.

@@ -1,6 +1,10 @@
 #include "solvers/search/condition_rates.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
 
 #include "src/core/input_error.hpp"
 #include "src/core/vector_verbs.hpp"
@@ -11,21 +15,60 @@ namespace {
 /// Step of the differences of conditions; a power of two, so that no digit of the unknown is lost.
 constexpr double difference = 0x1p-13;
 
+/// Motion of obstacles over which the forces of contacts are differenced, relative to the largest
+/// depth of a contact: they are far from linear.
+constexpr double share_of_depth = 1e-6;
+
+/// change += the difference of dE/dx that the motion of obstacles from `low` to `high` makes.
+void add_motion_of_obstacles(Assembler& assembler, const Obstacles& obstacles, const StateView& at,
+                             const SharedEnvironment& low, const SharedEnvironment& high,
+                             std::vector<double>& change) {
+  if (!obstacles.move()) return;
+  std::vector<double> motion = high->obstacles;
+  add_scaled(motion, -1.0, low->obstacles);
+  double largest = 0.0, shortest = std::numeric_limits<double>::infinity();
+  for (const double component : motion) largest = std::max(largest, std::abs(component));
+  for (const Obstacles::Obstacle& of : obstacles.all()) {
+    for (std::size_t c = of.first; c < of.last; ++c) {
+      shortest = std::min(shortest, of.depth * obstacles.contacts()[c].distance);
+    }
+  }
+  if (largest == 0.0) return;
+  const double share = std::min(1.0, share_of_depth * shortest / largest);
+  const SharedEnvironment middle = between(low, high, 0.5);
+  const auto gradient_at = [&](double place) {
+    auto moved = std::make_shared<Environment>(*middle);
+    add_scaled(moved->obstacles, place * share, motion);
+    StateView there = at;
+    there.environment = std::move(moved);
+    std::vector<double> gradient(change.size());
+    static_cast<void>(assembler.gradient(there, gradient));
+    return gradient;
+  };
+  std::vector<double> of_contacts = gradient_at(0.5);
+  add_scaled(of_contacts, -1.0, gradient_at(-0.5));
+  add_scaled(change, 1.0 / share, of_contacts);
+}
+
 /// force -= the difference of dE/dx between two load points, both transformed to the independent
 /// degrees of freedom.
 void take_off_heating(Assembler& assembler, const Conditions& conditions, const StateView& at,
                       const LoadPoint& low, const LoadPoint& high, std::vector<double>& force) {
   StateView there = at;
+  there.has_contacts = false;
   there.environment = conditions.environment(high);
   const bool follows = !conditions.constraints().none();
   if (!there.environment && !follows) return;
   std::vector<double> change(force.size());
   if (there.environment) {
+    const SharedEnvironment after = there.environment;
     static_cast<void>(assembler.gradient(there, change));
     std::vector<double> gradient(force.size());
     there.environment = conditions.environment(low);
     static_cast<void>(assembler.gradient(there, gradient));
     add_scaled(change, -1.0, gradient);
+    add_motion_of_obstacles(assembler, conditions.obstacles(), at, there.environment, after,
+                            change);
   }
   if (follows) conditions.constraints().fold(at.displacement, force, change);
   add_scaled(force, -1.0, change);

@@ -240,7 +240,7 @@ class Relaxation {
   void make_room_for_contacts() {
     if (row_sums_.empty()) return;
     of_contacts_.assign(row_sums_.size(), 0.0);
-    problem_.assembler.add_contact_stiffness(at_.at(), 1.0, of_contacts_);
+    add_contact_stiffness(problem_, at_.at(), 1.0, of_contacts_);
     for (std::size_t e = 0; e < dofs_.size(); ++e) {
       const double of_contacts = of_contacts_[dofs_[e]];
       if (!(of_contacts > 0.0)) continue;
@@ -254,9 +254,9 @@ class Relaxation {
     constexpr double usual_depth = 0.2;  // strains of a hundredth press as deep
     std::vector<double> here(row_sums.size(), 0.0), there(row_sums.size(), 0.0);
     StateView view = at_.at();
-    problem_.assembler.add_contact_stiffness(view, usual_depth, here);
+    add_contact_stiffness(problem_, view, usual_depth, here);
     view.environment = way_.end_environment();
-    problem_.assembler.add_contact_stiffness(view, usual_depth, there);
+    add_contact_stiffness(problem_, view, usual_depth, there);
     for (std::size_t k = 0; k < row_sums.size(); ++k) row_sums[k] += std::max(here[k], there[k]);
   }
 

@@ -69,7 +69,7 @@ LineSearchResult line_search(const EquilibriumProblem& problem,
                            from.energy_round_off;
   trial.history = from.history;
   trial.environment = from.environment;
-  double length = problem.assembler.longest_step(from.at(damage), direction);
+  double length = allowed_share(problem, from.at(damage), direction);
   for (int count = 0; count < options.max_trials; ++count, length *= options.shrink) {
     trial.displacement = from.displacement;
     add_scaled(trial.displacement, length, direction);

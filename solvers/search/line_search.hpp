@@ -19,8 +19,8 @@ struct LineSearchResult {
   int degenerate = 0;  ///< trials in which a measure had no gradient, or a value was not finite
 };
 
-/// Finds the largest step length l, l shrink, l shrink^2, … with l = Assembler::longest_step (1
-/// without contacts) along `direction` (zero on prescribed degrees of freedom) that lowers the
+/// Finds the largest step length l, l shrink, l shrink^2, … with l = allowed_share (1 without
+/// contacts) along `direction` (zero on prescribed degrees of freedom) that lowers the
 /// total energy sufficiently; `trial` becomes the accepted state.
 ///
 /// Residuals may rise on the way to equilibrium (in bending they always do at first), the energy

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "solvers/search/convergence.hpp"
+#include "solvers/search/foreseen_contacts.hpp"
 #include "solvers/search/linearisation.hpp"
 #include "src/core/vector_verbs.hpp"
 
@@ -68,6 +69,7 @@ class NewtonSearch {
             std::max(result_.scale, environment_norm(problem, start(), start_gradient_));
       }
     }
+    scale_at_start_ = result_.scale;
   }
 
   [[nodiscard]] NewtonResult run() {
@@ -226,34 +228,20 @@ class NewtonSearch {
     return linear;
   }
 
-  /// Finds the direction of the predictor. Contacts have no stiffness before they press: those that
-  /// the predictor foresees as closed count as springs, in rounds until they are those that it
-  /// closes.
+  /// Finds the direction of the predictor.
   LinearOutcome predict(double projection, FactorUse use, double tolerance) {
-    constexpr int most_rounds = 6;
-    Assembler& assembler = problem_.assembler;
-    if (!assembler.has_contacts()) return solve_at_start(projection, use, tolerance);
     // A projected tangent is that of the last exact one.
-    if (has_predicted_) return solve_at_start(projection, use, tolerance);
+    if (foreseen_.empty() || has_predicted_) return solve_at_start(projection, use, tolerance);
     has_predicted_ = true;
-    std::vector<Index> closed = assembler.closed_contacts(start());
-    LinearOutcome linear = LinearOutcome::solved;
-    for (int round = 0; round < most_rounds; ++round) {
-      find_start_gradient();
-      linear = solve_at_start(projection, use, tolerance);
-      if (linear != LinearOutcome::solved) return linear;
-      std::vector<double> next = current_.displacement;
-      add_scaled(next, 1.0, direction_);
-      foreseen_.swap(next);
-      std::vector<Index> now = assembler.closed_contacts(start());
-      const bool stays = problem_.sums().largest_of_all(now == closed ? 0.0 : 1.0) == 0.0;
-      if (stays || round + 1 == most_rounds) {
-        foreseen_.swap(next);  // the one of the tangent
-        break;
-      }
-      closed = std::move(now);
-    }
-    return linear;
+    return predict_with_contacts(
+        problem_, foreseen_, [this] { return start(); },
+        [&](std::vector<double>& next) {
+          find_start_gradient();
+          const LinearOutcome linear = solve_at_start(projection, use, tolerance);
+          next = current_.displacement;
+          if (linear == LinearOutcome::solved) add_scaled(next, 1.0, direction_);
+          return linear;
+        });
   }
 
   LinearOutcome solve_at_start(double projection, FactorUse use, double tolerance) {
@@ -267,7 +255,12 @@ class NewtonSearch {
     evaluate(problem_, external_force_, current_, damage_);
   }
 
+  /// Contacts that close in the step may bear the only forces of the body.
   [[nodiscard]] bool has_converged() {
+    if (!foreseen_.empty() && options_.scale <= 0.0) {
+      result_.scale = std::max(scale_at_start_,
+                               environment_norm(problem_, current_.at(damage_), current_.gradient));
+    }
     return note_convergence(problem_, tangent_, current_, last_residual_,
                             options_.relative_tolerance, result_);
   }
@@ -297,7 +290,7 @@ class NewtonSearch {
   bool has_predicted_ = false;          // foreseen_ is the predictor's
   std::vector<double> direction_;
   std::optional<Inertia> start_inertia_;
-  double last_residual_ = 0.0, last_projection_ = 0.0;
+  double last_residual_ = 0.0, last_projection_ = 0.0, scale_at_start_ = 0.0;
   NewtonResult result_;
 };
 

@@ -12,6 +12,7 @@ namespace {
 
 /// True if supports or loads differ between load 0 and load 1.
 bool depend_on_load(const Conditions& conditions, const LoadPath& loads) {
+  if (conditions.obstacles().move()) return true;
   const auto values_at = [&](double load) {
     std::vector<double> values(conditions.prescribed().size()), force(values.size());
     conditions.prescribe(loads(load), values);
@@ -38,9 +39,17 @@ void refuse_unanswered_loads(const Body& body, const FreeDofs& free, Assembler& 
   const std::vector<double> rest(conditions.prescribed().size(), 0.0);
   const EquilibriumProblem problem{assembler, conditions, free};
   std::vector<double> rate;
-  const LinearOutcome outcome =
-      find_rate(problem, solver, tangent, {rest, assembler.initial_history()}, loads, 0.0, rate);
+  const History history = assembler.initial_history();
+  StateView at_rest(rest, history, Damage::grows, conditions.environment(loads(0.0)));
+  if (assembler.has_contacts()) at_rest.foreseen = rest;  // those that touch press
+  const LinearOutcome outcome = find_rate(problem, solver, tangent, at_rest, loads, 0.0, rate);
   if (outcome != LinearOutcome::solved) return;  // the search reports it
+  if (norm(rate) == 0.0 && conditions.obstacles().move()) {
+    throw InputError(
+        "obstacles", "",
+        "where the load is found, an obstacle that moves with load must touch the body "
+        "from the start, unless something else moves the body");
+  }
   if (norm(rate) == 0.0 && depend_on_load(conditions, loads)) {
     throw InputError(
         "supports", "",

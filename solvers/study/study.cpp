@@ -1,5 +1,6 @@
 #include "solvers/study/study.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -84,6 +85,26 @@ void refuse_events_of_closing_bonds(const Body& body, const StudyOptions& option
       });
 }
 
+/// Refuses friction, whose rounds of normal forces are at a given load, and obstacles that a force
+/// drives.
+void refuse_contacts_where_loads_are_found(const Body& body, Mode mode) {
+  const std::string by = mode == Mode::arc_length ? "mode arc_length" : "a control";
+  const auto refuse = [&](const std::string& key, const std::string& value) {
+    throw InputError(
+        key, value,
+        "is for prescribed displacements and loads, not for loads that are found by " + by);
+  };
+  for (const Obstacles::Obstacle& of : body.conditions->obstacles().all()) {
+    if (of.friction > 0.0) refuse(of.table + ".friction", number_text(of.friction));
+    if (of.free_axis) refuse(of.table + ".force", "");
+  }
+  const std::vector<ContactSpecification>& contacts = body.specification.contacts;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    if (contacts[k].friction == 0.0) continue;
+    refuse(indexed("contacts", k) + ".friction", number_text(contacts[k].friction));
+  }
+}
+
 /// Refuses what does not follow contacts that close and open.
 void refuse_modes_with_contacts(const Body& body, const StudyOptions& options) {
   const bool has_obstacles = !body.conditions->obstacles().none();
@@ -92,9 +113,9 @@ void refuse_modes_with_contacts(const Body& body, const StudyOptions& options) {
   const std::string cannot = "does not follow contacts that close and open," + with + "; take ";
   const LoadSteppingOptions& loading = options.loading;
   const Mode mode = loading.mode;
-  if (mode == Mode::path || mode == Mode::arc_length) {
+  if (mode == Mode::path) {
     throw InputError("loading.mode", std::string(mode.name),
-                     cannot + "newton, adaptive, relaxation or dynamics");
+                     cannot + "newton, adaptive, relaxation, arc_length or dynamics");
   }
   const bool relaxes = mode == Mode::relaxation || mode == Mode::adaptive;
   if (relaxes && loading.relaxation.method == RelaxationMethod::flow) {
@@ -107,9 +128,7 @@ void refuse_modes_with_contacts(const Body& body, const StudyOptions& options) {
                      "is constant, while contacts make the stable step shorter," + with +
                          "; take dynamics.step_share");
   }
-  if (body.conditions->control()) {
-    throw InputError("controls", "", cannot + "prescribed displacements");
-  }
+  if (finds_loads(options, *body.conditions)) refuse_contacts_where_loads_are_found(body, mode);
 }
 
 /// Points that fail one by one have no strength that a step could be led to, and what follows one

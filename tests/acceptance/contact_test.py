@@ -304,14 +304,11 @@ class ContactTest(Folder):
         }.items():
             self.assertIn(words, self.refusal(text, change))
         self.assertIn("does not follow contacts", self.refusal(HEAD + BRITTLE + PRESSED, "solver.mode=path"))
-        one_line = text.replace("[0, -1, 0.5, -3, -2]", "[0, -1]")
-        self.assertIn("does not follow contacts", self.refusal(one_line, "solver.mode=arc_length"))
         overlapping = text.replace("[[contact]]", '[[contact]]\nset = "left"\n[[contact]]')
         self.assertIn("in common with another contact", self.refusal(overlapping))
         shared = text.replace("[[contact]]", '[[contact]]\nset = "left"\nwith = "left_end"')
         self.assertIn("shares points", self.refusal(shared))
-        mirrored = text + '[[symmetry]]\naxis = "y"\nat = 0.0\n'
-        self.assertIn("contact", self.refusal(mirrored))
+        self.assertIn("contact[0].reach", self.refusal(text, "contact[0].reach=0.01"))
 
     def test_tangent(self):
         ended = self.command("check-tangent", HEAD + CUT + PRESSED)

@@ -238,7 +238,6 @@ class Obstacles(Pressed):
             (block, 'obstacle[0].displacement=[0, "1e-3*y"]', "y"),
             (block, 'obstacle[0].set="none"', "none"),
             (BLOCK + PLANE, "solver={tangent=\"matrix_free\", linear=\"pcg\"}", "needs the stored tangent"),
-            (BLOCK + PLANE, "solver={mode=\"arc_length\"}", "does not follow contacts"),
             (block, 'material.kinematics="linear"', 'is for models "bond" with kinematics "finite"'),
             (roller, "obstacle[0].radius=1.9e-3", "at least two spacings"),
             (roller, "obstacle[0].axis=[0, 0, 1]", "in 3D"),

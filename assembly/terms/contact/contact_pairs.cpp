@@ -41,6 +41,7 @@ double ContactPairs::bytes() const {
 }
 
 bool ContactPairs::find_pair(Index i, Index j, ContactPair& pair) const {
+  if (points_.is_image(i)) return false;
   const auto rule =
       std::ranges::find_if(rules_, [&](const PairContactRule& of) { return of.holds_for(i, j); });
   if (rule == rules_.end()) return false;
@@ -61,6 +62,7 @@ bool ContactPairs::find_pair(Index i, Index j, ContactPair& pair) const {
   pair.distance = std::min(pair.reference, rule->distance > 0.0 ? rule->distance : mean);
   pair.stiffness =
       rule->stiffness * 2.0 * one * other / (one + other) * section(mean) / pair.distance;
+  if (points_.is_image(j)) pair.stiffness *= 0.5;
   pair.bond = bond.value_or(-1);
   return true;
 }
@@ -87,7 +89,7 @@ std::vector<ContactPair> ContactPairs::near_in(std::span<const double> displacem
   std::iota(all.begin(), all.end(), Index(0));
   const double radius = reach_ + skin();
   const CellList<D> cells(place, all, radius);
-  const Index count = points_.count();
+  const Index count = points_.own();
   const Index parts = (count + rows_per_part - 1) / rows_per_part;
   std::vector<std::vector<ContactPair>> found(static_cast<std::size_t>(parts));
 #pragma omp parallel for num_threads(threads) schedule(dynamic)

@@ -40,7 +40,7 @@ struct ContactPair {
   std::int32_t rule = 0;
   double reference = 0.0;  ///< L [m]
   double distance = 0.0;   ///< d_ij [m]
-  double stiffness = 0.0;  ///< k_ij [N/m]
+  double stiffness = 0.0;  ///< k_ij [N/m]; half of it if j is an image
   Offset bond = -1;        ///< between them; -1: none
 };
 
@@ -51,6 +51,10 @@ struct ContactPair {
 ///   d = min(L, d_c),   k = alpha E A / d
 ///
 /// so that rest is free of forces, and bonds break only where the gap is longer than d.
+///
+/// Points touch images of points, too. Such a contact is there twice, as that of i with the image
+/// of j and as that of j with the image of i; each has half of k. Images touch no images: what
+/// touches beyond a plane of symmetry or a period belongs to others.
 class ContactPairs {
  public:
   /// The arguments outlive it.

@@ -8,6 +8,7 @@
 
 #include "assembly/terms/contact/contact_limits.hpp"
 #include "assembly/terms/contact/contact_rows.hpp"
+#include "assembly/terms/contact/image_cover.hpp"
 #include "assembly/terms/contact/near_pairs.hpp"
 #include "assembly/terms/contact/point_friction.hpp"
 #include "assembly/terms/contact/swept_pairs.hpp"
@@ -45,6 +46,7 @@ class PairContactPasses : public TermPasses, BlockTangent {
         pattern_(setting.pattern),
         near_(pairs_, term.contacts().faces, setting.model, setting.workspace.threads()),
         near_foreseen_(pairs_, term.contacts().faces, setting.model, setting.workspace.threads()),
+        cover_(points_, pairs_.reach()),
         friction_(points_.dimension),
         rows_(points_.count()),
         rubs_(std::ranges::any_of(pairs_.rules(),
@@ -53,6 +55,13 @@ class PairContactPasses : public TermPasses, BlockTangent {
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
     if (how == Write::over) std::ranges::fill(gradient, 0.0);
     Evaluation found;
+    if (at.has_contacts && is_finite_at(points_, at.displacement) &&
+        !cover_.holds(at.displacement)) {
+      // Explicit steps look at the forces alone.
+      if (!gradient.empty()) gradient[0] = std::numeric_limits<double>::quiet_NaN();
+      found.degenerate = true;
+      return found;
+    }
     found.degenerate = !for_each_touching(at, [&](const TouchingPair& contact) {
       found.energy += contact.energy;
       found.round_off += std::abs(contact.force) * contact.gap.round_off;
@@ -243,7 +252,8 @@ class PairContactPasses : public TermPasses, BlockTangent {
   }
 
   /// With the depths after a fifth of the gaps has closed. A row of k b'' n n^T has the sum
-  /// 2 k b'' |n_c| sum |n|.
+  /// 2 k b'' |n_c| sum |n|. Contact with an image is one half of two alike, of which the other one
+  /// adds as much to the point itself.
   void add_contact_stiffness(const StateView& at, double most_depth,
                              std::span<double> stiffness) override {
     constexpr double closes = 0.2;
@@ -259,12 +269,13 @@ class PairContactPasses : public TermPasses, BlockTangent {
       const double along = open.share * open.pair.stiffness * of_law.second;
       const double across =
           open.share * open.pair.stiffness * most * of_law.first / open.pair.distance;
+      const double halves = points_.is_image(open.pair.j) ? 2.0 : 1.0;
       double of_normal = 0.0;
       for (std::size_t c = 0; c < d; ++c) of_normal += std::abs(now.normal[c]);
       for (const Index point : {open.pair.i, open.pair.j}) {
         for (std::size_t c = 0; c < d; ++c) {
           stiffness[std::size_t(point) * d + c] +=
-              2.0 * (along * std::abs(now.normal[c]) * of_normal + across * double(d));
+              2.0 * halves * (along * std::abs(now.normal[c]) * of_normal + across * double(d));
         }
       }
     }
@@ -413,6 +424,7 @@ class PairContactPasses : public TermPasses, BlockTangent {
   const Points& points_;
   const BlockPattern& pattern_;
   NearPairs near_, near_foreseen_;
+  ImageCover cover_;
   PointFriction friction_;
   ContactRows rows_;
   bool rubs_;

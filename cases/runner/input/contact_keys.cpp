@@ -24,6 +24,11 @@ Table<ContactSpecification> contact_keys() {
        K("distance", &Spec::distance, positive("m"), "distance at which two points touch")
            .written_if([](auto& of, auto&) { return of.distance > 0.0; })
            .default_words("the mean of the two points' sizes, on a lattice the spacing"),
+       K("reach", &Spec::reach, positive("m"),
+         "with planes of symmetry and periods: distance from the body up to which points beyond "
+         "them are modelled. A state in which others might touch is refused")
+           .written_if([](auto& of, auto&) { return of.reach > 0.0; })
+           .default_words("the horizon"),
        K("stiffness", &Spec::stiffness, between(1e-3, 1e3),
          "stiffness over that of the bar of material between two points"),
        K("depth", &Spec::depth, between(0.01, 0.5),

@@ -17,6 +17,7 @@ struct ContactSpecification {
   double distance = 0.0;   ///< d_c, gap at which two points touch [m]; 0: the mean of their sizes
   double stiffness = 1.0;  ///< alpha, over that of the bar between two points
   double depth = 0.25;     ///< a, largest depth over the distance of contact
+  double reach = 0.0;      ///< from the body up to which points have images [m]; 0: the horizon
   double softness = 1e-4;  ///< e0, strain of the gap over which the stiffness sets in
 };
 

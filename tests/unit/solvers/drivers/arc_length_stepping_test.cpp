@@ -23,7 +23,8 @@ struct Truss {
   std::unique_ptr<const Body> body;
 
   explicit Truss(double of_height, const std::string& support_motion = "0",
-                 const std::string& load = "-3000*load", const DamageSpecification& damage = {})
+                 const std::string& load = "-3000*load", const DamageSpecification& damage = {},
+                 const std::vector<ObstacleSpecification>& obstacles = {})
       : height(of_height) {
     Points points;
     points.dimension = 2;
@@ -37,6 +38,7 @@ struct Truss {
     of.material.damage = damage;
     of.supports = {{"feet", {"0", support_motion}}};
     of.loads = {{LoadSpecification::Kind::total_force, "top", {"0", load, "0"}}};
+    of.obstacles = obstacles;
     body = make_body(std::move(points), of, 1);
   }
 
@@ -127,6 +129,43 @@ TEST(ArcLength, SnapsThroughAlongTheClosedForm) {
     const std::vector<std::string> points = located(path.result);
     ASSERT_EQ(points.size(), 2u);
     for (const std::string& reason : points) EXPECT_EQ(reason.find("a limit point"), 0u) << reason;
+  }
+}
+
+TEST(ArcLength, SnapsThroughOntoAnObstacle) {
+  // The top meets the plane where it is unstable: the load falls before and rises behind, while the
+  // top stays.
+  constexpr double meets = 0.05, half_a_cell = 0.5;
+  ObstacleSpecification plane;
+  plane.name = "plane";
+  plane.set = "top";
+  plane.surface = {.kind = RigidSurface::Kind::plane,
+                   .point = {0.0, meets - half_a_cell, 0.0},
+                   .direction = {0.0, 1.0, 0.0}};
+  const Truss truss(0.2, "0", "-3000*load", {}, {plane});
+  const Obstacles& obstacles = truss.body->conditions->obstacles();
+  const double most = obstacles.all()[0].depth * half_a_cell;
+  const auto pressed = [&](double y) {
+    const double k = obstacles.contacts()[0].stiffness;
+    return k * most * obstacles.all()[0].law((meets - y) / most).first / full_load;
+  };
+  for (const int steps : {3, 20}) {
+    SCOPED_TRACE(steps);
+    const Path path = follow(truss, arc_length(steps));
+    ASSERT_EQ(path.result.outcome, Outcome::converged);
+    EXPECT_EQ(path.result.state.stage, 1.0);
+    double before = truss.height, least = 1.0;
+    for (const Passed& at : path.passed) {
+      EXPECT_NEAR(at.load_factor, truss.load_factor(at.y) + pressed(at.y), 1e-8);
+      EXPECT_LT(at.y, before);
+      before = at.y;
+      if (at.y < 0.1) least = std::min(least, at.load_factor);
+    }
+    EXPECT_LT(before, meets);
+    EXPECT_GT(before, meets - 0.1 * most);
+    EXPECT_NEAR(least, truss.load_factor(meets), 1e-3);
+    EXPECT_EQ(located(path.result).size(), 2u);
+    EXPECT_LT(path.passed.size(), 100u);
   }
 }
 
