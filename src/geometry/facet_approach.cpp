@@ -75,7 +75,9 @@ FacetApproach approach(const FacetArms& arms, double touching) {
   const double change = dot(moved, plus(scaled(2.0, rest), moved));
   const double excess = touching * touching - dot(rest, rest);
   found.overlap = (excess - change) / (touching + found.distance);
-  found.round_off = std::numeric_limits<double>::epsilon() * std::abs(change) / touching;
+  // The place, and with it the square of its arm, is another one in each state.
+  found.round_off =
+      std::numeric_limits<double>::epsilon() * (std::abs(change) / touching + touching);
   found.normal = found.distance > 0.0 ? scaled(1.0 / found.distance, arm) : Coordinates{1, 0, 0};
   return found;
 }

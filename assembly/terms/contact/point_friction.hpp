@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -91,14 +90,17 @@ class PointFriction {
   /// X [m]
   [[nodiscard]] Coordinates relative(Index point, const std::vector<Slip::Partner>& partners,
                                      std::span<const double> displacement) const;
-  /// Round-off of X [m].
+  /// Round-off of X, a sum of products of all the displacements and shares [m].
   [[nodiscard]] double round_off_of_place(const Slip& slip,
                                           std::span<const double> displacement) const {
-    double largest = 0.0;
+    double sum = 0.0;
     for (std::size_t c = 0; c < dimension_; ++c) {
-      largest = std::max(largest, std::abs(displacement[std::size_t(slip.point) * dimension_ + c]));
+      sum += std::abs(displacement[std::size_t(slip.point) * dimension_ + c]);
+      for (const auto& [partner, share] : slip.partners) {
+        sum += std::abs(share * displacement[std::size_t(partner) * dimension_ + c]);
+      }
     }
-    return std::numeric_limits<double>::epsilon() * largest;
+    return double(1 + slip.partners.size()) * std::numeric_limits<double>::epsilon() * sum;
   }
   /// y [m]
   [[nodiscard]] Coordinates slipped(const Slip& slip, std::span<const double> displacement) const {
