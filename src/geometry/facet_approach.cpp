@@ -82,6 +82,25 @@ FacetApproach approach(const FacetArms& arms, double touching) {
   return found;
 }
 
+namespace {
+
+/// Corners between which the nearest place moves if the point moves. Where the point stands above a
+/// corner or a side, as on lattices that have not slid, it is taken to be a hair beside it, on the
+/// same side for all parts of a surface: each has one of two second derivatives there, and their
+/// sum must be that of one side.
+std::array<bool, 3> free_corners(const FacetArms& arms) {
+  constexpr double hair = 1e-9;
+  constexpr Coordinates aside{0.6, 0.48, 0.64};
+  double longest = 0.0;
+  for (int k = 0; k < arms.corners; ++k) longest = std::max(longest, length(arms.present(k)));
+  FacetArms seen = arms;
+  for (Coordinates& corner : seen.moved) corner = minus(corner, scaled(hair * longest, aside));
+  const CornerWeights weight = nearest_place(seen);
+  return {weight[0] > 0.0, weight[1] > 0.0, weight[2] > 0.0};
+}
+
+}  // namespace
+
 DistanceDerivatives derivatives(const FacetArms& arms, const FacetApproach& at, int dimension) {
   DistanceDerivatives found;
   const auto d = std::size_t(dimension);
@@ -98,11 +117,12 @@ DistanceDerivatives derivatives(const FacetArms& arms, const FacetApproach& at, 
       }
     }
   }
-  // Tangents from the first corner with a weight to the others.
+  // Tangents from the first free corner to the others.
+  const std::array<bool, 3> is_free = free_corners(arms);
   std::array<std::size_t, 3> active{};
   std::size_t count = 0;
   for (std::size_t k = 0; k < std::size_t(arms.corners); ++k) {
-    if (at.weight[k] > 0.0) active[count++] = k;
+    if (is_free[k]) active[count++] = k;
   }
   std::array<Coordinates, 2> tangent{};
   std::array<std::array<double, DistanceDerivatives::most>, 2> g{};

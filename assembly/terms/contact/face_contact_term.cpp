@@ -385,7 +385,9 @@ class FaceContactPasses : public TermPasses, BlockTangent {
     for_each_touched(at, [&](const FacingPoint& of, std::span<const TouchedPart> parts) {
       local.clear();
       for (const TouchedPart& part : parts) add_second_derivative(of, part, foresees, local);
-      local.project(projection);
+      // Above a corner of less than a hair, a point sees a concave energy in an equally small
+      // region, which any projection must bridge.
+      local.project(projection > 0.0 ? 1.0 : 0.0);
       visit(std::as_const(local));
     });
     for_each_rubbing(at, [&](const PointFriction::Rubbing& rubbing) {

@@ -38,11 +38,14 @@ class PointFriction {
     double round_off = 0.0;                 ///< of the energy [J]
 
     /// Entry of d2D/dX2 = stiffness (P - sliding y y^T / |y|^2). The projection takes its share of
-    /// the second part away: where all points slide nothing else resists.
+    /// the second part away: where all points slide nothing else resists. A light projection,
+    /// which other terms may need, leaves it: a block that slides far would go there in tiny steps.
     [[nodiscard]] double second_derivative(std::size_t row, std::size_t column,
                                            double projection) const {
+      constexpr double light = 0.1;
+      const double share = projection > light ? projection : 0.0;
       return stiffness * ((row == column ? 1.0 : 0.0) - slip.normal[row] * slip.normal[column] -
-                          (1.0 - projection) * sliding * direction[row] * direction[column]);
+                          (1.0 - share) * sliding * direction[row] * direction[column]);
     }
   };
   /// Visits all slips whose friction has an energy.
