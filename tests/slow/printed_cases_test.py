@@ -90,6 +90,21 @@ class Fracture(PrintedTest, Folder):
         self.prints("at an opening of {} um. It is {} % less", 1e6 * peak["control"], 100 * (1 - abs(peak["reaction_y:load"]) / known))
         self.assertLess(beam.history[-1]["reaction_y:load"] / peak["reaction_y:load"], 0.8)
 
+    def test_closed_inclined_crack(self):
+        self.page = "cases/contact/inclined_crack.toml"
+        plate = run("contact/inclined_crack")
+        slip = [row["above_x"] - row["below_x"] + row["above_y"] - row["below_y"] for row in plate.history]
+        self.assertEqual(slip, sorted(slip, reverse=True))  # from the first step on
+        self.assertLess(slip[0], 0)
+        self.prints("breaks at load {}.", plate.first("broken_bonds")["load_factor"], within=0.03)  # a step
+        self.prints("the plate bears {} N", -plate.reaction("top", "y"), within=PEAK)
+        self.prints("N and {} bonds are broken", plate.summary["broken_bonds"], within=COUNTS)
+        tip = (0.0470711, 0.0475711)
+        wing = plate.points("reference")[plate.field("damage").ravel() > 0.1] - tip
+        end = max(wing[wing[:, 1] > 0].tolist(), key=lambda arm: math.hypot(*arm))
+        self.prints("At each tip a wing of {} mm", 1e3 * math.hypot(*end), within=0.15)  # a spacing
+        self.prints("has turned from 45 to {} degrees", math.degrees(math.atan2(end[1], end[0])), within=0.1)
+
     def test_mouth_opening(self):
         self.page = "cases/three_point_bending/mouth_opening.toml"
         plate = run("three_point_bending/mouth_opening")
