@@ -116,6 +116,7 @@ SHOWS = {
     "contact/hertz": "A cylinder on a flat block, compared with Hertz.",
     "contact/impact": "Two halves of a bar that collide and part again, in explicit steps.",
     "contact/inclined_crack": "A closed crack at 45° under pressure: its faces slide with friction, and wings open at its tips.",
+    "contact/impactor": "Kalthoff and Winkler's impact with the impactor as a body, which hits, stops and flies back.",
     "contact/incline": "A block on a slope: it sticks up to the angle of friction, and slides beyond.",
     "thermal/bimetal": "A heated strip of two metals that bends, compared with Timoshenko.",
     "bar/tension": "A bar in one dimension, compared with its closed form.",

@@ -5,6 +5,7 @@ import unittest
 
 from tests.acceptance.folder import Folder
 from tests.printed.comparison import PrintedTest
+from tests.printed.kink import kink_angle
 from tests.printed.page import Printed, numbers
 from tests.printed.pieces import pieces
 from tests.printed.runs import run
@@ -104,6 +105,23 @@ class Fracture(PrintedTest, Folder):
         end = max(wing[wing[:, 1] > 0].tolist(), key=lambda arm: math.hypot(*arm))
         self.prints("At each tip a wing of {} mm", 1e3 * math.hypot(*end), within=0.15)  # a spacing
         self.prints("has turned from 45 to {} degrees", math.degrees(math.atan2(end[1], end[0])), within=0.1)
+
+    def test_impactor(self):
+        self.page = "cases/contact/impactor.toml"
+        plate = run("contact/impactor")
+        stopped = next(row for row in plate.history if row["impactor_x"] < 0)
+        self.prints("has stopped after {} us", 1e6 * stopped["time"], within=0.15)  # one row
+        self.prints("flies back at {} m/s", -plate.history[-1]["impactor_x"])
+        self.prints("from {} us on", 1e6 * plate.first("broken_bonds")["time"], within=0.15)
+        reached = next(row for row in plate.history if row["tip"] > 0.099)
+        self.assertLess(reached["time"], 85e-6)
+        self.prints("leaves the notch's line by {} degrees", kink_angle(plate, [0.027 + 1e-3 * k for k in range(23)]), within=0.03)
+        self.prints("{} bonds\nare broken", plate.summary["broken_bonds"], within=COUNTS)
+        momenta = [row["momentum_x"] for row in plate.history]
+        self.prints("stays {} kg m/s", momenta[0])
+        self.assertLess(max(momenta) - min(momenta), 1e-12 * momenta[0])
+        last = plate.history[-1]
+        self.assertLess(abs(last["balance_error"]), 2e-3 * last["modified_energy"])
 
     def test_mouth_opening(self):
         self.page = "cases/three_point_bending/mouth_opening.toml"

@@ -13,6 +13,7 @@ import numpy
 from benchmarks import specimens
 from tests.acceptance.folder import Folder
 from tests.printed.comparison import PrintedTest
+from tests.printed.kink import kink_angle
 from tests.printed.page import numbers
 from tests.printed.runs import Run, calibrate, check, run
 from tests.reference import elliptical_hole, ring
@@ -629,13 +630,7 @@ class Motions(PrintedTest):
         self.prints("from {} us on", 1e6 * broken[0]["load_factor"], within=0.1)  # one row
         self.assertGreater(plate.history[-1]["tip"], 0.099)
         self.prints("{} bonds are broken", plate.history[-1]["broken_bonds"], within=0.05)
-        places = plate.points("reference")
-        ends = [(int(row["first_point"]), int(row["second_point"])) for row in broken if row["second_image"] == 0]
-        x, y = numpy.array([places[list(pair)].mean(axis=0)[:2] for pair in ends]).T
-        slices = [(y >= low) & (y < low + 1e-3) for low in numpy.arange(0.027, 0.0495, 1e-3)]
-        middle = [(numpy.median(x[of]), y[of].mean()) for of in slices if of.sum() > 2]
-        slope = numpy.polyfit([b for _, b in middle], [a for a, _ in middle], 1)[0]
-        angle = math.degrees(math.atan2(1, slope))
+        angle = kink_angle(plate, numpy.arange(0.027, 0.0495, 1e-3))
         self.prints("leaves the notch's line by {} degrees", angle, within=0.03)
         self.assertTrue(63 < angle < 72)  # 65 to 72 in tests and in simulations
 
