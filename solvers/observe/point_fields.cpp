@@ -1,6 +1,7 @@
 #include "solvers/observe/point_fields.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -11,6 +12,7 @@
 #include "solvers/observe/observation.hpp"
 #include "solvers/observe/stress_fields.hpp"
 #include "solvers/study/motion.hpp"
+#include "src/geometry/point_sizes.hpp"
 
 namespace peristat {
 namespace {
@@ -43,6 +45,22 @@ std::vector<double> contact_force(Observation& in) {
   for (std::size_t k = 0; k < dofs; ++k) with[k] = without[k] - with[k];
   in.body().conditions->constraints().fold_images(with);
   return recorded(in, with);
+}
+
+/// |f| / A, with A = h^(d-1) of the size h of a point, times the thickness in 2D; the
+/// cross-section in 1D.
+std::vector<double> contact_pressure(Observation& in) {
+  const int d = in.points().dimension();
+  const double section = in.body().setting.cross_section;
+  const std::vector<double>& force = in.values("contact_force");
+  std::vector<double> pressure(std::size_t(in.points().count()));
+  for (std::size_t i = 0; i < pressure.size(); ++i) {
+    double squares = 0.0;
+    for (int c = 0; c < d; ++c) squares += std::pow(force[i * std::size_t(d) + std::size_t(c)], 2);
+    const double size = size_of_point(in.body().points, Index(i), section);
+    pressure[i] = std::sqrt(squares) / (section * std::pow(size, d - 1));
+  }
+  return pressure;
 }
 
 std::vector<double> damage(Observation& in) {
@@ -135,6 +153,9 @@ const std::vector<PointField>& point_fields() {
        scalar, stretch},
       {"contact_force", "N", "force of contacts with points and obstacles on each point", vector,
        contact_force, nothing, ShownBy::probes},
+      {"contact_pressure", "Pa",
+       "magnitude of the force of contacts on each point, over the area of a face of its cell",
+       scalar, contact_pressure, contacts, both},
       {"fragment", "1",
        "number of the floating piece that the point belongs to; 0: held by the supports", scalar,
        fragment, nothing, steps},

@@ -1,14 +1,20 @@
 """Rigid obstacles that press on a body."""
 
 import json
+import sys
 
 import h5py
 import numpy
 
 from tests.acceptance.folder import Folder
+from tests.reference.program import ROOT
 from tests.reference.results import Results, table
 from tests.reference.verify import verify
 from tests.same_results import differences
+
+sys.path.insert(0, str(ROOT / "python"))
+from peristat.pictures.figures import drawings  # noqa: E402
+from peristat.pictures.results_folder import read_results_folder  # noqa: E402
 
 BLOCK = """\
 dimension = 2
@@ -83,6 +89,11 @@ displacement = ["-1e-3*load"]
 SOLVER = '[solver]\nlinear = "cholesky"\nrelative_tolerance = 1e-12\n'
 
 
+def read_drawings(folder):
+    """Names of the pictures that a results folder allows."""
+    return [drawing.name for drawing in drawings(read_results_folder(folder))]
+
+
 class Pressed(Folder):
     def rows(self, case, *changes, name="out", **options):
         """The history of a run, without step 0."""
@@ -140,6 +151,19 @@ class Obstacles(Pressed):
         stiffness, scale = 200e9 * 1e-4 / 5e-3, 0.25 * 5e-3
         s = (5e-3 - gap) / scale - 2e-4
         self.assertAlmostEqual(force / (stiffness * scale * s / (1 - s)), 1, delta=1e-9)
+
+    def test_pressures_add_up_to_the_force(self):
+        spacing, thickness = 1e-3, 1e-3
+        for case, of, axis, face in ((BLOCK + PLANE, "top", "y", spacing * thickness), (BAR, "wall", "x", 1e-4)):
+            with self.subTest(of):
+                force = self.forces(case + SOLVER, of=of, axis=axis, name=of)[-1]
+                pressure = self.fields(of)[1]["contact_pressure"]
+                self.assertAlmostEqual(pressure.sum() * face / abs(force), 1, delta=1e-9)
+                self.assertEqual((pressure > 0).sum(), 16 if of == "top" else 1)
+        self.assertIn("contact_pressure", read_drawings(self.folder / "top"))
+        self.run_case(BLOCK + SOLVER, name="none")
+        self.assertNotIn("contact_pressure", self.fields("none")[1])
+        self.assertNotIn("contact_pressure", read_drawings(self.folder / "none"))
 
     def test_an_obstacle_that_withdraws_lets_go(self):
         case = BLOCK + PLANE + SOLVER + "[loading]\ntable = [0, 1, 0.5, 0, -1, 1]\n"

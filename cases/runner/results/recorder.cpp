@@ -17,11 +17,12 @@ namespace peristat {
 namespace {
 
 /// True for fields of steps of the results, and of probes.
-bool is_recorded(const PointField& field, const Case& from) {
+bool is_recorded(const PointField& field, const Case& from, bool has_contacts) {
   const bool is_probed = std::ranges::any_of(
       from.probes, [&](const ProbeSpecification& probe) { return probe.field == field.name; });
   if (is_probed || field.shown_by == ShownBy::probes) return is_probed;
   if (field.needs == FieldNeeds::stress) return from.output.stress;
+  if (field.needs == FieldNeeds::contacts) return has_contacts;
   return field.needs == FieldNeeds::nothing || from.dynamics.is_asked_for;
 }
 
@@ -44,7 +45,7 @@ Recorder::Fields Recorder::fields(const StateView& at, ObservedExtras extras) co
   const double largest = recorded_.ranks().max(observed.stretches().largest);
   made.max_stretch = std::isfinite(largest) ? largest : 0.0;
   for (const PointField& field : point_fields()) {
-    if (is_recorded(field, case_)) static_cast<void>(observed.values(field.name));
+    if (is_recorded(field, case_, assembler_.has_contacts())) static_cast<void>(observed.values(field.name));
   }
   made.values = observed.release();
   for (const double damage : made.values.at("damage")) {

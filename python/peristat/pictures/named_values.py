@@ -18,7 +18,7 @@ VOIGT = {1: ("xx",), 3: ("xx", "yy", "xy"), 6: ("xx", "yy", "zz", "xy", "yz", "x
 MEANINGS = {"von_mises": "von Mises stress", PRINCIPAL: "principal stress", "cauchy_stress": "Cauchy stress",
             "first_piola_stress": "first Piola–Kirchhoff stress", "green_lagrange_strain": "Green–Lagrange strain"}  # fmt: skip
 UNITS = {"displacement": "m", "energy_density": "J/m3"}  # of results without the attribute
-COLOURS = {"energy_density": "inferno", "von_mises": "inferno"}  # of fields that begin at zero
+COLOURS = {"energy_density": "inferno", "von_mises": "inferno", "contact_pressure": DAMAGE_COLOURS}  # of fields that begin at zero
 
 
 @dataclass
