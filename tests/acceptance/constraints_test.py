@@ -106,8 +106,6 @@ class Constrained(Programmes):
                 stretches |= dict(zip(bonds, told["largest_stretch"][...].tolist()))
         return stretches
 
-
-class Symmetry(Constrained):
     def assert_part_of(self, whole, part, same=SAME_BODY):
         of_place = {tuple(numpy.rint(place * 2e3).astype(int)): i for i, place in enumerate(whole[0])}
         twins = [of_place[tuple(numpy.rint(place * 2e3).astype(int))] for place in part[0]]
@@ -115,6 +113,8 @@ class Symmetry(Constrained):
             size = max(numpy.abs(whole[1][name]).max(), 1e-300)
             self.assertLess(numpy.abs(field - whole[1][name][twins]).max() / size, same, name)
 
+
+class Symmetry(Constrained):
     def compare(self, parts, steps=1, settings=(), same=SAME_BODY, **body):
         whole = self.rows(plate("", **body), f"loading.steps={steps}", *settings, name="whole")
         for part in parts:

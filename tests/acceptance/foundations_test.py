@@ -3,7 +3,7 @@
 import h5py
 import numpy
 
-from tests.acceptance.constraints_test import BONDS, HOLE, Symmetry, plate
+from tests.acceptance.constraints_test import BONDS, HOLE, Constrained, plate
 from tests.acceptance.programme_test import Programmes
 from tests.reference.verify import verify
 from tests.same_results import differences
@@ -244,7 +244,7 @@ total_force = [0, "-1*load"]
         self.assert_refused(self.command("check", BLOCK + SPRINGS, "solver.tangent=matrix_free"), "[[foundation]]")
 
 
-class HalvesOnSprings(Symmetry):
+class HalvesOnSprings(Constrained):
     def test_half_a_plate_on_a_bed_is_the_whole(self):
         bed = '[[foundation]]\nname = "bed"\nside = "x+"\nmodulus = [3e12, 1e12]\n'
         both = bed + bed.replace("x+", "x-").replace('"bed"', '"other"')

@@ -3,6 +3,7 @@
 import contextlib
 import os
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -14,7 +15,7 @@ import numpy
 
 from tests.acceptance.folder import Folder
 from tests.acceptance.strip import LATTICE, PULLED
-from tests.reference.program import PROGRAM, limited_by_shell, settings
+from tests.reference.program import PROGRAM, ROOT, limited_by_shell, settings
 from tests.reference.results import table
 from tests.same_results import differences
 
@@ -342,8 +343,10 @@ class Refused(Resumed):
 
     def test_an_older_layout(self):
         version = self.peristat("--version").output.split()[1]
-        self.change_checkpoint(lambda data: data.replace(f"checkpoint 11 {version}".encode(), b"checkpoint 0 0.0.7"))
-        self.refuses(["layout 0 of peristat 0.0.7", f"this is peristat {version}, which resumes from layout 11"])
+        header = (ROOT / "cases/runner/results/checkpoint/checkpoint.hpp").read_text()
+        layout = re.search(r"checkpoint_layout = (\d+);", header)[1]
+        self.change_checkpoint(lambda data: data.replace(f"checkpoint {layout} {version}".encode(), b"checkpoint 0 0.0.7"))
+        self.refuses(["layout 0 of peristat 0.0.7", f"this is peristat {version}, which resumes from layout {layout}"])
 
     def test_points_that_are_others(self):
         with h5py.File(self.out / "results.h5", "r+") as file:

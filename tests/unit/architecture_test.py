@@ -197,6 +197,19 @@ class Architecture(unittest.TestCase):
         ]
         self.assertLessEqual(len(asking), MODEL_BRANCHES, asking)
 
+    def test_no_test_runs_in_two_files(self):
+        """A class that a file imports from another runs there again, with its tests; so do its subclasses."""
+        with_tests = {}
+        for path in ROOT.glob("tests/*/**/*_test.py"):
+            for name, body in re.findall(r"^class (\w+)\(.*\n((?:[ \t].*\n|\n)*)", path.read_text(), re.MULTILINE):
+                if "    def test_" in body:
+                    with_tests[path.stem, name] = path
+        self.assertGreater(len(with_tests), 100)
+        for path in ROOT.glob("tests/*/**/*_test.py"):
+            for module, names in re.findall(r"^from [\w.]*?(\w+) import (.+)", path.read_text(), re.MULTILINE):
+                again = [name for name in re.findall(r"\w+", names) if (module, name) in with_tests]
+                self.assertEqual(again, [], path)
+
     def test_the_code_is_formatted(self):
         program = shutil.which("clang-format-" + CLANG_FORMAT_VERSION) or shutil.which(
             "clang-format"
