@@ -45,7 +45,8 @@ Recorder::Fields Recorder::fields(const StateView& at, ObservedExtras extras) co
   const double largest = recorded_.ranks().max(observed.stretches().largest);
   made.max_stretch = std::isfinite(largest) ? largest : 0.0;
   for (const PointField& field : point_fields()) {
-    if (is_recorded(field, case_, assembler_.has_contacts())) static_cast<void>(observed.values(field.name));
+    if (is_recorded(field, case_, assembler_.has_contacts()))
+      static_cast<void>(observed.values(field.name));
   }
   made.values = observed.release();
   for (const double damage : made.values.at("damage")) {
