@@ -21,6 +21,7 @@ PYBIND11_MODULE(_core, module) {
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
   python::translate_errors(module);
   python::let_python_wait();
+  python::bind_unfinished(module);
   python::bind_case(module);
   python::bind_body(module);
   python::bind_step(module);

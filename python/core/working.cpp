@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <stdexcept>
 
 #include <pthread.h>
@@ -50,9 +51,17 @@ Working::Working() {
 
 Working::~Working() { turn().unlock(); }
 
-Working::Counted::Counted() { count(1); }
+Unfinished::Unfinished() { count(1); }
 
-Working::Counted::~Counted() { count(-1); }
+Unfinished::~Unfinished() { count(-1); }
+
+void bind_unfinished(py::module_& module) {
+  using Block = std::optional<Unfinished>;
+  py::class_<Block>(module, "Unfinished")
+      .def(py::init<>())
+      .def("__enter__", [](Block& block) { block.emplace(); })
+      .def("__exit__", [](Block& block, const py::args&) { block.reset(); });
+}
 
 bool is_python_ending() { return python_ends; }
 

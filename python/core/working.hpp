@@ -4,6 +4,17 @@
 
 namespace peristat::python {
 
+/// Work that Python waits for before it ends, see let_python_wait.
+struct Unfinished {
+  Unfinished();
+  ~Unfinished();
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+};
+
+/// Makes it a context manager of the module, for what Python does after a run.
+void bind_unfinished(pybind11::module_& module);
+
 /// The turn of a thread to work in peristat, without Python's global lock. One thread works at a
 /// time: the threads of OpenMP would compete for the cores, and expressions are not thread-safe.
 ///
@@ -16,12 +27,7 @@ class Working {
   Working& operator=(const Working&) = delete;
 
  private:
-  /// Counts a piece of work until it has Python's global lock again.
-  struct Counted {
-    Counted();
-    ~Counted();
-  };
-  const Counted counted_{};
+  const Unfinished unfinished_{};  // until it has Python's global lock again
   pybind11::gil_scoped_release released_;
 };
 

@@ -112,6 +112,10 @@ class RunEnd:
     @property
     def reason(self) -> str: ...
 
+class Unfinished:
+    def __enter__(self) -> None: ...
+    def __exit__(self, *_: Any) -> None: ...
+
 def run(
     case: Case,
     body: Body | None,

@@ -64,7 +64,7 @@ def run_case(case, body, *, output=None, on_step=None, threads=0, quiet=False, l
     placed = _with_output(case, output)
     read = placed._read()
     folder = os.path.abspath(read.directory)  # a callback may change the working folder
-    with placed._located_errors():
+    with core.Unfinished(), placed._located_errors():
         end = core.run(
             read,
             body._core if body is not None else None,
@@ -75,7 +75,8 @@ def run_case(case, body, *, output=None, on_step=None, threads=0, quiet=False, l
             os.fspath(log or ""),
             truth("overwrite", overwrite),
         )
-    return Run(folder, end, placed)
+        # A thread that Python's end stops here would keep the lock of h5py, and Python would hang.
+        return Run(folder, end, placed)
 
 
 def resume(
@@ -109,18 +110,20 @@ def resume(
     texts = [(key, toml_text.value_text(value, key)) for key, value in settings.items()]
     functions, points = ({}, None) if case is None else case._givens()
     place = os.path.abspath(folder)
-    end = load_core().resume(
-        os.fspath(folder),
-        texts,
-        functions,
-        points,
-        on_step,
-        _no_line if quiet else _print_line,
-        None,
-        threads,
-        os.fspath(log or ""),
-    )
-    return Run(place, end, case)
+    core = load_core()
+    with core.Unfinished():  # as above
+        end = core.resume(
+            os.fspath(folder),
+            texts,
+            functions,
+            points,
+            on_step,
+            _no_line if quiet else _print_line,
+            None,
+            threads,
+            os.fspath(log or ""),
+        )
+        return Run(place, end, case)
 
 
 def _require_callback(on_step):

@@ -79,6 +79,27 @@ class TestProcesses(InFolder):
                 self.assertNotIn("terminate", done.stderr)
         self.assertEqual(ps.open_results("left").status, "interrupted")
 
+    def test_python_ends_after_a_thread_has_read_its_results(self):
+        """A thread that Python's end stopped while it read a file would keep the lock of h5py."""
+        done = script("""
+            import tempfile, threading, time
+            from h5py._objects import phil
+            from peristat.run import Run
+            begun, kept, begin = threading.Event(), tempfile.TemporaryDirectory(), Run.__init__
+            def begin_slowly(self, *given):
+                with phil:
+                    time.sleep(1.0)
+                begin(self, *given)
+                print("read", flush=True)
+            Run.__init__ = begin_slowly
+            case = strip(spacing="0.5 mm")
+            case.loading.steps = 5000
+            work = lambda: case.solve(quiet=True, output=f"{kept.name}/out", on_step=lambda step: begun.set())
+            threading.Thread(target=work, daemon=True).start()
+            begun.wait()
+            """)
+        self.assertEqual((done.returncode, done.stdout.strip()), (0, "read"), done.stderr)
+
     def test_an_interrupt_ends_a_loop_in_the_midst_of_a_step(self):
         done = script("""
             import os, signal, threading, time
