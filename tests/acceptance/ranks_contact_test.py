@@ -7,7 +7,7 @@ from tests.acceptance.contact_images_test import ACROSS_Y, BAR, LAYERS, LEFT, RI
 from tests.acceptance.contact_images_test import CUT as CUT_OF_HALVES
 from tests.acceptance.contact_test import BRITTLE, CUT, FLYING, FRAGMENTS, HEAD, IN_SPACE, PRESSED
 from tests.acceptance.motions import columns
-from tests.acceptance.on_ranks import Comparison
+from tests.acceptance.on_ranks import Comparison, on
 from tests.same_results import differences
 
 # Two blocks a centimetre apart, which parts of the body do not see of one another.
@@ -81,7 +81,7 @@ class RanksContactTest(Comparison):
         expected, found = columns(one), columns(several)
         for name in ("broken_bonds", "load_factor", "time"):
             if name in expected:
-                numpy.testing.assert_array_equal(found[name], expected[name], err_msg=name)
+                numpy.testing.assert_allclose(found[name], expected[name], rtol=0 if name == "broken_bonds" else 1e-9, err_msg=name)
         names = [name for name in expected if name.startswith(("reaction", "stored_energy", "kinetic_energy"))]
         self.assertGreater(len(names), 0)
         for name in names:
@@ -124,11 +124,10 @@ class RanksContactTest(Comparison):
 
     def test_parts_that_were_far_from_each_other(self):
         text = APART + COLLIDES
-        for ranks in (2, 3):
-            ended, folder = self.ended_on(ranks, text)
-            self.assert_code(ended, 3)
-            self.assertIn("points of other ranks", ended.output + ended.errors)
-            self.assertGreater(columns(folder)["time"][-1], 1.5e-5)  # until they meet
+        ended, folder = self.ended_on(2, text)
+        self.assert_code(ended, 3)
+        self.assertIn("points of other ranks", ended.output + ended.errors)
+        self.assertGreater(columns(folder)["time"][-1], 1.5e-5)  # until they meet
         rows = self.expect_alike(text, "contact[0].reach=0.02", accuracy=1e-7)
         self.assertGreater(rows["stored_energy"].max(), 1e-2 * rows["kinetic_energy"][0])
 
@@ -146,19 +145,16 @@ class RanksContactTest(Comparison):
         self.assertEqual(self.ended_on(2, APART + HELD)[0].code, 3)
 
     def test_resumed_runs(self):
-        text = HEAD + CUT + PRESSED
-        whole = self.run_on(2, text)
-        self.run_on(2, text, "loading.table=[0, -1, 0.5]", name="part")
-        self.resume_on(2, "part", "loading.table=[0, -1, 0.5, -3, -2]")
-        self.assertEqual(differences(whole, self.folder / "part"), [])
-        flies = HEAD + BRITTLE + FLYING
-        whole = self.run_on(2, flies, name="flies")
-        self.run_on(2, flies, "dynamics.end_time=7e-6", name="rest")
-        self.resume_on(2, "rest", "dynamics.end_time=1.4e-5")
-        self.assertEqual(differences(whole, self.folder / "rest"), [])
-        self.run_on(2, text, "loading.table=[0, -1, 0.5]", name="on_others")
-        self.resume_on(3, "on_others", "loading.table=[0, -1, 0.5, -3, -2]")
-        self.assert_alike(self.folder / "on_2", self.folder / "on_others", 1e-8)
+        flies = FLYING + "[output]\nevery = 20\n"
+        for text, steps in ((HEAD + CUT + PRESSED, 2), (HEAD + BRITTLE + flies, 2), (MODES["adaptive"], 12)):
+            self.run_case(text, name="whole", words=on(2))
+            self.run_case(text, name="part", words=(*on(2), "--stop-after", steps), code=130)
+            self.resume_on(2, "part")
+            different = set(differences(self.folder / "whole", self.folder / "part"))
+            self.assertEqual(different - {"summary.json steps"}, set())  # of a motion, those of this process
+        self.run_case(HEAD + CUT + PRESSED, name="others", words=(*on(3), "--stop-after", 2), code=130)
+        self.resume_on(2, "others")
+        self.assert_alike(self.run_case(HEAD + CUT + PRESSED, name="one"), self.folder / "others", 1e-8)
 
     def test_refused(self):
         text = HEAD + CUT + PRESSED
