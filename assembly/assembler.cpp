@@ -286,7 +286,7 @@ DamageGrowth Assembler::growth_by_laws(const StateView& now) {
 
 bool Assembler::may_damage(const Evaluation& of_commit) const {
   // Bonds between two ranks are counted by one of them.
-  return of_commit.growth.degrading > 0 || (!index_map_.is_whole() && model_.has_history());
+  return of_commit.growth.degrading > 0 || (index_map_.ranks().count() > 1 && model_.has_history());
 }
 
 bool Assembler::has_contacts() const {

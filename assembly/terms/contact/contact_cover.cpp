@@ -40,7 +40,7 @@ ContactCover::ContactCover(const Points& points, const IndexMap& index_map, doub
       index_map_(index_map),
       range_(range),
       margin_(margin),
-      has_all_(index_map.is_whole() && points.images.kinds.empty()) {
+      has_all_(index_map.ranks().count() == 1 && points.images.kinds.empty()) {
   Index handle = points.count();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const bool repeats = std::ranges::any_of(
@@ -145,7 +145,6 @@ std::vector<ContactCover::Missing> ContactCover::missing_near(std::span<const do
     const Coordinates way = moved(i, step);
     if (is_near(now, ranks.rank())) send(i, -1.0, now, way);
     for (std::size_t k = 0; k < kinds.size(); ++k) {
-      if (index_map_.is_whole() && has_image_[k][std::size_t(i)]) continue;
       const Coordinates place = plus(kinds[k].place(now), jump(kinds[k], displacement));
       if (!is_near(place, -1)) continue;
       Coordinates of_image = jump(kinds[k], step);
