@@ -12,6 +12,7 @@
 #include "assembly/terms/bonds_alone.hpp"
 #include "src/core/stopwatch.hpp"
 #include "src/core/vector_verbs.hpp"
+#include "src/parallel/collectives.hpp"
 #include "src/parallel/index_map.hpp"
 
 namespace peristat {
@@ -183,7 +184,7 @@ Evaluation Assembler::release(std::span<const double> displacement, History& his
         damage_bonds_alone(bonds, points_, drives(at()), history.change(model_.slot_of(bonds)));
   }
   found.moves_equilibrium = found.growth.degrading > 0;
-  if (found.moves_equilibrium) history.note_damage();
+  if (may_damage(found)) history.note_damage();
   return found;
 }
 
@@ -192,7 +193,7 @@ Evaluation Assembler::commit(std::span<const double> displacement, History& hist
   Evaluation found = release(displacement, history, environment);
   for_each_term([&](TermPasses& term, Write how) {
     const Evaluation of_term = term.commit(displacement, environment, history, gradient, how);
-    if (of_term.growth.degrading > 0) history.note_damage();
+    if (may_damage(of_term)) history.note_damage();
     found += of_part(term, {displacement, history, Damage::grows, environment}, of_term);
   });
   cut_struts(displacement, history, gradient, environment, found);
@@ -206,7 +207,7 @@ Evaluation Assembler::commit_forces(std::span<const double> displacement, Histor
   for_each_term([&](TermPasses& term, Write how) {
     const Evaluation of_term =
         term.commit_forces(displacement, environment, history, gradient, how);
-    if (of_term.growth.degrading > 0) history.note_damage();
+    if (may_damage(of_term)) history.note_damage();
     found += of_term;
   });
   cut_struts(displacement, history, gradient, environment, found);
@@ -281,6 +282,11 @@ DamageGrowth Assembler::growth_by_laws(const StateView& now) {
     found += of_term;
   });
   return of_all(found.growth);
+}
+
+bool Assembler::may_damage(const Evaluation& of_commit) const {
+  // Bonds between two ranks are counted by one of them.
+  return of_commit.growth.degrading > 0 || (index_map_.ranks().count() > 1 && model_.has_history());
 }
 
 bool Assembler::has_contacts() const {
@@ -360,7 +366,11 @@ int Assembler::cover_contacts(const StateView& at) {
   });
   BlockPattern now = in_contact.empty() ? BlockPattern::diagonal(points_.count())
                                         : BlockPattern::united(in_contact, points_.count()).kept();
-  if (now == in_contact_) return version_of_pattern_;
+  // Tangents on all ranks are laid out anew if one is.
+  const bool stays = now == in_contact_;
+  if (!any_of_all(index_map_.ranks(), !stays)) return version_of_pattern_;
+  ++version_of_pattern_;
+  if (stays) return version_of_pattern_;
   in_contact_ = std::move(now);
   pattern_ = in_contact_.partner.empty()
                  ? of_model_
@@ -368,7 +378,7 @@ int Assembler::cover_contacts(const StateView& at) {
   for (std::size_t k = 0; k < terms_.size(); ++k) {
     if (!terms_[k]->has_contacts()) terms_[k] = passes_of(*model_.terms()[k]);
   }
-  return ++version_of_pattern_;
+  return version_of_pattern_;
 }
 
 void Assembler::add_drive(const StateView& at, const StateLine& line, std::span<BondDrive> drives) {

@@ -144,6 +144,8 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   /// Damages by release, if the model's bonds fail so. Returns its growth.
   Evaluation release(std::span<const double> displacement, History& history,
                      const SharedEnvironment& environment);
+  /// True if a commit may have changed integrities of bonds of this rank.
+  [[nodiscard]] bool may_damage(const Evaluation& of_commit) const;
   /// Bonds that a commit in this state would cut as struts.
   [[nodiscard]] std::vector<Offset> find_struts(const StateView& at) const;
   /// Cuts the struts of a committed state, and evaluates it anew if there are some.

@@ -29,7 +29,9 @@ struct FailingBody {
     model = Model(elastic.bonds(), Degraded<TanhDegradation>{modulus, {0.016, 0.020, 3.0}});
     const std::vector<double> ones(std::size_t(points.count()), 1.0);
     contact = std::make_shared<PairContactTerm>(std::make_shared<const PointContacts>(
-        ContactPairs(points, model.bonds(), {PairContactRule{}}, ones, ones, true), model.bonds()));
+        ContactPairs(points, model.bonds(), {PairContactRule{}}, ones, ones, points.cross_section(),
+                     true),
+        model.bonds()));
     if (state.range(1) != 0) model.add(contact);
   }
   [[nodiscard]] std::vector<double> displacement() const {

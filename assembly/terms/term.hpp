@@ -139,8 +139,8 @@ struct TermSetting {
   const Model& model;
   const BlockPattern& pattern;
   Workspace& workspace;
-  /// A commit, which is collective, may communicate to agree on the new history. No other pass
-  /// communicates.
+  /// A commit, which is collective, may communicate to agree on the new history, and contacts on
+  /// whether all that may touch is on the ranks. No other pass communicates.
   const IndexMap& index_map = whole_body();
 };
 

@@ -510,7 +510,7 @@ class Contact(Table):
     distance: Quantity
     """distance at which two points touch [m]. Default: the mean of the two points' sizes, on a lattice the spacing. Allowed: positive"""
     reach: Quantity
-    """with planes of symmetry and periods: distance from the body up to which points beyond them are modelled. A state in which others might touch is refused [m]. Default: the horizon. Allowed: positive"""
+    """distance in the undeformed body up to which points see one another beyond planes of symmetry and periods and on other ranks; nothing else needs it. A state in which others would touch is refused [m]. Default: the horizon. Allowed: positive"""
     stiffness: float
     """stiffness over that of the bar of material between two points. Default: 1. Allowed: 0.001 to 1000"""
     depth: float

@@ -337,12 +337,17 @@ void refuse_without_ranks(const BodySpecification& of) {
         key, "",
         "is not for more than one rank yet; supported on several ranks are pre-cracks, supports, "
         "rigid sets, rollers, linear constraints, planes of symmetry, periods, foundations, "
-        "obstacles, eigenstrains, tractions, pressures, body forces, total forces and gravity, and "
+        "obstacles, contacts of points, eigenstrains, tractions, pressures, body forces, total "
+        "forces and gravity, and "
         "damage of bonds, points, states and triangles");
   };
   if (of.force_operator != ForceOperator::bonds) refuse("force_operator");
   if (!of.controls.empty()) refuse("controls");
-  if (!of.contacts.empty()) refuse("contacts");
+  for (std::size_t k = 0; k < of.contacts.size(); ++k) {
+    const std::string table = "contacts[" + std::to_string(k) + "]";
+    if (of.contacts[k].shape == ContactShape::faces) refuse(table + ".shape");
+    if (of.contacts[k].friction > 0.0) refuse(table + ".friction");
+  }
   for (std::size_t k = 0; k < of.obstacles.size(); ++k) {
     const std::string table = "obstacles[" + std::to_string(k) + "]";
     if (of.obstacles[k].friction > 0.0) refuse(table + ".friction");

@@ -50,7 +50,8 @@ void add_contacts(const Body& body, Model& model) {
   const Bonds& bonds = body.model.bonds();
   auto contacts = std::make_shared<const PointContacts>(
       ContactPairs(points, bonds, std::move(rules), std::move(size), youngs_moduli(body),
-                   body.model.failing_bonds() != nullptr),
+                   body.setting.cross_section, body.model.failing_bonds() != nullptr,
+                   body.index_map->ranks()),
       bonds);
   for (std::size_t k = 0; k < of.contacts.size(); ++k) {
     if (of.contacts[k].shape == ContactShape::points || !contacts->faces.none()) continue;

@@ -73,8 +73,8 @@ std::string explanation(Outcome outcome) {
       return "no step along the Newton direction lowers the energy";
     case Outcome::degenerate:
       return "bonds collapse to zero length, points go too deep into what they touch or through "
-             "it, or near to images that are not modelled (reach of a contact), no place of an "
-             "obstacle bears its force, or values are not finite";
+             "it, or near to images or points of other ranks that are not modelled (reach of a "
+             "contact), no place of an obstacle bears its force, or values are not finite";
     case Outcome::out_of_memory:
       return "the factorisation does not fit in memory";
     case Outcome::linear_solver_inaccurate:

@@ -62,7 +62,7 @@ class NewtonSearch {
     evaluate(problem, external_force_, current_, damage_);
     result_.scale = options.scale > 0.0 ? options.scale : scale_after_jump();
     if (problem.assembler.has_contacts()) foreseen_ = from.displacement;
-    if (current_.environment || !foreseen_.empty()) {
+    if (current_.environment || problem.assembler.has_contacts()) {
       find_start_gradient();
       if (options.scale <= 0.0) {
         result_.scale =
@@ -231,7 +231,8 @@ class NewtonSearch {
   /// Finds the direction of the predictor.
   LinearOutcome predict(double projection, FactorUse use, double tolerance) {
     // A projected tangent is that of the last exact one.
-    if (foreseen_.empty() || has_predicted_) return solve_at_start(projection, use, tolerance);
+    if (!problem_.assembler.has_contacts() || has_predicted_)
+      return solve_at_start(projection, use, tolerance);
     has_predicted_ = true;
     return predict_with_contacts(
         problem_, foreseen_, [this] { return start(); },
@@ -257,7 +258,7 @@ class NewtonSearch {
 
   /// Contacts that close in the step may bear the only forces of the body.
   [[nodiscard]] bool has_converged() {
-    if (!foreseen_.empty() && options_.scale <= 0.0) {
+    if (problem_.assembler.has_contacts() && options_.scale <= 0.0) {
       result_.scale = std::max(scale_at_start_,
                                environment_norm(problem_, current_.at(damage_), current_.gradient));
     }

@@ -308,7 +308,6 @@ class ContactTest(Folder):
         self.assertIn("in common with another contact", self.refusal(overlapping))
         shared = text.replace("[[contact]]", '[[contact]]\nset = "left"\nwith = "left_end"')
         self.assertIn("shares points", self.refusal(shared))
-        self.assertIn("contact[0].reach", self.refusal(text, "contact[0].reach=0.01"))
 
     def test_tangent(self):
         ended = self.command("check-tangent", HEAD + CUT + PRESSED)

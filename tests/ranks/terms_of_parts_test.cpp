@@ -256,6 +256,28 @@ TEST(TermsOfPart, are_those_that_pre_cracks_leave) {
   }
 }
 
+TEST(TermsOfPart, contacts_are_those_of_the_whole_body) {
+  for (RanksBody body : {perturbed(square_with_hole()), cube()}) {
+    SCOPED_TRACE(body.name);
+    BodySpecification of = specification(body, MaterialModel::bond);
+    of.material.youngs_modulus = 3.0;
+    if (body.lattice.dimension == 2) {
+      of.cracks = {CrackSegment{{0.2, 1.31}, {1.1, 1.43}}};
+    } else {
+      of.cracks = {
+          CrackPolygon{{{0.2, 0.2, 0.6}, {0.9, 0.2, 0.6}, {0.9, 0.9, 0.6}, {0.2, 0.9, 0.6}}}};
+    }
+    of.contacts = {{.softness = 1e-3}};
+    BodySpecification without = of;
+    without.contacts.clear();
+    Both both(body, of), bare(body, without);
+    const std::vector<double> u =
+        Random(3).vector(both.whole->points.reference.size(), 0.05 * both.whole->points.spacing);
+    EXPECT_GT(both.energy.energy(u).energy, 1.0001 * bare.energy.energy(u).energy);  // some press
+    expect_same_energies(both, 0.05);
+  }
+}
+
 TEST(TermsOfPart, without_triangles_are_refused_by_all_ranks) {
   const RanksBody row{"row", lattice_box(2, {9, 1, 0}, {0.1, 0.1, 0.1}), 3.015};
   const BodySpecification of = cpd(row);

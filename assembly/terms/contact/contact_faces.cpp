@@ -6,6 +6,7 @@
 
 #include "assembly/terms/contact/bond_shares.hpp"
 #include "src/core/coordinates.hpp"
+#include "src/core/infinity.hpp"
 #include "src/neighbourhood/cell_list.hpp"
 
 namespace peristat {
@@ -318,7 +319,6 @@ std::vector<ContactFaces::Meeting> ContactFaces::on_way(std::span<const double> 
     }
   };
   const auto way_of = [&](std::span<const Index> of) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     WayBox box;
     for (std::size_t c = 0; c < d; ++c) box.lower[c] = infinity, box.upper[c] = -infinity;
     for (const Index point : of) add_way(box, point);

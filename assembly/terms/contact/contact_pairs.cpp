@@ -17,15 +17,17 @@ constexpr Index rows_per_part = 4096;
 
 ContactPairs::ContactPairs(const Points& points, const Bonds& bonds,
                            std::vector<PairContactRule> rules, std::vector<double> size,
-                           std::vector<double> modulus, bool bonds_fail)
+                           std::vector<double> modulus, double cross_section, bool bonds_fail,
+                           const Communicator& ranks)
     : points_(points),
       bonds_(bonds),
       rules_(std::move(rules)),
       size_(std::move(size)),
       modulus_(std::move(modulus)),
-      bonds_fail_(bonds_fail),
-      thickness_(points.cross_section()) {
+      cross_section_(cross_section),
+      bonds_fail_(bonds_fail) {
   for (const double of_point : size_) largest_size_ = std::max(largest_size_, of_point);
+  largest_size_ = ranks.max(largest_size_);
   for (const PairContactRule& rule : rules_) {
     reach_ = std::max(reach_, rule.distance > 0.0 ? rule.distance : largest_size_);
   }
@@ -41,7 +43,7 @@ double ContactPairs::bytes() const {
 }
 
 bool ContactPairs::find_pair(Index i, Index j, ContactPair& pair) const {
-  if (points_.is_image(i)) return false;
+  if (points_.is_image(i) || (!points_.owns(i) && !points_.owns(j))) return false;
   const auto rule =
       std::ranges::find_if(rules_, [&](const PairContactRule& of) { return of.holds_for(i, j); });
   if (rule == rules_.end()) return false;

@@ -8,6 +8,7 @@
 #include "src/core/types.hpp"
 #include "src/geometry/points.hpp"
 #include "src/neighbourhood/bonds.hpp"
+#include "src/parallel/communicator.hpp"
 #include "src/potentials/contact_law.hpp"
 
 namespace peristat {
@@ -54,20 +55,23 @@ struct ContactPair {
 ///
 /// Points touch images of points, too. Such a contact is there twice, as that of i with the image
 /// of j and as that of j with the image of i; each has half of k. Images touch no images: what
-/// touches beyond a plane of symmetry or a period belongs to others.
+/// touches beyond a plane of symmetry or a period belongs to others. On several ranks a pair of an
+/// own point and a ghost is on both.
 class ContactPairs {
  public:
   /// The arguments outlive it.
   /// @param size per point [m]
   /// @param modulus Young's modulus per point [Pa]
   /// @param bonds_fail otherwise points with a bond never touch
+  /// @param ranks that share the body
   ContactPairs(const Points& points, const Bonds& bonds, std::vector<PairContactRule> rules,
-               std::vector<double> size, std::vector<double> modulus, bool bonds_fail);
+               std::vector<double> size, std::vector<double> modulus, double cross_section,
+               bool bonds_fail, const Communicator& ranks = sole_rank());
 
   [[nodiscard]] const std::vector<PairContactRule>& rules() const { return rules_; }
   /// Distance beyond d that pairs are still listed [m].
   [[nodiscard]] double skin() const { return 0.5 * largest_size_; }
-  /// The longest d [m].
+  /// The longest d, of all ranks [m].
   [[nodiscard]] double reach() const { return reach_; }
   [[nodiscard]] const Points& points() const { return points_; }
   [[nodiscard]] std::span<const double> sizes() const { return size_; }      ///< per point [m]
@@ -75,8 +79,8 @@ class ContactPairs {
   /// Area of the face of a cell of a size [m2]; in 1D the bar's cross-section.
   [[nodiscard]] double section(double size) const {
     return points_.dimension == 3   ? size * size
-           : points_.dimension == 2 ? thickness_ * size
-                                    : thickness_;
+           : points_.dimension == 2 ? cross_section_ * size
+                                    : cross_section_;
   }
   /// Memory of it, and of the pairs that are kept near a state where bonds can fail [bytes].
   [[nodiscard]] double bytes() const;
@@ -99,8 +103,9 @@ class ContactPairs {
   const Bonds& bonds_;
   std::vector<PairContactRule> rules_;
   std::vector<double> size_, modulus_;
+  double cross_section_;  // 2D: thickness, 1D: area
   bool bonds_fail_;
-  double thickness_ = 1.0, largest_size_ = 0.0, reach_ = 0.0;
+  double largest_size_ = 0.0, reach_ = 0.0;
 };
 
 }  // namespace peristat

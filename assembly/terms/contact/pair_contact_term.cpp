@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "assembly/terms/contact/contact_cover.hpp"
 #include "assembly/terms/contact/contact_limits.hpp"
 #include "assembly/terms/contact/contact_rows.hpp"
-#include "assembly/terms/contact/image_cover.hpp"
 #include "assembly/terms/contact/near_pairs.hpp"
 #include "assembly/terms/contact/point_friction.hpp"
 #include "assembly/terms/contact/swept_pairs.hpp"
@@ -46,7 +46,7 @@ class PairContactPasses : public TermPasses, BlockTangent {
         pattern_(setting.pattern),
         near_(pairs_, term.contacts().faces, setting.model, setting.workspace.threads()),
         near_foreseen_(pairs_, term.contacts().faces, setting.model, setting.workspace.threads()),
-        cover_(points_, pairs_.reach()),
+        cover_(points_, setting.index_map, pairs_.reach(), 4.0 * pairs_.skin()),
         friction_(points_.dimension),
         rows_(points_.count()),
         rubs_(std::ranges::any_of(pairs_.rules(),
@@ -55,8 +55,7 @@ class PairContactPasses : public TermPasses, BlockTangent {
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
     if (how == Write::over) std::ranges::fill(gradient, 0.0);
     Evaluation found;
-    if (at.has_contacts && is_finite_at(points_, at.displacement) &&
-        !cover_.holds(at.displacement)) {
+    if (at.has_contacts && !cover_.holds(at.displacement)) {
       // Explicit steps look at the forces alone.
       if (!gradient.empty()) gradient[0] = std::numeric_limits<double>::quiet_NaN();
       found.degenerate = true;
@@ -248,7 +247,8 @@ class PairContactPasses : public TermPasses, BlockTangent {
   bool has_passed(const StateView& from, const StateView& to) override {
     std::vector<double> step(to.displacement.begin(), to.displacement.end());
     add_scaled(step, -1.0, from.displacement);
-    return passes_through(pairs_, from, step, near_);
+    const bool is_left = cover_.is_left_by(from.displacement, step);  // on all ranks
+    return is_left || passes_through(pairs_, from, step, near_);
   }
 
   /// With the depths after a fifth of the gaps has closed. A row of k b'' n n^T has the sum
@@ -424,7 +424,7 @@ class PairContactPasses : public TermPasses, BlockTangent {
   const Points& points_;
   const BlockPattern& pattern_;
   NearPairs near_, near_foreseen_;
-  ImageCover cover_;
+  ContactCover cover_;
   PointFriction friction_;
   ContactRows rows_;
   bool rubs_;

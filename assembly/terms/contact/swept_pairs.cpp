@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "assembly/terms/contact/contact_limits.hpp"
+#include "src/core/infinity.hpp"
 #include "src/neighbourhood/cell_list.hpp"
 
 namespace peristat {
@@ -56,7 +57,6 @@ std::vector<Group<D>> groups_of(const CellList<D>& cells, std::span<const double
     group.first = cells.begin[cell];
     group.last = cells.begin[cell + 1];
     if (group.first == group.last) continue;
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     group.lower.fill(infinity);
     group.least_step.fill(infinity);
     group.upper.fill(-infinity);

@@ -95,7 +95,8 @@ Table<Case> all_keys() {
          "tables: springs between a part of the body and the ground")
            .on_ranks(),
        K("contact", &Case::contacts, contact_keys(),
-         "tables: contact of points that no whole bond joins"),
+         "tables: contact of points that no whole bond joins")
+           .on_ranks(),
        K("obstacle", &Case::obstacles, obstacle_keys(), "tables: rigid bodies that press on points")
            .on_ranks(),
        K("eigenstrain", in(&Case::eigenstrains, &Eigenstrains::given), eigenstrain_keys(),

@@ -25,8 +25,10 @@ Table<ContactSpecification> contact_keys() {
            .written_if([](auto& of, auto&) { return of.distance > 0.0; })
            .default_words("the mean of the two points' sizes, on a lattice the spacing"),
        K("reach", &Spec::reach, positive("m"),
-         "with planes of symmetry and periods: distance from the body up to which points beyond "
-         "them are modelled. A state in which others might touch is refused")
+         "distance in the undeformed body up to which points see one another [beyond planes of "
+         "symmetry and periods](contact.md#beyond-planes-and-periods) and [on other ranks]"
+         "(contact.md#ranks); nothing else needs it. A state in which others would touch is "
+         "refused")
            .written_if([](auto& of, auto&) { return of.reach > 0.0; })
            .default_words("the horizon"),
        K("stiffness", &Spec::stiffness, between(1e-3, 1e3),

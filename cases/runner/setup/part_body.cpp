@@ -160,6 +160,9 @@ std::unique_ptr<const Body> make_part_body(const Case& from, const Communicator&
     const bool has_ghost_sites = lattice != nullptr && formulation_of(from).has_ghost_sites;
     if (has_ghost_sites) reach += ranks.max(reach_beyond_balls(*lattice, slab.points));
     if (from.has_pressures()) reach = std::max(reach, reach_of_pressures(slab.points));
+    for (const ContactSpecification& contact : of.contacts) {
+      reach = std::max(reach, contact.reach);
+    }
     std::vector<ImageKind> images = kinds_of_images(of, slab.points, ranks);
     Part part =
         distribute(std::move(slab), setting.horizon, reach, ranks, threads, std::move(images));

@@ -49,8 +49,6 @@ void check_contacts(const BodySpecification& of, const Points& points) {
     require_within(contact.friction, 0.0, 1000.0, table + ".friction");
     require_within(contact.tangential_stiffness, 0.001, 1000.0, table + ".tangential_stiffness");
     const bool has_images = !of.constraints.symmetries.empty() || !of.constraints.periods.empty();
-    require_absent(contact.reach > 0.0 && !has_images, table + ".reach",
-                   "is for bodies with planes of symmetry or periods");
     require(!has_images || contact.shape == ContactShape::points, table + ".shape", "\"faces\"",
             "is not for bodies with planes of symmetry and periods, beyond which faces do not see "
             "one another; take \"points\" or the whole body");

@@ -31,7 +31,7 @@ struct Halves {
     const auto count = std::size_t(body.points.count());
     contacts = std::make_shared<const PointContacts>(
         ContactPairs(body.points, body.model.bonds(), {rule}, std::vector<double>(count, spacing),
-                     std::vector<double>(count, modulus), fails),
+                     std::vector<double>(count, modulus), body.points.cross_section(), fails),
         body.model.bonds());
     contact = std::make_shared<PairContactTerm>(contacts);
     add_to(body.model);
