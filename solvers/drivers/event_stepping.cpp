@@ -47,8 +47,8 @@ constexpr int most_iterations_of_a_fall = 200;
 /// Largest number of events of one avalanche.
 constexpr int most_events = 1'000'000;
 
-/// Error of the trapezoidal rule for the work of contacts, whose forces bend where they close and
-/// open: what they store is known exactly [J].
+/// Error of the trapezoidal rule in the external work that contacts take up, whose forces bend
+/// where they close and open: what they store is known exactly [J].
 double work_error_of_contacts(Assembler& body, const StateView& from, const StateView& to) {
   if (!body.has_contacts()) return 0.0;
   double error = body.work_of_obstacles(from, to);
@@ -58,8 +58,7 @@ double work_error_of_contacts(Assembler& body, const StateView& from, const Stat
     bare.has_contacts = false;
     error -= sign * (body.gradient(at, force).energy - body.gradient(bare, without).energy);
     for (std::size_t dof = 0; dof < force.size(); ++dof) {
-      error +=
-          0.5 * (force[dof] - without[dof]) * (to.displacement[dof] - from.displacement[dof]);
+      error += 0.5 * (force[dof] - without[dof]) * (to.displacement[dof] - from.displacement[dof]);
     }
   }
   return error;
@@ -273,8 +272,7 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
     return settled.has_converged() && book_event(at, ledger, dropped, lost, settled);
   };
   const State& from = settled.state;
-  const bool has_settled =
-      !touches(from) && settles(settle_nearby(from, settled.borne, tolerance));
+  const bool has_settled = !touches(from) && settles(settle_nearby(from, settled.borne, tolerance));
   // A stable body comes to rest in a stable state, however far that is.
   const bool is_lost = has_settled && !was_bifurcated && is_unstable(settled.attempt);
   if ((!has_settled || is_lost) && settled.outcome != Outcome::interrupted &&
@@ -446,17 +444,16 @@ void EventStepping::pass_over(Step& step) {
 void EventStepping::settle_work(Step& step) const {
   const Ledger& before = path_.state().ledger.entries;
   Ledger& after = step.found.ledger;
+  after.external_work -= work_error_of_contacts(path_.body().assembler,
+                                                StateView(path_.state().accepted, Damage::held),
+                                                step.attempt.state.at(Damage::held));
   const double error = after.balance_error() - before.balance_error();
-  const double of_contacts =
-      work_error_of_contacts(path_.body().assembler, StateView(path_.state().accepted, Damage::held),
-                             step.attempt.state.at(Damage::held));
   const double turned_over =
       std::abs(after.stored - before.stored) + std::abs(after.external_work - before.external_work);
-  if (std::abs(error - of_contacts) >
+  if (std::abs(error) >
       share_of_work * turned_over + share_of_total * std::abs(after.external_work)) {
     step.attempt.outcome = Outcome::sharp_turn;
-    step.fault =
-        "the work of the step has an error of " + number_text(std::abs(error - of_contacts)) + " J";
+    step.fault = "the work of the step has an error of " + number_text(std::abs(error)) + " J";
   }
   after.numerical_work -= error;
 }

@@ -132,10 +132,11 @@ class StrengthSearch {
   Outcome refresh_at(double stage) {
     refreshed_at_ = tangent_.refreshed() + 1;
     const LoadPoint at = step_.point(stage);
-    const SharedEnvironment environment = foreseen_.empty() ? current_.environment : foreseen_under_;
-    return outcome_of(tangent_.refresh({current_.displacement, at.stage, current_.history, at.load,
-                                        environment, at.preload},
-                                       foreseen_));
+    const SharedEnvironment environment =
+        foreseen_.empty() ? current_.environment : foreseen_under_;
+    return outcome_of(tangent_.refresh(
+        {current_.displacement, at.stage, current_.history, at.load, environment, at.preload},
+        foreseen_));
   }
 
   /// True if contacts press in the present state.

@@ -45,7 +45,7 @@ struct StrengthResult {
   NewtonResult newton;
   double stage = 0.0;
   StrengthEnd end = StrengthEnd::inadmissible;
-  bool goes_up = true;         ///< the stage increases
+  bool goes_up = true;            ///< the stage increases
   bool turns_at_contact = false;  ///< on the way: a contact closes or opens
 };
 

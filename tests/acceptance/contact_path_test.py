@@ -70,8 +70,8 @@ APART = ROLLER.replace("PLACE", "0.01502")
 # Bending closes this cut.
 CUT = """\
 [[crack]]
-from = [-0.005, 0.003]
-to = [-0.005, 0.008]
+from = [-0.0055, 0.003]
+to = [-0.0055, 0.008]
 [[contact]]
 softness = 1e-4
 """
