@@ -444,16 +444,33 @@ void EventStepping::pass_over(Step& step) {
 void EventStepping::settle_work(Step& step) const {
   const Ledger& before = path_.state().ledger.entries;
   Ledger& after = step.found.ledger;
-  after.external_work -= work_error_of_contacts(path_.body().assembler,
-                                                StateView(path_.state().accepted, Damage::held),
-                                                step.attempt.state.at(Damage::held));
+  Assembler& body = path_.body().assembler;
+  const State& from = path_.state().accepted;
+  const Trial& to = step.attempt.state;
+  const double of_contacts =
+      work_error_of_contacts(body, StateView(from, Damage::held), to.at(Damage::held));
+  after.external_work -= of_contacts;
   const double error = after.balance_error() - before.balance_error();
   const double turned_over =
       std::abs(after.stored - before.stored) + std::abs(after.external_work - before.external_work);
-  if (std::abs(error) >
-      share_of_work * turned_over + share_of_total * std::abs(after.external_work)) {
+  const double allowed =
+      share_of_work * turned_over + share_of_total * std::abs(after.external_work);
+  if (std::abs(error) > allowed) {
     step.attempt.outcome = Outcome::sharp_turn;
     step.fault = "the work of the step has an error of " + number_text(std::abs(error)) + " J";
+  }
+  // Forces that do work go from their old values to the new ones. If these do not explain the
+  // error, the body has jumped against what it touches.
+  double explained = std::abs(body.work_of_obstacles(StateView(from, Damage::held), to.at()));
+  const std::vector<double> working = path_.working_force(to, step.attempt.external_force);
+  for (std::size_t dof = 0; dof < working.size(); ++dof) {
+    explained += 0.5 * std::abs((working[dof] - path_.state().ledger.force[dof]) *
+                                (to.displacement[dof] - from.displacement[dof]));
+  }
+  if (std::abs(of_contacts) > explained + allowed) {
+    step.attempt.outcome = Outcome::sharp_turn;
+    step.fault = "contacts set free " + number_text(std::abs(of_contacts)) +
+                 " J that no work accounts for: the body has jumped";
   }
   after.numerical_work -= error;
 }
@@ -503,13 +520,14 @@ Advance EventStepping::accept(Step step, PathState before) {
   tell_response(step, record);
   // Where contacts press the next search can't use the tangents of this one, and the state's own
   // one tells whether it is stable.
-  if (tangent().touches() || touches(reached)) static_cast<void>(tangent().refresh(reached));
+  const bool needs_tangent = tangent().touches() || touches(reached);
+  const bool is_known = !needs_tangent || tangent().refresh(reached) == LinearOutcome::solved;
   events.tangent = tangent().reference();
   const double most = utilisation(reached, borne_);
   events.at_strength = most >= 1.0 - tie;
   std::string how =
       step.how.empty() ? std::to_string(step.attempt.iterations) + " iterations" : step.how;
-  record.stability = stability_of_elastic_body();
+  record.stability = is_known ? stability_of_elastic_body() : Stability::not_judged;
   if (events.at_strength) {
     PathLedger with_step = state.ledger;
     with_step.accept(step.found.ledger,

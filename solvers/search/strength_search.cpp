@@ -198,8 +198,10 @@ class StrengthSearch {
     const double first = first_part_of(change);
     const std::vector<Index> closed = closed_after(first);
     if (closed_after(change) == closed) return false;
+    constexpr int most_halvings = 60;
     double low = first, high = change;
-    while (std::abs(high - low) > share_of_corner * step_.corner) {
+    for (int k = 0; k < most_halvings && std::abs(high - low) > share_of_corner * step_.corner;
+         ++k) {
       const double middle = 0.5 * (low + high);
       (closed_after(middle) == closed ? low : high) = middle;
     }
