@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "assembly/terms/contact/face_contact_term.hpp"
 #include "assembly/terms/damage.hpp"
 #include "assembly/terms/failure/bond_failure.hpp"
 #include "solvers/drivers/implicit_stepping.hpp"
@@ -31,6 +32,10 @@ constexpr double share_of_total = 1e-5;
 /// Largest energy that may come from nothing by round-off, relative to the energy turned over.
 constexpr double share_from_nothing = 1e-6;
 
+/// Share of a load step within which contacts that close and open are one corner of the path. A
+/// bond that is loaded up to the corner may be overloaded for as long.
+constexpr double share_of_corner = 0.01;
+
 /// Relative residual at which a body counts as settled: the error of its energy is the square of
 /// it.
 constexpr double settled_tolerance = 1e-7;
@@ -41,6 +46,23 @@ constexpr int most_iterations_of_a_fall = 200;
 
 /// Largest number of events of one avalanche.
 constexpr int most_events = 1'000'000;
+
+/// Error of the trapezoidal rule in the external work that contacts take up, whose forces bend
+/// where they close and open: what they store is known exactly [J].
+double work_error_of_contacts(Assembler& body, const StateView& from, const StateView& to) {
+  if (!body.has_contacts()) return 0.0;
+  double error = body.work_of_obstacles(from, to);
+  for (const auto& [at, sign] : {std::pair(from, -1.0), std::pair(to, 1.0)}) {
+    std::vector<double> force(at.displacement.size()), without(force.size());
+    StateView bare = at;
+    bare.has_contacts = false;
+    error -= sign * (body.gradient(at, force).energy - body.gradient(bare, without).energy);
+    for (std::size_t dof = 0; dof < force.size(); ++dof) {
+      error += 0.5 * (force[dof] - without[dof]) * (to.displacement[dof] - from.displacement[dof]);
+    }
+  }
+  return error;
+}
 
 /// Begin of the segment of the programme that a stage is in.
 double segment_begin(double stage) { return LoadingProgramme::next_entry(stage) - 1.0; }
@@ -178,6 +200,14 @@ bool EventStepping::asks_for_interrupt() const {
   return interrupted && interrupted();
 }
 
+bool EventStepping::touches(const State& at) const {
+  Assembler& body = path_.body().assembler;
+  if (!body.has_contacts()) return false;
+  StateView view(at, Damage::held);
+  view.foreseen = at.displacement;
+  return !body.closed_contacts(view).empty();
+}
+
 Attempt EventStepping::settle_nearby(const State& at, std::span<const double> borne,
                                      double relative_tolerance) {
   StrengthStep step;
@@ -216,16 +246,18 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   settled.breaking = dropped.breaking;
   settled.state = at;
   settled.state.history = body.history_of(dropped.histories, at.history);
+  const bool tears = tear_faces(body.model(), settled.state.history);
   settled.borne = std::move(dropped.borne);
   const auto energy = [&](const State& of) {
     return body.energy(StateView(of, Damage::held)).energy;
   };
   // By release bonds lose all that hangs on them.
   const bool is_by_release = body.model().fails_by_release();
-  const bool bonds_alone = is_by_release || body.model().terms().size() == 1;
+  const bool bonds_alone = !tears && (is_by_release || body.model().terms().size() == 1);
   const double lost = bonds_alone ? dropped.energy_lost : energy(at) - energy(settled.state);
   const bool was_bifurcated = tangent().has_negative_pivots();
-  is_by_release ? tangent().forget() : tangent().lose(dropped.stiffness);
+  const bool is_outdated = is_by_release || tangent().touches();
+  is_outdated ? tangent().forget() : tangent().lose(dropped.stiffness);
 
   const FragmentPins pins_before = path_.state().pins;
   const bool may_go_on = dropped.breaking == 0 || pin(settled);
@@ -240,7 +272,7 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
     return settled.has_converged() && book_event(at, ledger, dropped, lost, settled);
   };
   const State& from = settled.state;
-  const bool has_settled = settles(settle_nearby(from, settled.borne, tolerance));
+  const bool has_settled = !touches(from) && settles(settle_nearby(from, settled.borne, tolerance));
   // A stable body comes to rest in a stable state, however far that is.
   const bool is_lost = has_settled && !was_bifurcated && is_unstable(settled.attempt);
   if ((!has_settled || is_lost) && settled.outcome != Outcome::interrupted &&
@@ -255,6 +287,7 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
 
 Attempt EventStepping::settle_anywhere(const State& at, std::span<const double> borne,
                                        double relative_tolerance) {
+  if (touches(at)) return settle_downhill(at, relative_tolerance);
   Attempt attempt = settle_nearby(at, borne, relative_tolerance);
   if (attempt.has_converged() || attempt.outcome == Outcome::interrupted) return attempt;
   return settle_downhill(at, relative_tolerance);
@@ -319,11 +352,13 @@ StrengthStep EventStepping::strength_step() const {
     step.preloads = true;
     step.range = {0.0, 1.0};
     step.stop = 1.0;
+    step.corner = share_of_corner;
     return step;
   }
   step.range = {begin, end};
   step.stop = end;
   const double steps = path_.options().steps;
+  step.corner = share_of_corner / steps;
   const double asked_for =
       begin + (std::floor((stage - begin) * steps + LoadingProgramme::tolerance) + 1.0) / steps;
   if (stage >= state.events.top) step.stop = std::min(end, asked_for);
@@ -348,6 +383,9 @@ EventStepping::Step EventStepping::search() {
   const LoadPoint reached = asked.point(found.stage);
   step.attempted = Increment::length(load_point(from), reached);
   step.attempt = to_attempt(std::move(found.newton), reached);
+  if (found.turns_at_contact && found.end == StrengthEnd::on_the_way) {
+    step.how = std::to_string(step.attempt.iterations) + " iterations; a contact closes or opens";
+  }
   return step;
 }
 
@@ -406,13 +444,33 @@ void EventStepping::pass_over(Step& step) {
 void EventStepping::settle_work(Step& step) const {
   const Ledger& before = path_.state().ledger.entries;
   Ledger& after = step.found.ledger;
+  Assembler& body = path_.body().assembler;
+  const State& from = path_.state().accepted;
+  const Trial& to = step.attempt.state;
+  const double of_contacts =
+      work_error_of_contacts(body, StateView(from, Damage::held), to.at(Damage::held));
+  after.external_work -= of_contacts;
   const double error = after.balance_error() - before.balance_error();
   const double turned_over =
       std::abs(after.stored - before.stored) + std::abs(after.external_work - before.external_work);
-  if (std::abs(error) >
-      share_of_work * turned_over + share_of_total * std::abs(after.external_work)) {
+  const double allowed =
+      share_of_work * turned_over + share_of_total * std::abs(after.external_work);
+  if (std::abs(error) > allowed) {
     step.attempt.outcome = Outcome::sharp_turn;
     step.fault = "the work of the step has an error of " + number_text(std::abs(error)) + " J";
+  }
+  // Forces that do work go from their old values to the new ones. If these do not explain the
+  // error, the body has jumped against what it touches.
+  double explained = std::abs(body.work_of_obstacles(StateView(from, Damage::held), to.at()));
+  const std::vector<double> working = path_.working_force(to, step.attempt.external_force);
+  for (std::size_t dof = 0; dof < working.size(); ++dof) {
+    explained += 0.5 * std::abs((working[dof] - path_.state().ledger.force[dof]) *
+                                (to.displacement[dof] - from.displacement[dof]));
+  }
+  if (std::abs(of_contacts) > explained + allowed) {
+    step.attempt.outcome = Outcome::sharp_turn;
+    step.fault = "contacts set free " + number_text(std::abs(of_contacts)) +
+                 " J that no work accounts for: the body has jumped";
   }
   after.numerical_work -= error;
 }
@@ -460,12 +518,16 @@ Advance EventStepping::accept(Step step, PathState before) {
   events.longest *= path_.options().growth;
   if (events.longest > 1.0) events.longest = 0.0;
   tell_response(step, record);
+  // Where contacts press the next search can't use the tangents of this one, and the state's own
+  // one tells whether it is stable.
+  const bool needs_tangent = tangent().touches() || touches(reached);
+  const bool is_known = !needs_tangent || tangent().refresh(reached) == LinearOutcome::solved;
   events.tangent = tangent().reference();
   const double most = utilisation(reached, borne_);
   events.at_strength = most >= 1.0 - tie;
   std::string how =
       step.how.empty() ? std::to_string(step.attempt.iterations) + " iterations" : step.how;
-  record.stability = stability_of_elastic_body();
+  record.stability = is_known ? stability_of_elastic_body() : Stability::not_judged;
   if (events.at_strength) {
     PathLedger with_step = state.ledger;
     with_step.accept(step.found.ledger,

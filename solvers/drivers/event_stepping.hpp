@@ -34,6 +34,9 @@ namespace peristat {
 /// Energies: an event takes from the bonds exactly what their law dissipates (batches: less,
 /// reported as numerical work). Energy that settling frees is drained. Between two events the work
 /// is what the elastic body takes up; the trapezoidal rule's error is reported as numerical work.
+///
+/// Contacts are part of the elastic body. A search ends where one closes or opens: such a state is
+/// a step of the path.
 class EventStepping : public Driver {
  public:
   /// @throws InputError ("mode") for a body without damage, or with laws that fall smoothly
@@ -75,6 +78,8 @@ class EventStepping : public Driver {
 
   /// Carries out the next event: bonds drop at a state, and the body settles.
   [[nodiscard]] Settled settle(const State& at, const PathLedger& ledger);
+  /// True if contacts press or touch.
+  [[nodiscard]] bool touches(const State& at) const;
   /// Searches the equilibrium at the present load, if it is not far.
   [[nodiscard]] Attempt settle_nearby(const State& at, std::span<const double> borne,
                                       double relative_tolerance);
@@ -82,7 +87,7 @@ class EventStepping : public Driver {
   [[nodiscard]] Attempt settle_downhill(const State& at, double relative_tolerance);
   /// True if the tangent at an equilibrium has negative pivots; checked if it had some on the way.
   [[nodiscard]] bool is_unstable(const Attempt& attempt);
-  /// Settles nearby or, if that fails, downhill.
+  /// Settles nearby or, if that fails or contacts touch, downhill.
   [[nodiscard]] Attempt settle_anywhere(const State& at, std::span<const double> borne,
                                         double relative_tolerance);
   /// Closes the ledger of an event.

@@ -25,6 +25,9 @@ constexpr double rate_tolerance = 1e-8;
 /// Relative residual below which an empty range is not caused by the iteration.
 constexpr double nearly = 1e-6;
 
+/// Accuracy with which a corner is predicted, relative to the stage that it may take.
+constexpr double share_of_corner = 0.01;
+
 /// An iteration that leaves more than this fraction of the residual needs a new tangent.
 constexpr double slow = 0.1;
 
@@ -38,7 +41,10 @@ class StrengthSearch {
         step_(step),
         options_(options),
         observer_(observer),
+        from_(from),
+        has_contacts_(problem.assembler.has_contacts()),
         start_(step.preloads ? from.preload : from.stage),
+        longest_(step.longest),
         external_force_(from.displacement.size()) {
     current_.displacement = from.displacement;
     current_.history = from.history;
@@ -50,6 +56,10 @@ class StrengthSearch {
     stand();
     old_scale_ = present_load();
     result_.newton.outcome = search();
+    if (result_.newton.outcome == Outcome::converged &&
+        problem_.assembler.has_passed(from_, current_.at(Damage::held))) {
+      result_.newton.outcome = Outcome::degenerate;
+    }
     result_.newton.state = std::move(current_);
     result_.newton.external_force = std::move(external_force_);
     return std::move(result_);
@@ -71,14 +81,14 @@ class StrengthSearch {
     IterationRecord row;
     row.iteration = iteration;
     row.step_length = 1.0;
-    if (!tangent_.is_there() || is_slow(iteration)) {
-      if (Outcome found = refresh(); found != Outcome::converged) return found;
-    }
+    if (Outcome found = linearise(iteration); found != Outcome::converged) return found;
     const double earlier = std::exchange(last_residual_, current_.residual_norm);
+    const std::vector<double> before = current_.displacement;
     if (Outcome found = correct(earlier); found != Outcome::converged) return found;
+    double change = 0.0;
     if (!step_.settles) {
       if (Outcome found = find_rate(); found != Outcome::converged) return found;
-      double change = choose(iteration == 1);
+      change = choose(iteration == 1);
       if (result_.end == StrengthEnd::inadmissible && !is_fresh()) {
         // An old tangent does not predict the path well enough to give it up.
         result_.end = StrengthEnd::at_stop;
@@ -87,8 +97,16 @@ class StrengthSearch {
         change = choose(iteration == 1);
       }
       if (result_.end == StrengthEnd::inadmissible) return Outcome::converged;
+      if (iteration == 1 && ends_at_corner(change)) change = choose(true);
       for (const Index dof : problem_.free.dof) current_.displacement[dof] += change * rate_[dof];
-      result_.stage = result_.end == StrengthEnd::at_stop ? step_.stop : result_.stage + change;
+    }
+    // The predictor foresees what closes; if not, its state is judged as it is.
+    row.step_length = foreseen_.empty() ? shorten(before) : 1.0;
+    is_whole_ = row.step_length == 1.0;
+    foreseen_.clear();
+    if (!step_.settles) {
+      const bool stops = result_.end == StrengthEnd::at_stop && is_whole_;
+      result_.stage = stops ? step_.stop : result_.stage + row.step_length * change;
     }
     stand();
     result_.newton.iterations = iteration;
@@ -98,11 +116,114 @@ class StrengthSearch {
     return interrupts(row) ? Outcome::interrupted : Outcome::converged;
   }
 
+  /// Sees to it that the tangent is good enough for an iteration.
+  Outcome linearise(int iteration) {
+    if (iteration == 1 && !step_.settles && touches_at(0.0)) return foresee();
+    const bool changes = has_contacts_ && (tangent_.touches() || presses());
+    const bool is_old = !tangent_.is_there() || is_slow(iteration) || changes;
+    return is_old ? refresh() : Outcome::converged;
+  }
+
   Outcome refresh() {
+    foreseen_.clear();
+    return refresh_at(result_.stage);
+  }
+
+  Outcome refresh_at(double stage) {
     refreshed_at_ = tangent_.refreshed() + 1;
-    const LoadPoint at = step_.point(result_.stage);
-    return outcome_of(tangent_.refresh({current_.displacement, at.stage, current_.history, at.load,
-                                        current_.environment, at.preload}));
+    const LoadPoint at = step_.point(stage);
+    const SharedEnvironment environment =
+        foreseen_.empty() ? current_.environment : foreseen_under_;
+    return outcome_of(tangent_.refresh(
+        {current_.displacement, at.stage, current_.history, at.load, environment, at.preload},
+        foreseen_));
+  }
+
+  /// True if contacts press in the present state.
+  [[nodiscard]] bool presses() const {
+    return !problem_.assembler.closed_contacts(current_.at(Damage::held)).empty();
+  }
+
+  /// Contacts that touch after a change of the stage along b.
+  [[nodiscard]] std::vector<Index> closed_after(double change) const {
+    std::vector<double> there = current_.displacement;
+    if (change != 0.0) {
+      add_scaled(there, change, rate_);
+      move_followers(problem_, there);
+    }
+    StateView view(current_.displacement, current_.history, Damage::held,
+                   problem_.conditions.environment(step_.point(result_.stage + change)));
+    view.foreseen = there;
+    return problem_.assembler.closed_contacts(view);
+  }
+  [[nodiscard]] bool touches_at(double change) const {
+    return has_contacts_ && !closed_after(change).empty();
+  }
+
+  /// Makes the tangent of the predictor, in rounds until the contacts that it counts as springs are
+  /// those that it closes first.
+  Outcome foresee() {
+    constexpr int most_rounds = 6;
+    std::vector<Index> closed = closed_after(0.0);
+    foreseen_ = current_.displacement;
+    foreseen_under_ = current_.environment;
+    foreseen_at_ = result_.stage;
+    for (int round = 1;; ++round) {
+      if (Outcome found = refresh_at(foreseen_at_); found != Outcome::converged) return found;
+      if (Outcome found = find_rate(); found != Outcome::converged) return found;
+      const double first = first_part_of(choose(true));
+      if (result_.end == StrengthEnd::inadmissible || round == most_rounds) break;
+      std::vector<Index> now = closed_after(first);
+      const bool stays = now == closed;
+      closed = std::move(now);
+      if (stays) break;
+      foreseen_ = current_.displacement;
+      add_scaled(foreseen_, first, rate_);
+      move_followers(problem_, foreseen_);
+      foreseen_at_ = result_.stage + first;
+      foreseen_under_ = problem_.conditions.environment(step_.point(foreseen_at_));
+    }
+    result_.end = StrengthEnd::at_stop;
+    // Without springs the tangent is that of any state in which nothing touches.
+    return closed.empty() ? refresh() : Outcome::converged;
+  }
+
+  [[nodiscard]] double first_part_of(double change) const {
+    return std::copysign(std::min(std::abs(change), step_.corner), change);
+  }
+
+  /// Shortens the search so that it ends just behind the first corner that b predicts.
+  bool ends_at_corner(double change) {
+    if (!has_contacts_ || change == 0.0) return false;
+    const double first = first_part_of(change);
+    const std::vector<Index> closed = closed_after(first);
+    if (closed_after(change) == closed) return false;
+    constexpr int most_halvings = 60;
+    double low = first, high = change;
+    for (int k = 0; k < most_halvings && std::abs(high - low) > share_of_corner * step_.corner;
+         ++k) {
+      const double middle = 0.5 * (low + high);
+      (closed_after(middle) == closed ? low : high) = middle;
+    }
+    const double corner = std::abs(high) + step_.corner;
+    if (corner >= std::min(longest_, std::abs(change))) return false;
+    longest_ = corner;
+    result_.turns_at_contact = true;
+    return true;
+  }
+
+  /// Shortens the step of this iteration so that no contact gets too deep. Returns its share.
+  double shorten(std::span<const double> before) {
+    if (!has_contacts_) return 1.0;
+    std::vector<double> step = current_.displacement;
+    add_scaled(step, -1.0, before);
+    const StateView at(before, current_.history, Damage::held, current_.environment);
+    const double share = allowed_share(problem_, at, step);
+    if (share < 1.0) {
+      current_.displacement.assign(before.begin(), before.end());
+      add_scaled(current_.displacement, share, step);
+    }
+    return share;
   }
 
   /// True if the tangent was refreshed by this search.
@@ -130,13 +251,15 @@ class StrengthSearch {
   }
 
   /// Finds b and the rates of the eigenstretches, anew if the tangent is or if there is an
-  /// environment.
+  /// environment. Contacts that are foreseen are those at the stage that they are foreseen at.
   Outcome find_rate() {
     const bool is_known = rate_of_ == tangent_.refreshed() && !current_.environment;
     if (is_known && !rate_.empty()) return Outcome::converged;
+    StateView at = current_.at(Damage::held);
+    at.foreseen = foreseen_;
     ConditionRates conditions = rates_of(
-        problem_, current_.at(Damage::held), [this](double stage) { return step_.point(stage); },
-        result_.stage, step_.range);
+        problem_, at, [this](double stage) { return step_.point(stage); },
+        foreseen_.empty() ? result_.stage : foreseen_at_, step_.range);
     const LinearOutcome linear =
         tangent_.solve_again(conditions.force, conditions.displacement, rate_tolerance, rate_);
     if (linear != LinearOutcome::solved) return outcome_of(linear);
@@ -170,8 +293,8 @@ class StrengthSearch {
     } else if (result_.stage + change < step_.range.low) {
       return refuse();
     }
-    const double end = start_ + (result_.goes_up ? step_.longest : -step_.longest);
-    const bool is_long = std::abs(result_.stage + change - start_) > step_.longest;
+    const double end = start_ + (result_.goes_up ? longest_ : -longest_);
+    const bool is_long = std::abs(result_.stage + change - start_) > longest_;
     if (is_long) {
       result_.end = StrengthEnd::on_the_way;
       change = end - result_.stage;
@@ -187,13 +310,14 @@ class StrengthSearch {
   /// True if the state is the end that the search aims at; called in equilibrium.
   bool ends_well() {
     if (step_.settles) return true;
+    if (!is_whole_) return false;
     const double most = utilisation();
     if (result_.end == StrengthEnd::at_strength) {
       if (std::abs(most - share_at_strength) <= strength_tolerance) return true;
       return false;
     }
-    // If the stage decreases, bonds are overloaded until the strength is met.
-    if (result_.end == StrengthEnd::on_the_way && !result_.goes_up) return true;
+    // Bonds that are overloaded are so until the strength is met.
+    if (result_.end == StrengthEnd::on_the_way && is_overloaded()) return true;
     return most <= share_at_strength + strength_tolerance;
   }
 
@@ -202,8 +326,11 @@ class StrengthSearch {
     if (step_.settles) return false;
     const double most = utilisation();
     if (result_.end == StrengthEnd::at_strength) return std::abs(most - 1.0) > largest_miss;
-    return result_.goes_up && most > 1.0 + largest_miss;
+    return !is_overloaded() && most > 1.0 + largest_miss;
   }
+
+  /// True if bonds are overloaded where the search begins.
+  [[nodiscard]] bool is_overloaded() const { return !result_.goes_up || !meets_upper_; }
 
   [[nodiscard]] double utilisation() const {
     return largest_utilisation(problem_.assembler, current_.at(Damage::held), step_.borne);
@@ -244,9 +371,15 @@ class StrengthSearch {
   const StrengthStep& step_;
   const NewtonOptions& options_;
   const IterationObserver& observer_;
-  double start_;
+  const State& from_;
+  bool has_contacts_;
+  double start_, longest_;
   std::vector<double> external_force_;
   Trial current_;
+  std::vector<double> foreseen_;      // displacement behind the predictor; empty: none
+  SharedEnvironment foreseen_under_;  // likewise
+  double foreseen_at_ = 0.0;          // its stage
+  bool is_whole_ = true;              // the last step was not shortened
   std::vector<double> rate_, eigenstretch_rate_;
   int rate_of_ = 0, refreshed_at_ = 0;  // number of refreshes of the tangent
   bool meets_upper_ = true;

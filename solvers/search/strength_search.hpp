@@ -24,6 +24,8 @@ struct StrengthStep {
   double least_scale = 0.0;       ///< that the residual is measured against [N]
   /// Largest change of the stage; no strength beyond it is searched.
   double longest = std::numeric_limits<double>::infinity();
+  /// Change of the stage within which contacts that close and open are one corner of the path.
+  double corner = 0.0;
 
   [[nodiscard]] LoadPoint point(double stage) const {
     return preloads ? LoadPoint::of_preload(stage) : LoadPoint(stage);
@@ -34,7 +36,8 @@ struct StrengthStep {
 enum class StrengthEnd {
   at_strength,   ///< the next bonds reach their resistance
   at_stop,       ///< at the stage to stop at, no bond overloaded
-  on_the_way,    ///< after the longest step, no bond overloaded (if the stage increased)
+  on_the_way,    ///< after the longest step or where a contact closes or opens, no bond overloaded
+                 ///< (if the stage increased from where none was)
   inadmissible,  ///< at every stage within the range some bond is overloaded
 };
 
@@ -42,7 +45,8 @@ struct StrengthResult {
   NewtonResult newton;
   double stage = 0.0;
   StrengthEnd end = StrengthEnd::inadmissible;
-  bool goes_up = true;  ///< the stage increases
+  bool goes_up = true;            ///< the stage increases
+  bool turns_at_contact = false;  ///< on the way: a contact closes or opens
 };
 
 /// Newton-Raphson for the equilibrium at which the next bonds reach their resistance, from an
@@ -57,6 +61,11 @@ struct StrengthResult {
 /// the next strength is at its upper end; otherwise the strength that is met first is at the nearer
 /// end, up or down. The stretches are those of the state itself: the strength is exact at finite
 /// strain.
+///
+/// Where contacts close and open the path has corners, beyond which b means nothing. So a search
+/// ends just behind the first one that b predicts. While contacts press, every iteration has a
+/// tangent of its own. In the first one contacts that press, or that b closes at once, are springs
+/// (StateView::foreseen): they have hardly any stiffness where they begin to press.
 /// @return outcome iteration_limit also if the path is too curved for one step
 [[nodiscard]] StrengthResult search_strength(const EquilibriumProblem& problem,
                                              UpdatedTangent& tangent, const State& from,

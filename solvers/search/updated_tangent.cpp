@@ -79,11 +79,20 @@ void UpdatedTangent::become(const TangentReference& reference) {
   lose(kept.lost);
 }
 
-LinearOutcome UpdatedTangent::refresh(State at) {
+LinearOutcome UpdatedTangent::refresh(State at, std::span<const double> foreseen) {
   forget();
   correction_ = std::make_unique<Correction>();
   ++refreshed_;
-  tangent_.linearise(problem_.assembler, StateView(at, Damage::held), 0.0);
+  Assembler& assembler = problem_.assembler;
+  StateView view(at, Damage::held);
+  touches_ = false;
+  if (assembler.has_contacts()) {
+    view.foreseen = foreseen.empty() ? std::span<const double>(at.displacement) : foreseen;
+    static_cast<void>(assembler.cover_contacts(view));
+    view.foreseen = foreseen;
+    touches_ = !assembler.closed_contacts(view).empty();
+  }
+  tangent_.linearise(assembler, view, 0.0);
   reference_.at = std::move(at);
   solver_.count_pivots(false);
   indefinite_in_force_ = false;

@@ -33,8 +33,10 @@ class UpdatedTangent {
   UpdatedTangent(const EquilibriumProblem& problem, LinearSolver& solver, TangentOperator& tangent);
   ~UpdatedTangent();
 
-  /// Linearises and factorises at a state.
-  [[nodiscard]] LinearOutcome refresh(State at);
+  /// Linearises and factorises at a state. Contacts that may touch are found anew, so that nothing
+  /// depends on earlier states.
+  /// @param foreseen see StateView; a tangent with contacts that are foreseen can't be restored
+  [[nodiscard]] LinearOutcome refresh(State at, std::span<const double> foreseen = {});
   /// Restores the tangent of a reference, to the last bit; forgets if that fails.
   void become(const TangentReference& reference);
   [[nodiscard]] const TangentReference& reference() const { return reference_; }
@@ -45,6 +47,8 @@ class UpdatedTangent {
   [[nodiscard]] bool tells_pivots() const {
     return solver_.inertia().has_value() || indefinite_in_force_;
   }
+  /// True if the present tangent has the stiffness of contacts, which changes from state to state.
+  [[nodiscard]] bool touches() const { return is_there_ && touches_; }
   /// True if the present tangent has negative pivots.
   [[nodiscard]] bool has_negative_pivots() const { return indefinite_in_force_; }
   /// Largest number of bonds whose loss is subtracted before the tangent is factorised anew: at
@@ -97,7 +101,7 @@ class UpdatedTangent {
   std::unique_ptr<Correction> correction_;
   std::unique_ptr<LinearSolver> indefinite_;
   TangentReference reference_;
-  bool is_there_ = false, is_direct_ = false, indefinite_in_force_ = false;
+  bool is_there_ = false, is_direct_ = false, indefinite_in_force_ = false, touches_ = false;
   int refreshed_ = 0;
 };
 

@@ -88,7 +88,9 @@ void refuse_events_of_closing_bonds(const Body& body, const StudyOptions& option
 /// Refuses friction, whose rounds of normal forces are at a given load, and obstacles that a force
 /// drives.
 void refuse_contacts_where_loads_are_found(const Body& body, Mode mode) {
-  const std::string by = mode == Mode::arc_length ? "mode arc_length" : "a control";
+  const std::string by = mode == Mode::arc_length || mode == Mode::path
+                             ? "mode " + std::string(mode.name)
+                             : "a control";
   const auto refuse = [&](const std::string& key, const std::string& value) {
     throw InputError(
         key, value,
@@ -113,10 +115,6 @@ void refuse_modes_with_contacts(const Body& body, const StudyOptions& options) {
   const std::string cannot = "does not follow contacts that close and open," + with + "; take ";
   const LoadSteppingOptions& loading = options.loading;
   const Mode mode = loading.mode;
-  if (mode == Mode::path) {
-    throw InputError("loading.mode", std::string(mode.name),
-                     cannot + "newton, adaptive, relaxation, arc_length or dynamics");
-  }
   const bool relaxes = mode == Mode::relaxation || mode == Mode::adaptive;
   if (relaxes && loading.relaxation.method == RelaxationMethod::flow) {
     throw InputError("loading.relaxation.method", "flow", cannot + "\"dynamic\"");
@@ -128,7 +126,9 @@ void refuse_modes_with_contacts(const Body& body, const StudyOptions& options) {
                      "is constant, while contacts make the stable step shorter," + with +
                          "; take dynamics.step_share");
   }
-  if (finds_loads(options, *body.conditions)) refuse_contacts_where_loads_are_found(body, mode);
+  if (mode == Mode::path || finds_loads(options, *body.conditions)) {
+    refuse_contacts_where_loads_are_found(body, mode);
+  }
 }
 
 /// Points that fail one by one have no strength that a step could be led to, and what follows one

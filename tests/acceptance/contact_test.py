@@ -303,7 +303,6 @@ class ContactTest(Folder):
             "solver.tangent=matrix_free": "[[contact]]",
         }.items():
             self.assertIn(words, self.refusal(text, change))
-        self.assertIn("does not follow contacts", self.refusal(HEAD + BRITTLE + PRESSED, "solver.mode=path"))
         overlapping = text.replace("[[contact]]", '[[contact]]\nset = "left"\n[[contact]]')
         self.assertIn("in common with another contact", self.refusal(overlapping))
         shared = text.replace("[[contact]]", '[[contact]]\nset = "left"\nwith = "left_end"')

@@ -478,4 +478,13 @@ std::unique_ptr<TermPasses> FaceContactTerm::passes(const TermSetting& setting) 
   return std::make_unique<FaceContactPasses>(*this, setting);
 }
 
+bool tear_faces(const Model& model, History& history) {
+  const auto* const term = model.find<FaceContactTerm>();
+  if (term == nullptr) return false;
+  std::vector<Index> torn = term->contacts().faces.torn(model, history);
+  if (torn.size() <= history.torn_facets().size()) return false;
+  history.replace_torn_facets(std::move(torn));
+  return true;
+}
+
 }  // namespace peristat

@@ -34,4 +34,8 @@ class FaceContactTerm : public Term {
   std::vector<Offset> no_couplings_;
 };
 
+/// Tears the facets along whose sides bonds have lost more than half of their integrity, as a
+/// commit does. Returns true if there are some: the forces of contacts change with them.
+bool tear_faces(const Model& model, History& history);
+
 }  // namespace peristat
