@@ -98,10 +98,11 @@ std::vector<ContactPair> ContactPairs::near_in(std::span<const double> displacem
   for (Index part = 0; part < parts; ++part) {
     const Index last = std::min(count, (part + 1) * rows_per_part);
     std::vector<ContactPair>& mine = found[std::size_t(part)];
+    std::vector<std::pair<Index, double>> near;  // other points, and their squared distances
     for (Index i = part * rows_per_part; i < last; ++i) {
-      const auto first = std::ptrdiff_t(mine.size());
       std::array<double, D> at;
       for (int c = 0; c < D; ++c) at[c] = place[std::size_t(i) * D + c];
+      near.clear();
       cells.for_each_run(at, radius, [&](Index begin, Index end) {
         for (Index slot = begin; slot < end; ++slot) {
           if (cells.point[slot] <= i) continue;
@@ -110,18 +111,22 @@ std::vector<ContactPair> ContactPairs::near_in(std::span<const double> displacem
             const double step = cells.position[slot][c] - at[c];
             squared += step * step;
           }
-          if (squared > radius * radius) continue;
-          ContactPair pair;
-          if (!find_pair(i, cells.point[slot], pair)) continue;
-          const double near_enough = pair.distance + skin();
-          if (squared <= near_enough * near_enough) mine.push_back(pair);
+          if (squared <= radius * radius) near.emplace_back(cells.point[slot], squared);
         }
       });
-      std::sort(mine.begin() + first, mine.end(),
-                [](const ContactPair& a, const ContactPair& b) { return a.j < b.j; });
+      std::sort(near.begin(), near.end());
+      for (const auto& [j, squared] : near) {
+        ContactPair pair;
+        if (!find_pair(i, j, pair)) continue;
+        const double near_enough = pair.distance + skin();
+        if (squared <= near_enough * near_enough) mine.push_back(pair);
+      }
     }
   }
+  std::size_t total = 0;
+  for (const std::vector<ContactPair>& part : found) total += part.size();
   std::vector<ContactPair> pairs;
+  pairs.reserve(total);
   for (const std::vector<ContactPair>& part : found) {
     pairs.insert(pairs.end(), part.begin(), part.end());
   }
