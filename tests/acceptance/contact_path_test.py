@@ -239,6 +239,14 @@ class ContactOnPaths(Folder):
         self.assertLess(rows["reaction_x:right_end"][end], -100.0)
         self.assertGreaterEqual(len(self.corners()), 1)
 
+    def test_threads_and_steps_change_nothing(self):
+        whole = columns(self.run_case(IN_SPACE))
+        for name, threads, *changes in (("two", 2), ("steps", 1, "loading.steps=10")):
+            rows = columns(self.run_case(IN_SPACE, *changes, name=name, threads=threads))
+            self.assertEqual(self.broken(name), self.broken())
+            for key in ("dissipated_energy", "drained_energy", "stored_energy", "reaction_x:right_end"):
+                self.assertAlmostEqual(rows[key][-1] / whole[key][-1], 1.0, delta=1e-6)
+
     def test_nothing_changes_while_nothing_touches(self):
         without = columns(self.run_case(strip(), name="without"))
         rows = columns(self.run_case(strip() + '[[contact]]\nset = "left"\nwith = "right"\n', name="with"))
