@@ -105,7 +105,8 @@ to = [-0.0055, 0.008]
 softness = 1e-4
 """
 # A bar that is torn, pressed, pulled and pressed again.
-TORN = HEAD + BRITTLE.replace(CUT_BAR, "[[contact]]\nsoftness = 1e-5\n") + PRESSED.replace("[0, -1, 0.5, -3, -2]", "[0, 2, -1, 2.5, -1]")
+TORN = HEAD + BRITTLE.replace(CUT_BAR, "[[contact]]\nsoftness = 1e-5\n")
+TORN += PRESSED.replace("[0, -1, 0.5, -3, -2]", "[0, 2, -1, 2.5, -1]")
 TORN += '[solver]\nmode = "path"\n'
 # A bar in space with an edge crack, pulled, pressed and pulled again.
 IN_SPACE = """\
@@ -262,7 +263,8 @@ class ContactOnPaths(Folder):
         self.assertGreater(rows["broken_bonds"][-1], 10)
 
     def test_a_roller_that_would_pass_through_is_noticed(self):
-        self.run_case(BEAM + APART.replace("0.01502", "0.040"), "obstacle[0].displacement=[0, \"-0.2*load\"]", "loading.adaptive=false", code=3)
+        text = BEAM + APART.replace("0.01502", "0.040")
+        self.run_case(text, 'obstacle[0].displacement=[0, "-0.2*load"]', "loading.adaptive=false", code=3)
         self.assertIn("degenerate", self.ended.said)
 
     def test_refused(self):
