@@ -78,6 +78,24 @@ normal = [0, -1]
 displacement = [0, "-6e-5*load"]
 softness = 1e-4
 """
+# A dead load on the beam, and a ground below it.
+DEAD = """\
+[[load]]
+set = "middle"
+total_force = [0, "-300*load"]
+"""
+GROUND = """\
+[[set]]
+name = "low"
+where = "y < spacing && abs(x) < 0.003"
+[[obstacle]]
+name = "ground"
+shape = "plane"
+set = "low"
+point = [0, -4e-5]
+normal = [0, 1]
+softness = 1e-4
+"""
 # Bending closes this cut.
 CUT = """\
 [[crack]]
@@ -87,8 +105,43 @@ to = [-0.0055, 0.008]
 softness = 1e-4
 """
 # A bar that is torn, pressed, pulled and pressed again.
-TORN = HEAD + BRITTLE.replace(CUT_BAR, "[[contact]]\nsoftness = 1e-5\n") + PRESSED.replace("[0, -1, 0.5, -3, -2]", "[0, 2, -1, 2.5, -1]")
+TORN = HEAD + BRITTLE.replace(CUT_BAR, "[[contact]]\nsoftness = 1e-5\n")
+TORN += PRESSED.replace("[0, -1, 0.5, -3, -2]", "[0, 2, -1, 2.5, -1]")
 TORN += '[solver]\nmode = "path"\n'
+# A bar in space with an edge crack, pulled, pressed and pulled again.
+IN_SPACE = """\
+dimension = 3
+[lattice]
+spacing = 1e-3
+horizon_ratio = 2.015
+shape = [{ add = "box", min = [0, 0, 0], max = [0.010, 0.005, 0.003] }]
+[[set]]
+name = "left_end"
+where = "x < 2*spacing"
+[[set]]
+name = "right_end"
+where = "x > 0.010 - 2*spacing"
+[[crack]]
+vertices = [[0.005, -1e-3, -1e-3], [0.005, 2.2e-3, -1e-3], [0.005, 2.2e-3, 4e-3], [0.005, -1e-3, 4e-3]]
+[material]
+youngs_modulus = 70e9
+[material.damage]
+law = "critical_stretch"
+critical = 2e-3
+no_fail = ["left_end", "right_end"]
+[[contact]]
+softness = 1e-4
+[[support]]
+set = "left_end"
+displacement = [0, 0, 0]
+[[support]]
+set = "right_end"
+displacement = ["2e-5*load", "2e-6*load", 0]
+[loading]
+table = [0, 1, -1, 0.5]
+[solver]
+mode = "path"
+"""
 
 
 class ContactOnPaths(Folder):
@@ -103,7 +156,6 @@ class ContactOnPaths(Folder):
         self.assertEqual(verification.complaints, [])
         rows = columns(folder)
         self.assertLess(abs(rows["balance_error"]).max(), 1e-9 * rows["external_work"].max())
-        self.assertLess(abs(numpy.diff(rows["numerical_work"])).max(), 0.01 * rows["external_work"].max())
         return rows
 
     def test_an_obstacle_loads_a_beam_like_a_point(self):
@@ -122,6 +174,7 @@ class ContactOnPaths(Folder):
                     ]
                     self.assertAlmostEqual(forces[0] / forces[1], 1.0, delta=accuracy)
                 self.assertEqual(self.broken(name)[:count], self.broken("point")[:count])
+                self.assertLess(abs(numpy.diff(rows["numerical_work"])).max(), 1e-3 * rows["external_work"].max())
         self.assertEqual(len(self.corners("apart")), 1)
 
     def corners(self, name="out"):
@@ -166,6 +219,35 @@ class ContactOnPaths(Folder):
         error = abs(numpy.diff(rows["numerical_work"]))[ends[1.0] :].max()
         self.assertLess(error, 1e-3 * rows["stored_energy"].max())
 
+    def test_the_ground_stops_an_avalanche(self):
+        """The load is held where the first bond breaks, as the path would have to go back behind an entry of the table."""
+        free = columns(self.run_case(BEAM + DEAD, name="free"))
+        first = free["load_factor"][1]
+        held = f"[loading]\ntable = [0, {first - 1e-3}, 1]\n"
+        rows = self.judged(BEAM + DEAD + GROUND + held)
+        self.assertEqual(rows["load_factor"][2], rows["load_factor"][3])
+        self.assertGreater(rows["broken_bonds"][3], 10)
+        self.assertEqual(rows["broken_bonds"][2], 0)
+        self.assertEqual(rows["reaction_y:ground"][2], 0.0)
+        self.assertGreater(rows["reaction_y:ground"][3], 10.0)
+        self.assertGreater(rows["drained_energy"][3], 1e-4)
+        self.assertEqual(rows["stage"][-1], 2.0)
+
+    def test_in_space(self):
+        rows = self.judged(IN_SPACE)
+        end = numpy.argmax(rows["stage"] == 2.0)
+        self.assertGreater(rows["broken_bonds"][end], 10)
+        self.assertLess(rows["reaction_x:right_end"][end], -100.0)
+        self.assertGreaterEqual(len(self.corners()), 1)
+
+    def test_threads_and_steps_change_nothing(self):
+        whole = columns(self.run_case(IN_SPACE))
+        for name, threads, *changes in (("two", 2), ("steps", 1, "loading.steps=10")):
+            rows = columns(self.run_case(IN_SPACE, *changes, name=name, threads=threads))
+            self.assertEqual(self.broken(name), self.broken())
+            for key in ("dissipated_energy", "drained_energy", "stored_energy", "reaction_x:right_end"):
+                self.assertAlmostEqual(rows[key][-1] / whole[key][-1], 1.0, delta=1e-6)
+
     def test_nothing_changes_while_nothing_touches(self):
         without = columns(self.run_case(strip(), name="without"))
         rows = columns(self.run_case(strip() + '[[contact]]\nset = "left"\nwith = "right"\n', name="with"))
@@ -181,7 +263,8 @@ class ContactOnPaths(Folder):
         self.assertGreater(rows["broken_bonds"][-1], 10)
 
     def test_a_roller_that_would_pass_through_is_noticed(self):
-        self.run_case(BEAM + APART.replace("0.01502", "0.040"), "obstacle[0].displacement=[0, \"-0.2*load\"]", "loading.adaptive=false", code=3)
+        text = BEAM + APART.replace("0.01502", "0.040")
+        self.run_case(text, 'obstacle[0].displacement=[0, "-0.2*load"]', "loading.adaptive=false", code=3)
         self.assertIn("degenerate", self.ended.said)
 
     def test_refused(self):
