@@ -72,6 +72,7 @@ MODES = {
     "adaptive": HEAD + BRITTLE.replace(CUT, "") + "[[contact]]\nsoftness = 1e-5\n" + OPENS + '[solver]\nmode = "adaptive"\n',
     "relaxation": HEAD + CUT + PRESSED + '[solver]\nmode = "relaxation"\n',
     "explicit": HEAD + CUT + FLYING,
+    "explicit, torn": HEAD + BRITTLE + FLYING,
     "implicit": HEAD + CUT + FLYING + 'scheme = "newmark"\ntime_step = 5e-8\n',
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string>
@@ -276,6 +277,39 @@ TEST(TermsOfPart, contacts_are_those_of_the_whole_body) {
     EXPECT_GT(both.energy.energy(u).energy, 1.0001 * bare.energy.energy(u).energy);  // some press
     expect_same_energies(both, 0.05);
   }
+}
+
+TEST(TermsOfPart, contacts_take_over_bonds_that_another_rank_counts) {
+  const RanksBody body = bar();
+  const double spacing = body.lattice.spacing, middle = 0.3 + 20.0 * spacing;
+  BodySpecification of = specification(body, MaterialModel::bond);
+  of.material.youngs_modulus = 3.0;
+  of.material.damage.law = DamageLaw::critical_stretch;
+  of.material.damage.critical = 0.004;
+  of.contacts = {{.softness = 1e-3}};
+  Both both(body, of);
+  // So little that the pairs that are near are kept.
+  const auto opened_by = [&](const Points& points, double gap) {
+    std::vector<double> u(points.reference.size(), 0.0);
+    for (std::size_t k = 0; k < u.size(); ++k) {
+      if (points.reference[k] > middle) u[k] = gap;
+    }
+    return u;
+  };
+  const auto energy_after_tearing = [&](Assembler& assembler, const Points& points) {
+    History history = assembler.initial_history();
+    const std::vector<double> pressed = opened_by(points, -0.05 * spacing);
+    const double whole = assembler.energy({pressed, history}).energy;
+    static_cast<void>(assembler.commit(opened_by(points, 0.05 * spacing), history));
+    std::vector<double> forces(points.reference.size());
+    const double torn = assembler.gradient({pressed, history}, forces).energy;
+    EXPECT_GT(std::abs(torn - whole), 0.1 * whole);  // contact of one pair in place of six bonds
+    return std::pair(torn, forces);
+  };
+  const auto [energy, forces] = energy_after_tearing(both.energy, both.whole->points);
+  const auto [found, mine] = energy_after_tearing(both.mine, both.part->points);
+  EXPECT_NEAR(found, energy, round_off * energy);
+  both.expect_near(mine, forces, "forces of contact");
 }
 
 TEST(TermsOfPart, without_triangles_are_refused_by_all_ranks) {
