@@ -134,9 +134,9 @@ class FaceContactTest(Folder):
             work = friction * abs(rows["reaction_y:lid"][slides]).mean() * 2e-3
             self.assertAlmostEqual(rows["dissipated_energy"][-1], work, delta=0.02 * work + 1e-12)
             self.assertLess(abs(rows["balance_error"][-1]), 1e-2 * work + 1e-10)
-        # Rows of points climb over one another: they hold the block at the same slope without any friction.
+        # Rows of points climb over one another: once it has settled, they hold the block on a slope without any friction.
         points = columns(self.run_case(BODIES, "contact[0].shape=points", "contact[0].friction=0", "loading.table=[0, 0.1]"))
-        self.assertLess(points["block_x"][-1], 1e-3)
+        self.assertLess(abs(points["block_x"][-1] - points["block_x"][0]), 1e-4)
 
     def test_resumed_runs_and_threads(self):
         whole = self.run_case(PUSHED)
