@@ -444,11 +444,9 @@ void EventStepping::pass_over(Step& step) {
 void EventStepping::settle_work(Step& step) const {
   const Ledger& before = path_.state().ledger.entries;
   Ledger& after = step.found.ledger;
-  Assembler& body = path_.body().assembler;
-  const State& from = path_.state().accepted;
-  const Trial& to = step.attempt.state;
-  const double of_contacts =
-      work_error_of_contacts(body, StateView(from, Damage::held), to.at(Damage::held));
+  const double of_contacts = work_error_of_contacts(path_.body().assembler,
+                                                    StateView(path_.state().accepted, Damage::held),
+                                                    step.attempt.state.at(Damage::held));
   after.external_work -= of_contacts;
   const double error = after.balance_error() - before.balance_error();
   const double turned_over =
@@ -459,20 +457,25 @@ void EventStepping::settle_work(Step& step) const {
     step.attempt.outcome = Outcome::sharp_turn;
     step.fault = "the work of the step has an error of " + number_text(std::abs(error)) + " J";
   }
-  // Forces that do work go from their old values to the new ones. If these do not explain the
-  // error, the body has jumped against what it touches.
-  double explained = std::abs(body.work_of_obstacles(StateView(from, Damage::held), to.at()));
-  const std::vector<double> working = path_.working_force(to, step.attempt.external_force);
-  for (std::size_t dof = 0; dof < working.size(); ++dof) {
-    explained += 0.5 * std::abs((working[dof] - path_.state().ledger.force[dof]) *
-                                (to.displacement[dof] - from.displacement[dof]));
-  }
-  if (std::abs(of_contacts) > explained + allowed) {
+  if (std::abs(of_contacts) > allowed && std::abs(of_contacts) > allowed + explained_work(step)) {
     step.attempt.outcome = Outcome::sharp_turn;
     step.fault = "contacts set free " + number_text(std::abs(of_contacts)) +
                  " J that no work accounts for: the body has jumped";
   }
   after.numerical_work -= error;
+}
+
+double EventStepping::explained_work(const Step& step) const {
+  const State& from = path_.state().accepted;
+  const Trial& to = step.attempt.state;
+  double explained =
+      std::abs(path_.body().assembler.work_of_obstacles(StateView(from, Damage::held), to.at()));
+  const std::vector<double> working = path_.working_force(to, step.attempt.external_force);
+  for (std::size_t dof = 0; dof < working.size(); ++dof) {
+    explained += 0.5 * std::abs((working[dof] - path_.state().ledger.force[dof]) *
+                                (to.displacement[dof] - from.displacement[dof]));
+  }
+  return explained;
 }
 
 void EventStepping::complete(Step& step) {

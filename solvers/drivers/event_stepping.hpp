@@ -114,6 +114,9 @@ class EventStepping : public Driver {
   void complete(Step& step);
   /// Books the trapezoidal rule's error as numerical work, or refuses the step if it is too large.
   void settle_work(Step& step) const;
+  /// Largest error of the work of contacts that the step itself explains: forces that do work go
+  /// from their old values to the new ones [J]. More means that the body has jumped.
+  [[nodiscard]] double explained_work(const Step& step) const;
   /// @param before the path as it was before the step
   [[nodiscard]] Advance accept(Step step, PathState before);
   /// Records where the state is on the response under the given loads.

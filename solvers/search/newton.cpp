@@ -231,8 +231,9 @@ class NewtonSearch {
   /// Finds the direction of the predictor.
   LinearOutcome predict(double projection, FactorUse use, double tolerance) {
     // A projected tangent is that of the last exact one.
-    if (!problem_.assembler.has_contacts() || has_predicted_)
+    if (!problem_.assembler.has_contacts() || has_predicted_) {
       return solve_at_start(projection, use, tolerance);
+    }
     has_predicted_ = true;
     return predict_with_contacts(
         problem_, foreseen_, [this] { return start(); },

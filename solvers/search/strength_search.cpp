@@ -26,7 +26,7 @@ constexpr double rate_tolerance = 1e-8;
 constexpr double nearly = 1e-6;
 
 /// Accuracy with which a corner is predicted, relative to the stage that it may take.
-constexpr double share_of_corner = 0.01;
+constexpr double corner_accuracy = 0.01;
 
 /// An iteration that leaves more than this fraction of the residual needs a new tangent.
 constexpr double slow = 0.1;
@@ -200,7 +200,7 @@ class StrengthSearch {
     if (closed_after(change) == closed) return false;
     constexpr int most_halvings = 60;
     double low = first, high = change;
-    for (int k = 0; k < most_halvings && std::abs(high - low) > share_of_corner * step_.corner;
+    for (int k = 0; k < most_halvings && std::abs(high - low) > corner_accuracy * step_.corner;
          ++k) {
       const double middle = 0.5 * (low + high);
       (closed_after(middle) == closed ? low : high) = middle;

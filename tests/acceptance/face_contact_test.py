@@ -129,6 +129,7 @@ class FaceContactTest(Folder):
         for friction in (0.3, 0.0):
             rows = columns(self.run_case(PUSHED, f"contact[0].friction={friction}"))
             slides = rows["load_factor"] > 1.2
+            self.assertLessEqual(rows["newton_iterations"][slides].max(), 25 if friction else 6)
             ratio = rows["reaction_x:lid"][slides] / abs(rows["reaction_y:lid"][slides])
             numpy.testing.assert_allclose(ratio, friction, atol=2e-3)
             work = friction * abs(rows["reaction_y:lid"][slides]).mean() * 2e-3
