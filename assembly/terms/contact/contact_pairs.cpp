@@ -13,6 +13,9 @@ namespace {
 /// Rows that are searched together, whatever the number of threads.
 constexpr Index rows_per_part = 4096;
 
+/// Points of a lattice within one and a half spacings of another, each pair once.
+std::size_t pairs_of_point(int dimension) { return dimension == 3 ? 9 : dimension == 2 ? 4 : 1; }
+
 }  // namespace
 
 ContactPairs::ContactPairs(const Points& points, const Bonds& bonds,
@@ -34,8 +37,7 @@ ContactPairs::ContactPairs(const Points& points, const Bonds& bonds,
 }
 
 double ContactPairs::bytes() const {
-  // Of the points of a lattice within one and a half spacings; twice, for a predictor.
-  const double near = points_.dimension == 3 ? 9.0 : points_.dimension == 2 ? 4.0 : 1.0;
+  const auto near = double(pairs_of_point(points_.dimension));  // twice, for a predictor
   double bytes = double(size_.size() + modulus_.size()) * sizeof(double);
   if (bonds_fail_) bytes += 2.0 * near * double(size_.size()) * sizeof(ContactPair);
   for (const PairContactRule& rule : rules_) bytes += double(rule.side.size());
@@ -98,11 +100,11 @@ std::vector<ContactPair> ContactPairs::near_in(std::span<const double> displacem
   for (Index part = 0; part < parts; ++part) {
     const Index last = std::min(count, (part + 1) * rows_per_part);
     std::vector<ContactPair>& mine = found[std::size_t(part)];
-    std::vector<std::pair<Index, double>> near;  // other points, and their squared distances
+    if (bonds_fail_) mine.reserve(pairs_of_point(D) * std::size_t(last - part * rows_per_part));
     for (Index i = part * rows_per_part; i < last; ++i) {
+      const auto first = std::ptrdiff_t(mine.size());
       std::array<double, D> at;
       for (int c = 0; c < D; ++c) at[c] = place[std::size_t(i) * D + c];
-      near.clear();
       cells.for_each_run(at, radius, [&](Index begin, Index end) {
         for (Index slot = begin; slot < end; ++slot) {
           if (cells.point[slot] <= i) continue;
@@ -111,16 +113,15 @@ std::vector<ContactPair> ContactPairs::near_in(std::span<const double> displacem
             const double step = cells.position[slot][c] - at[c];
             squared += step * step;
           }
-          if (squared <= radius * radius) near.emplace_back(cells.point[slot], squared);
+          if (squared > radius * radius) continue;
+          ContactPair pair;
+          if (!find_pair(i, cells.point[slot], pair)) continue;
+          const double near_enough = pair.distance + skin();
+          if (squared <= near_enough * near_enough) mine.push_back(pair);
         }
       });
-      std::sort(near.begin(), near.end());
-      for (const auto& [j, squared] : near) {
-        ContactPair pair;
-        if (!find_pair(i, j, pair)) continue;
-        const double near_enough = pair.distance + skin();
-        if (squared <= near_enough * near_enough) mine.push_back(pair);
-      }
+      std::sort(mine.begin() + first, mine.end(),
+                [](const ContactPair& a, const ContactPair& b) { return a.j < b.j; });
     }
   }
   std::size_t total = 0;
