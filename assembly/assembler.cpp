@@ -192,8 +192,10 @@ Evaluation Assembler::commit(std::span<const double> displacement, History& hist
                              std::span<double> gradient, const SharedEnvironment& environment) {
   Evaluation found = release(displacement, history, environment);
   for_each_term([&](TermPasses& term, Write how) {
+    const std::uint64_t before = history.version();
     const Evaluation of_term = term.commit(displacement, environment, history, gradient, how);
-    if (may_damage(of_term)) history.note_damage();
+    // A term that has noted its damage itself has done so for all of it.
+    if (may_damage(of_term) && history.version() == before) history.note_damage();
     found += of_part(term, {displacement, history, Damage::grows, environment}, of_term);
   });
   cut_struts(displacement, history, gradient, environment, found);
@@ -205,9 +207,11 @@ Evaluation Assembler::commit_forces(std::span<const double> displacement, Histor
                                     const SharedEnvironment& environment) {
   Evaluation found = release(displacement, history, environment);
   for_each_term([&](TermPasses& term, Write how) {
+    const std::uint64_t before = history.version();
     const Evaluation of_term =
         term.commit_forces(displacement, environment, history, gradient, how);
-    if (may_damage(of_term)) history.note_damage();
+    // A term that has noted its damage itself has done so for all of it.
+    if (may_damage(of_term) && history.version() == before) history.note_damage();
     found += of_term;
   });
   cut_struts(displacement, history, gradient, environment, found);

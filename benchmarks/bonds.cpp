@@ -44,17 +44,19 @@ void neighbour_search(benchmark::State& state) {
 
 enum class Pass { energy, gradient, tangent, product, stored_product };
 
-enum class Solid { bonds, states };
+/// Bonds in the rows of the lattice at once, one by one, and states.
+enum class Solid { bonds, listed_bonds, states };
 
 template <Pass pass, Solid solid = Solid::bonds>
 void assembly(benchmark::State& state) {
   const Points points = body(state);
-  const Model model = solid == Solid::bonds
-                          ? benchmark_bodies::model(points)
-                          : benchmark_bodies::state_model(points, omp_get_max_threads());
+  Model model = solid == Solid::states
+                    ? benchmark_bodies::state_model(points, omp_get_max_threads())
+                    : benchmark_bodies::model(points);
+  if (solid == Solid::listed_bonds) model.sum_one_by_one();
   // Products of states need no blocks between second neighbours.
   const auto pattern =
-      solid == Solid::bonds ? Assembler::PatternOf::blocks : Assembler::PatternOf::visited_rows;
+      solid == Solid::states ? Assembler::PatternOf::visited_rows : Assembler::PatternOf::blocks;
   Assembler assembler(points, model, omp_get_max_threads(), whole_body(), pattern);
   // Only where it is used.
   std::optional<Tangent> tangent;
@@ -87,6 +89,15 @@ BENCHMARK(assembly<Pass::energy>)->Name("energy")->Apply(both_dimensions);
 BENCHMARK(assembly<Pass::gradient>)->Name("gradient")->Apply(both_dimensions);
 BENCHMARK(assembly<Pass::tangent>)->Name("tangent")->Apply(both_dimensions);
 BENCHMARK(assembly<Pass::product>)->Name("matrix_free_product")->Apply(both_dimensions);
+BENCHMARK(assembly<Pass::energy, Solid::listed_bonds>)
+    ->Name("listed_energy")
+    ->Apply(both_dimensions);
+BENCHMARK(assembly<Pass::gradient, Solid::listed_bonds>)
+    ->Name("listed_gradient")
+    ->Apply(both_dimensions);
+BENCHMARK(assembly<Pass::product, Solid::listed_bonds>)
+    ->Name("listed_product")
+    ->Apply(both_dimensions);
 BENCHMARK(assembly<Pass::gradient, Solid::states>)->Name("state_gradient")->Apply(both_dimensions);
 BENCHMARK(assembly<Pass::product, Solid::states>)->Name("state_product")->Apply(both_dimensions);
 BENCHMARK(assembly<Pass::stored_product>)->Name("stored_product")->Apply(both_dimensions);

@@ -14,6 +14,9 @@ namespace {
 
 using namespace peristat;
 
+/// Rows of points at once, or bond by bond.
+enum class Sums { along_runs, one_by_one };
+
 constexpr int iterations_per_call = 300;  ///< so that a call's tangent costs a hundredth of it
 
 /// What bonds are: `broken` is `tanh` with every fiftieth bond broken.
@@ -28,11 +31,14 @@ Points held_box(const benchmark::State& state) {
   return points;
 }
 
-Model model_of(const Points& points, Law law) {
-  const Model model = benchmark_bodies::model(points);
-  if (law == elastic) return model;
-  const double modulus = std::get<Harmonic>(model.bond_failure()->potential()).modulus;
-  return Model(model.bonds(), Degraded<TanhDegradation>{modulus, {0.016, 0.020, 3.0}});
+Model model_of(const Points& points, Law law, Sums sums) {
+  Model model = benchmark_bodies::model(points);
+  if (law != elastic) {
+    const double modulus = std::get<Harmonic>(model.bond_failure()->potential()).modulus;
+    model = Model(model.bonds(), Degraded<TanhDegradation>{modulus, {0.016, 0.020, 3.0}});
+  }
+  if (sums == Sums::one_by_one) model.sum_one_by_one();
+  return model;
 }
 
 SupportSpecification hold(int dimension) {
@@ -52,9 +58,9 @@ struct HeldBody {
   Breaking breaking;
   State from;
 
-  explicit HeldBody(const benchmark::State& state)
+  HeldBody(const benchmark::State& state, Sums sums)
       : points(held_box(state)),
-        model(model_of(points, Law(state.range(1)))),
+        model(model_of(points, Law(state.range(1)), sums)),
         conditions(points, {hold(points.dimension)}, {}),
         free(conditions.prescribed(), points.dimension),
         assembler(points, model, omp_get_max_threads()),
@@ -75,8 +81,9 @@ void count(benchmark::State& state, const HeldBody& body, int passes) {
                                               benchmark::Counter::kIsIterationInvariantRate);
 }
 
+template <Sums sums>
 void relaxation(benchmark::State& state) {
-  HeldBody body(state);
+  HeldBody body(state, sums);
   Tangent tangent(BlockPattern(body.model.bonds()), body.points.dimension);
   RelaxationOptions options;
   options.ramp = iterations_per_call;
@@ -93,8 +100,9 @@ void relaxation(benchmark::State& state) {
   count(state, body, iterations_per_call);
 }
 
+template <Sums sums>
 void relaxation_product(benchmark::State& state) {
-  HeldBody body(state);
+  HeldBody body(state, sums);
   std::vector<double> v(body.from.displacement.size()), result(v.size());
   for (std::size_t k = 0; k < v.size(); ++k) v[k] = std::sin(3.0 * double(k));
   for (auto _ : state) {
@@ -116,7 +124,9 @@ void bodies(benchmark::internal::Benchmark* benchmark) {
   }
 }
 
-BENCHMARK(relaxation)->Apply(bodies);
-BENCHMARK(relaxation_product)->Apply(bodies);
+BENCHMARK(relaxation<Sums::along_runs>)->Name("relaxation")->Apply(bodies);
+BENCHMARK(relaxation<Sums::one_by_one>)->Name("listed_relaxation")->Apply(bodies);
+BENCHMARK(relaxation_product<Sums::along_runs>)->Name("relaxation_product")->Apply(bodies);
+BENCHMARK(relaxation_product<Sums::one_by_one>)->Name("listed_relaxation_product")->Apply(bodies);
 
 }  // namespace

@@ -35,6 +35,10 @@ class Model {
 
   void add(std::shared_ptr<Term> term) { terms_.push_back(std::move(term)); }
 
+  /// Sums bonds one after another, also where consecutive points have alike ones; see bond_runs.
+  void sum_one_by_one() { sums_along_runs_ = false; }
+  [[nodiscard]] bool sums_along_runs() const { return sums_along_runs_; }
+
   /// Bonds that join the faces of open cracks fail with these.
   void cut_struts(std::shared_ptr<const Struts> struts) { struts_ = std::move(struts); }
   /// Null: they don't.
@@ -99,6 +103,7 @@ class Model {
   std::shared_ptr<const FailureModel> failure_;
   std::vector<std::shared_ptr<Term>> terms_;
   std::shared_ptr<const Struts> struts_;
+  bool sums_along_runs_ = true;
 };
 
 }  // namespace peristat

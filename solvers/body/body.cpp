@@ -7,6 +7,7 @@
 
 #include <omp.h>
 
+#include "assembly/terms/bonds/bond_term.hpp"
 #include "assembly/terms/contact/obstacle_term.hpp"
 #include "assembly/terms/pressure/pressure_term.hpp"
 #include "assembly/terms/springs/foundation_term.hpp"
@@ -27,6 +28,7 @@
 #include "src/core/threads.hpp"
 #include "src/geometry/image_kinds.hpp"
 #include "src/geometry/point_sizes.hpp"
+#include "src/neighbourhood/bond_runs.hpp"
 #include "src/neighbourhood/horizon.hpp"
 #include "src/parallel/index_map.hpp"
 
@@ -81,6 +83,19 @@ bool cuts_struts(const BodySpecification& of) {
   return cuts;
 }
 
+/// @throws InputError unless most bonds are summed along rows of points with alike ones
+void require_rows(const Body& body, int threads) {
+  constexpr double least_share = 0.5;
+  const auto refuse = [](const std::string& why) {
+    throw InputError("force_operator", "stencil", why + "; take \"bonds\"");
+  };
+  if (!body.model.find<BondTerm>()) refuse("is for bonds of finite deformation");
+  const double share = share_in_runs(body.points, body.model.bonds(), threads);
+  if (share >= least_share) return;
+  refuse("is for rows of lattice points with alike bonds, which have only " +
+         std::to_string(std::lround(100.0 * share)) + " % of this body's bonds");
+}
+
 /// Makes the model of a body, and stores the bonds that its pre-cracks have cut.
 /// @param make_network makes the bonds of a setting
 template <class MakeNetwork>
@@ -98,6 +113,7 @@ void make_model(Body& body, const MakeNetwork& make_network, int threads) {
   if (cuts_struts(of)) {
     body.model.cut_struts(std::make_shared<const Struts>(body.points, body.model.bonds()));
   }
+  if (of.force_operator == ForceOperator::stencil) require_rows(body, threads);
   body.cut_weight = std::move(made.cut.weight);
   body.cut_bonds = std::move(made.cut.ends);
   body.remarks = std::move(made.remarks);

@@ -16,6 +16,7 @@ namespace lanes_detail {
 
 using Quad = double __attribute__((vector_size(4 * sizeof(double))));
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
+using QuadInMemory __attribute__((aligned(8), may_alias)) = Quad;  // at any address of doubles
 using Order = long long __attribute__((vector_size(4 * sizeof(long long))));
 
 }  // namespace lanes_detail
@@ -49,14 +50,16 @@ class Lanes {
   Lanes(double all) : row_{all, all, all, all} {}
   explicit Lanes(const lanes_detail::Quad& row) : row_(row) {}
   /// Four numbers in a row.
-  explicit Lanes(const double* from) { std::memcpy(&row_, from, sizeof row_); }
+  explicit Lanes(const double* from)
+      : row_(*reinterpret_cast<const lanes_detail::QuadInMemory*>(from)) {}
   /// of_lane(l) in lane l.
   template <class OfLane>
   requires requires(const OfLane& of_lane) { double(of_lane(0)); }
   explicit Lanes(const OfLane& of_lane)
       : row_{double(of_lane(0)), double(of_lane(1)), double(of_lane(2)), double(of_lane(3))} {}
 
-  void copy_to(double* to) const { std::memcpy(to, &row_, sizeof row_); }
+  /// A store of the whole register: memcpy would be compiled to two halves.
+  void copy_to(double* to) const { *reinterpret_cast<lanes_detail::QuadInMemory*>(to) = row_; }
   [[nodiscard]] const lanes_detail::Quad& row() const { return row_; }
 
   [[nodiscard]] double operator[](int l) const { return row_[l]; }
@@ -94,7 +97,11 @@ inline Lanes abs(const Lanes& a) {
   return Lanes(Quad(Order(a.row()) & ~sign));
 }
 inline Lanes sqrt(const Lanes& a) {
+#ifdef __AVX__
+  return Lanes(__builtin_ia32_sqrtpd256(a.row()));  // GCC would take two halves
+#else
   return Lanes([&](int l) { return std::sqrt(a[l]); });
+#endif
 }
 
 /// Largest entry.

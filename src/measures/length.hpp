@@ -22,21 +22,25 @@ struct Length {
   template <int D>
   static constexpr bool singular_at_zero = true;
 
+  template <class Real>
+  struct Scalars {
+    Real inverse_reference;  ///< 1/L [1/m]
+    Real current;            ///< l [m]
+    Real relative_change;    ///< l/L - 1, the stretch s
+    Real inverse;            ///< 1/l [1/m]
+  };
+
   template <int D, class Real>
-  struct At {
+  struct At : Scalars<Real> {
     static constexpr int arms = 1, dimension = D;
 
-    Real inverse_reference;     ///< 1/L [1/m]
-    Real current;               ///< l [m]
-    Real relative_change;       ///< l/L - 1, the stretch s
     Arms<1, D, Real> gradient;  ///< n
-    Real inverse;               ///< 1/l [1/m]
 
     /// block += factor times the Hessian's block between arms P and Q; on the diagonal its upper
     /// half.
     template <int P, int Q>
     void add_hessian(const Real& factor, Matrix<D, Real>& block) const {
-      const Real scale = factor * inverse;
+      const Real scale = factor * this->inverse;
       for (int r = 0; r < D; ++r) block[r][r] += scale;
       add_outer_square<D, Real>(-scale, gradient[0], block);
     }
@@ -46,7 +50,7 @@ struct Length {
       const Vector<D, Real>& n = gradient[0];
       const Real along = dot<D>(n, v[0]);
       Arms<1, D, Real> result;
-      for (int c = 0; c < D; ++c) result[0][c] = (v[0][c] - along * n[c]) * inverse;
+      for (int c = 0; c < D; ++c) result[0][c] = (v[0][c] - along * n[c]) * this->inverse;
       return result;
     }
   };
@@ -60,11 +64,24 @@ struct Length {
                                       const Arms<1, D, Real>& reference,
                                       const Arms<1, D, Real>& relative_displacement) {
     const Vector<D, Real> current_arm = plus<D>(reference[0], relative_displacement[0]);
-    At<D, Real> result = from_current<D, Real>(inverse_reference, {current_arm});
-    result.relative_change = dot<D>(relative_displacement[0], plus<D>(reference[0], current_arm)) *
-                             inverse_reference * inverse_reference /
-                             (1.0 + result.current * inverse_reference);
-    return result;
+    const Scalars<Real> scalars =
+        from_squares(inverse_reference, dot<D>(current_arm, current_arm),
+                     dot<D>(relative_displacement[0], plus<D>(reference[0], current_arm)));
+    return {scalars, {scaled<D>(scalars.inverse, current_arm)}};
+  }
+
+  /// The same from l^2 and eta.(2 xi0 + eta) = l^2 - L^2, without the gradient: one division, by
+  /// l (1 + l/L), for 1/l and the stretch.
+  template <class Real>
+  [[nodiscard, gnu::always_inline]] static Scalars<Real> from_squares(const Real& inverse_reference,
+                                                                      const Real& squared,
+                                                                      const Real& change) {
+    const Real current = square_root(squared);
+    const Real larger = 1.0 + current * inverse_reference;
+    const Real inverse_of_both = 1.0 / (current * larger);
+    return {inverse_reference, current,
+            change * (inverse_reference * inverse_reference) * (inverse_of_both * current),
+            inverse_of_both * larger};
   }
 
   /// The measure from the current vector xi alone. Its stretch l/L - 1 carries an absolute error of
@@ -72,13 +89,16 @@ struct Length {
   template <int D, class Real>
   [[nodiscard]] static At<D, Real> from_current(const Real& inverse_reference,
                                                 const Arms<1, D, Real>& current) {
-    At<D, Real> result;
-    result.inverse_reference = inverse_reference;
-    result.current = value<D>(current);
-    result.relative_change = result.current * inverse_reference - 1.0;
-    result.inverse = 1.0 / result.current;
-    result.gradient[0] = scaled<D>(result.inverse, current[0]);
-    return result;
+    const Scalars<Real> scalars = from_square(inverse_reference, dot<D>(current[0], current[0]));
+    return {scalars, {scaled<D>(scalars.inverse, current[0])}};
+  }
+
+  /// The same from l^2, without the gradient.
+  template <class Real>
+  [[nodiscard, gnu::always_inline]] static Scalars<Real> from_square(const Real& inverse_reference,
+                                                                     const Real& squared) {
+    const Real current = square_root(squared);
+    return {inverse_reference, current, current * inverse_reference - 1.0, 1.0 / current};
   }
 
   template <int D, class Real>

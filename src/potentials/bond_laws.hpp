@@ -37,6 +37,7 @@ class BondLaws {
   }
 
   [[nodiscard]] Offset bonds() const { return Offset(law_.size()) - lane_count; }
+  [[nodiscard]] double onset_of(Offset bond) const { return onset_[std::size_t(bond)]; }
   /// Number of the law of a bond.
   [[nodiscard]] std::size_t law_of(Offset bond) const { return law_[std::size_t(bond)]; }
   [[nodiscard]] AnyBondLaw at(Offset bond) const {

@@ -110,6 +110,7 @@ struct Degraded {
   /// The potential of one of the bonds, here the same for all; see DegradedByBond.
   [[nodiscard]] const Degraded& of_bond(Offset) const { return *this; }
   [[nodiscard]] DamageRange<double> ranges(Offset) const { return {law.onset(), law.critical()}; }
+  [[nodiscard]] double onset_of(Offset) const { return law.onset(); }
   [[nodiscard]] double bytes() const { return 0.0; }
 
   static constexpr double never_fails = never_failing;
@@ -202,6 +203,9 @@ struct DegradedByBond {
   [[nodiscard]] DamageRange<Lanes> ranges(Offset first) const {
     if (onset) return {Lanes(onset + first), Lanes(critical + first)};
     return laws->ranges(first);
+  }
+  [[nodiscard]] double onset_of(Offset bond) const {
+    return onset ? onset[bond] : laws->onset_of(bond);
   }
   [[nodiscard]] double bytes() const { return laws->bytes(); }
 

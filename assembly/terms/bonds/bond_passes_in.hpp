@@ -42,7 +42,7 @@ class BondPassesIn : public TermPasses, BlockTangent, RowVisits {
   /// Calls body(law, history of the bonds, eigenstretch) with the concrete type of the potential,
   /// and with NoEigenstretch where there is none.
   template <class Body>
-  auto dispatch(const StateView& at, const Body& body) const;
+  auto dispatch(const StateView& at, const Body& body);
 
   template <bool with_energy>
   Evaluation commit(std::span<const double> displacement, const SharedEnvironment& environment,
@@ -64,11 +64,12 @@ BondPassesIn<dimension>::BondPassesIn(const BondFailure& failure, const TermSett
       slot_(setting.model.slot_of(failure)),
       pattern_(setting.pattern),
       places_(setting.pattern.places_of(failure.bonds())),
-      workspace_(setting.points, failure.bonds(), setting.workspace) {}
+      workspace_(setting.points, failure.bonds(), setting.workspace,
+                 setting.model.sums_along_runs()) {}
 
 template <int dimension>
 template <class Body>
-auto BondPassesIn<dimension>::dispatch(const StateView& at, const Body& body) const {
+auto BondPassesIn<dimension>::dispatch(const StateView& at, const Body& body) {
   const auto with_law = [&](const auto& law, const double* largest_stretch) {
     const std::span<const double> of_point = at.eigenstretch();
     if (of_point.empty()) return body(law, largest_stretch, NoEigenstretch{});
@@ -80,6 +81,8 @@ auto BondPassesIn<dimension>::dispatch(const StateView& at, const Body& body) co
           const std::span<const double> history = at.history.of(slot_);
           P law = failure_.at_history(potential, history);
           law.holds_damage = at.damage == Damage::held || failure_.fails_in_avalanches();
+          workspace_.runs.follow(failure_.bonds(), law, history.data(), at.history.version(),
+                                 workspace_.threads.threads());
           return with_law(law, history.data());
         } else {
           return with_law(potential, nullptr);
@@ -122,7 +125,7 @@ Evaluation BondPassesIn<dimension>::commit(std::span<const double> displacement,
   if (failure_.fails_in_avalanches()) return this->gradient(at, gradient, how);
   const bool can_fail = failure_.can_fail();
   double* const to_change = can_fail ? history.change(slot_).data() : nullptr;
-  return dispatch(
+  const Evaluation found = dispatch(
       at, [&]<class P>(const P& law, const double* largest_stretch, const auto& eigenstretch) {
         if constexpr (PotentialWithHistory<P>) {
           return Kernels::template gradient<true, with_energy>(
@@ -132,6 +135,12 @@ Evaluation BondPassesIn<dimension>::commit(std::span<const double> displacement,
               workspace_, law, eigenstretch, displacement, largest_stretch, gradient, how);
         }
       });
+  // A part of a body does not count all of its bonds.
+  if (can_fail && (found.growth.degrading > 0 || workspace_.points.owned)) {
+    history.note_damage();
+    workspace_.runs.have_followed(history.version());
+  }
+  return found;
 }
 
 template <int dimension>

@@ -2,6 +2,8 @@
 
 #include <span>
 
+#include "assembly/terms/bonds/point_columns.hpp"
+#include "assembly/terms/bonds/run_pieces.hpp"
 #include "assembly/terms/workspace.hpp"
 #include "src/core/aligned_vector.hpp"
 #include "src/geometry/points.hpp"
@@ -15,16 +17,27 @@ constexpr int row_width(int dimension) { return dimension == 3 ? 8 : 4; }
 
 /// Buffers of the passes over bonds.
 struct BondWorkspace {
-  BondWorkspace(const Points& of, const Bonds& with, Workspace& shared)
+  /// @param along_runs also sums along runs of points with alike bonds
+  BondWorkspace(const Points& of, const Bonds& with, Workspace& shared, bool along_runs = false)
       : points(of),
         bonds(with),
         threads(shared),
-        rows(std::size_t(of.count()) * row_width(of.dimension)) {}
+        rows(std::size_t(of.count()) * row_width(of.dimension)),
+        runs(along_runs ? bond_runs(of, with, shared.threads()) : std::vector<BondRun>()) {
+    if (runs.empty()) return;
+    columns = PointColumns(2 * of.dimension, 0, of.count());
+    for (const RowRange& range : shared.ranges) {
+      column_sums.emplace_back(of.dimension, range.first, range.touched_end);
+    }
+  }
 
   const Points& points;
   const Bonds& bonds;
   Workspace& threads;
   AlignedVector<double> rows;  ///< per point, the row that kernels gather; see pack
+  RunPieces runs;
+  PointColumns columns;                   ///< vectors that runs read; see pack_columns
+  std::vector<PointColumns> column_sums;  ///< of each thread, by runs
 
   /// Packs two vectors per point into rows, e.g. reference position and displacement.
   template <int D>
@@ -38,6 +51,36 @@ struct BondWorkspace {
         row[c] = first[std::size_t(i) * D + c];
         row[width / 2 + c] = second[std::size_t(i) * D + c];
       }
+    }
+  }
+
+  /// Copies components of the two packed vectors to the columns, counted through both.
+  template <int D>
+  void pack_columns(int first_component, int components) {
+    if (runs.empty()) return;
+    constexpr int width = row_width(D);
+    const Index count = points.count();
+#pragma omp parallel for num_threads(threads.threads())
+    for (Index i = 0; i < count; ++i) {
+      const double* const row = &rows[std::size_t(i) * width];
+      for (int k = 0; k < components; ++k) {
+        const int c = first_component + k;
+        columns[k][i] = row[c < D ? c : width / 2 + c - D];
+      }
+    }
+  }
+
+  void clear_column_sums(int thread) {
+    if (!runs.empty()) column_sums[std::size_t(thread)].clear();
+  }
+
+  /// Adds what a thread has summed along runs to its sums of `width` doubles per row.
+  template <int D, int width>
+  void add_column_sums(int thread, RowRange range, double* sums) const {
+    if (runs.empty()) return;
+    const PointColumns& of = column_sums[std::size_t(thread)];
+    for (Index i = range.first; i < range.touched_end; ++i) {
+      for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += of[c][i];
     }
   }
 };

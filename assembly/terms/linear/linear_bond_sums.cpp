@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "assembly/terms/bonds/bond_kernels.hpp"
+#include "assembly/terms/bonds/bond_batches.hpp"
 
 namespace peristat {
 

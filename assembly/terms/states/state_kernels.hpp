@@ -12,7 +12,7 @@
 
 #include "assembly/operators/block_pattern.hpp"
 #include "assembly/terms/bond_drive.hpp"
-#include "assembly/terms/bonds/bond_kernels.hpp"
+#include "assembly/terms/bonds/bond_batches.hpp"
 #include "assembly/terms/bonds/bond_workspace.hpp"
 #include "assembly/terms/failure/one_by_one.hpp"
 #include "assembly/terms/states/state_network.hpp"

@@ -172,10 +172,15 @@ Table<SolverSpecification> solver_keys() {
        K("operator", &Spec::force_operator,
          choice<ForceOperator>({{"auto", ForceOperator::automatic},
                                 {"bonds", ForceOperator::bonds},
+                                {"stencil", ForceOperator::stencil},
                                 {"fft", ForceOperator::fft}}),
-         "how forces of `material.kinematics = \"linear\"`, and of `lps` as an energy, are summed. "
-         "`\"auto\"`: by the faster way, where possible `fft` for motions by explicit steps with a "
-         "horizon of 2.5 spacings or more; `\"bonds\"`: bond by bond; `\"fft\"`: by fast Fourier "
+         "how forces are summed. "
+         "`\"auto\"`: by the faster way, where possible `fft` for motions by explicit steps of "
+         "`material.kinematics = \"linear\"`, and of `lps` as an energy, with a "
+         "horizon of 2.5 spacings or more; `\"bonds\"`: bond by bond, for bonds of finite "
+         "deformation along rows of a lattice where consecutive points have alike bonds, for whole "
+         "rows at once; `\"stencil\"`: like `\"bonds\"`, refused if less than half of the bonds "
+         "are in such rows; `\"fft\"`: by fast Fourier "
          "transforms, which store no bonds "
          "and take the same time whatever the horizon, for one material on points of a lattice "
          "with equal volumes, without a `surface_correction`. All give the same results to "

@@ -54,7 +54,9 @@ void require_memory_for_lattice(const Case& from, const Lattice& lattice) {
   size.horizon_ratio =
       reach_ratio(from.volume_correction, from.horizon_shape, from.dimension, from.horizon_ratio);
   constexpr double ratio_of_network = 1.5;
-  if (from.solver.force_operator != ForceOperator::bonds) size.horizon_ratio = ratio_of_network;
+  const ForceOperator sums = from.solver.force_operator;
+  const bool may_be_convolved = sums == ForceOperator::automatic || sums == ForceOperator::fft;
+  if (may_be_convolved) size.horizon_ratio = ratio_of_network;
   size.bonds = expected_bonds(points, from.dimension, size.horizon_ratio);
   size.free_dofs = points * from.dimension;
   const Box box = lattice.shapes.empty() ? Box{} : bounds(lattice.shapes.front().shape);

@@ -58,6 +58,10 @@ void refuse_convolutions(const Case& from) {
     throw InputError(is_by_form ? "quadrature.form" : "material.model", "",
                      why + "models with bonds run on several");
   }
+  if (from.solver.force_operator == ForceOperator::stencil) {
+    throw InputError("solver.operator", "\"stencil\"",
+                     "is for one rank; \"bonds\" sums along rows on several, too");
+  }
   if (from.solver.force_operator != ForceOperator::fft) return;
   throw InputError("solver.operator", "\"fft\"",
                    why + "on several ranks take \"bonds\" or \"auto\"");

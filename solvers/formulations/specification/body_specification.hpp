@@ -79,8 +79,7 @@ struct BodySpecification {
   /// body does not keep them.
   std::shared_ptr<const BodyBoundary> boundary{};
   std::vector<std::string> boundary_names{};
-  ForceOperator force_operator =
-      ForceOperator::bonds;  ///< of linear kinematics; see faster_operator
+  ForceOperator force_operator = ForceOperator::bonds;  ///< see faster_operator
   std::vector<Crack> cracks{};
   /// Material of the points in no region. Without constants every point must be in a region.
   MaterialSpecification material{};

@@ -28,8 +28,9 @@ enum class Calibration { lattice, continuum };
 /// Do bonds stretch by their lengths, or by the displacements along them at rest?
 enum class Kinematics { finite, linear };
 
-/// How forces of linear kinematics are summed: bond by bond, or by convolutions on a lattice.
-enum class ForceOperator { automatic, bonds, fft };
+/// How forces are summed: bond by bond, which is done along rows of alike points where there are
+/// any; in that way or not at all; or by convolutions on a lattice.
+enum class ForceOperator { automatic, bonds, stencil, fft };
 
 /// Law by which bonds, or points, fail.
 enum class DamageLaw {

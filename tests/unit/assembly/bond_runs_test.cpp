@@ -1,0 +1,262 @@
+// Sums along runs of points with alike bonds: the same as bond by bond.
+#include "src/neighbourhood/bond_runs.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "assembly/assembler.hpp"
+#include "src/potentials/any_law.hpp"
+#include "tests/bodies.hpp"
+
+namespace peristat {
+namespace {
+
+using tests::BoxBody;
+using tests::BoxSetting;
+using tests::Random;
+
+constexpr double onset = 0.05, critical = 0.2;
+
+BondPotential brittle(double modulus) { return Degraded<CriticalStretch>{modulus, {critical}}; }
+BondPotential softening(double modulus) {
+  return Degraded<TanhDegradation>{modulus, {onset, critical, 20.0}};
+}
+BondPotential whole(double modulus) { return Harmonic{modulus}; }
+
+BoxSetting rows_of(int dimension, const std::function<BondPotential(double)>& potential) {
+  BoxSetting box = tests::small_box(dimension);
+  box.extent = dimension == 1   ? std::array{47, 0, 0}
+               : dimension == 2 ? std::array{150, 9, 0}  // longer than a piece
+                                : std::array{21, 8, 7};
+  box.quadrature = {VolumeCorrection::linear, SurfaceCorrection::none};
+  box.potential = potential;
+  return box;
+}
+
+/// A box with a hole, in which no bond crosses a line.
+BoxBody cut_body(const BoxSetting& box) {
+  BoxBody body(box);
+  const double h = box.spacing;
+  body.remove_bonds([&](Index i, Offset bond) {
+    const auto x = [&](Index p, int c) {
+      return body.points.reference[std::size_t(p * box.dimension + c)];
+    };
+    const Index j = body.model.bonds().partner[std::size_t(bond)];
+    const bool crosses = (x(i, 0) < 11 * h) != (x(j, 0) < 11 * h);
+    return crosses && (box.dimension == 1 ? false : x(i, 1) < 3 * h);
+  });
+  return body;
+}
+
+Model one_by_one(Model model) {
+  model.sum_one_by_one();
+  return model;
+}
+
+/// Largest difference over the largest entry.
+double difference(const std::vector<double>& one, const std::vector<double>& other) {
+  double found = 0.0;
+  for (std::size_t k = 0; k < one.size(); ++k) found = std::max(found, std::abs(one[k] - other[k]));
+  return found / tests::largest(other);
+}
+
+/// A state in which bonds are stretched up to some ten per cent near one end, and hardly elsewhere.
+std::vector<double> stretched(const Points& points, std::uint64_t seed, double most) {
+  std::vector<double> u = Random(seed).vector(points.reference.size());
+  for (Index i = 0; i < points.count(); ++i) {
+    const double x = points.reference[std::size_t(i) * points.dimension] / points.spacing;
+    const double share = x < 8.0 ? most : 0.002;
+    for (int c = 0; c < points.dimension; ++c)
+      u[std::size_t(i) * points.dimension + c] *= share * points.spacing;
+  }
+  return u;
+}
+
+struct Sums {
+  Evaluation found;
+  double energy = 0.0;
+  std::vector<double> forces, product, projected;
+};
+
+Sums sums_of(Assembler& assembler, const StateView& at, std::size_t dofs) {
+  Sums sums;
+  sums.forces.resize(dofs);
+  sums.found = assembler.gradient(at, sums.forces);
+  sums.energy = assembler.energy(at).energy;
+  const std::vector<double> v = Random(3).vector(dofs);
+  sums.product.resize(dofs);
+  sums.projected.resize(dofs);
+  assembler.product(at, v, sums.product);
+  assembler.product(at, v, sums.projected, 1.0);
+  return sums;
+}
+
+void expect_equal(const Sums& one, const Sums& other) {
+  EXPECT_NEAR(one.found.energy, other.found.energy, 1e-13 * other.found.energy);
+  EXPECT_NEAR(one.energy, other.energy, 1e-13 * other.energy);
+  EXPECT_LT(difference(one.forces, other.forces), 1e-12);
+  EXPECT_LT(difference(one.product, other.product), 1e-12);
+  EXPECT_LT(difference(one.projected, other.projected), 1e-12);
+  EXPECT_EQ(one.found.degenerate, other.found.degenerate);
+}
+
+class BondRunsIn : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Dimensions, BondRunsIn, testing::Values(1, 2, 3));
+
+TEST_P(BondRunsIn, SumsAreThoseOfSingleBonds) {
+  for (const auto& potential : {whole, brittle, softening}) {
+    const BoxBody body = cut_body(rows_of(GetParam(), potential));
+    ASSERT_GT(share_in_runs(body.points, body.model.bonds(), 1), 0.4);
+    const Model list = one_by_one(body.model);
+    for (const int threads : {1, 2, 3}) {
+      Assembler along(body.points, body.model, threads), single(body.points, list, threads);
+      History history = along.initial_history();
+      for (const double most : {0.01, 0.3}) {
+        const std::vector<double> u = stretched(body.points, 5, most);
+        expect_equal(sums_of(along, {u, history}, u.size()),
+                     sums_of(single, {u, history}, u.size()));
+        // Searches hold the damage, too.
+        const StateView held{u, history, Damage::held};
+        expect_equal(sums_of(along, held, u.size()), sums_of(single, held, u.size()));
+      }
+    }
+  }
+}
+
+TEST_P(BondRunsIn, DamageIsThatOfSingleBonds) {
+  for (const auto& potential : {brittle, softening}) {
+    const BoxBody body = cut_body(rows_of(GetParam(), potential));
+    const Model list = one_by_one(body.model);
+    Assembler along(body.points, body.model, 2), single(body.points, list, 2);
+    History one = along.initial_history(), other = single.initial_history();
+    Index degraded = 0;
+    // Damage begins, goes on in damaged rows, begins in others, and unloads.
+    for (const auto& [seed, most] : {std::pair{5, 0.2}, {6, 0.4}, {5, 0.01}}) {
+      std::vector<double> u = stretched(body.points, std::uint64_t(seed), most);
+      if (seed == 6) u[u.size() / 2] += 0.7 * body.points.spacing;
+      std::vector<double> forces(u.size()), forces_of_single(u.size());
+      const Evaluation committed = along.commit(u, one, forces),
+                       expected = single.commit(u, other, forces_of_single);
+      EXPECT_EQ(committed.growth.degrading, expected.growth.degrading);
+      EXPECT_EQ(committed.growth.breaking, expected.growth.breaking);
+      EXPECT_NEAR(committed.energy, expected.energy, 1e-12 * expected.energy);
+      EXPECT_LT(difference(forces, forces_of_single), 1e-12);
+      degraded += expected.growth.degrading;
+      const auto kept = body.model.failure_history(one),
+                 kept_by_single = body.model.failure_history(other);
+      ASSERT_EQ(kept.size(), kept_by_single.size());
+      for (std::size_t k = 0; k < kept.size(); ++k) ASSERT_NEAR(kept[k], kept_by_single[k], 1e-12);
+      expect_equal(sums_of(along, {u, one}, u.size()), sums_of(single, {u, other}, u.size()));
+    }
+    EXPECT_GT(degraded, 0);
+    // A history from before the damage is not confused with the present one.
+    const History fresh = along.initial_history();
+    const std::vector<double> u = stretched(body.points, 5, 0.3);
+    expect_equal(sums_of(along, {u, fresh}, u.size()), sums_of(single, {u, fresh}, u.size()));
+    expect_equal(sums_of(along, {u, one}, u.size()), sums_of(single, {u, other}, u.size()));
+  }
+}
+
+TEST_P(BondRunsIn, EigenstretchesAreThoseOfSingleBonds) {
+  const BoxBody body = cut_body(rows_of(GetParam(), softening));
+  const Model list = one_by_one(body.model);
+  Assembler along(body.points, body.model, 2), single(body.points, list, 2);
+  const auto heated = std::make_shared<Environment>();
+  heated->eigenstretch = Random(13).vector(body.points.volume.size(), 0.1);
+  const std::vector<double> u = stretched(body.points, 5, 0.1);
+  const History history = along.initial_history();
+  const StateView at{u, history, Damage::grows, heated};
+  expect_equal(sums_of(along, at, u.size()), sums_of(single, at, u.size()));
+}
+
+TEST_P(BondRunsIn, LawsThatDifferFromBondToBond) {
+  const int dimension = GetParam();
+  const BoxSetting box = rows_of(dimension, whole);
+  const BoxBody elastic(box);
+  const auto laws =
+      std::make_shared<BondLaws>(std::vector<AnyBondLaw>{AnyBondLaw(CriticalStretch{critical})},
+                                 std::size_t(elastic.model.bonds().count()));
+  Random random(17);
+  for (Offset bond = 0; bond < laws->bonds(); ++bond) {
+    const double strength = critical * (1.0 + 0.5 * random.number());
+    laws->set(bond, 0, strength, strength);
+  }
+  BoxSetting differing = box;
+  differing.potential = [&](double modulus) -> BondPotential {
+    return DegradedByBond<>{modulus, laws};
+  };
+  const BoxBody body(differing);
+  const Model list = one_by_one(body.model);
+  Assembler along(body.points, body.model, 2), single(body.points, list, 2);
+  History one = along.initial_history(), other = one;
+  for (const double most : {0.05, 0.3, 0.1}) {
+    const std::vector<double> u = stretched(body.points, 5, most);
+    std::vector<double> forces(u.size()), forces_of_single(u.size());
+    const Evaluation committed = along.commit(u, one, forces),
+                     expected = single.commit(u, other, forces_of_single);
+    EXPECT_EQ(committed.growth.breaking, expected.growth.breaking);
+    EXPECT_LT(difference(forces, forces_of_single), 1e-12);
+    expect_equal(sums_of(along, {u, one}, u.size()), sums_of(single, {u, other}, u.size()));
+  }
+  EXPECT_GT(tests::largest(body.model.failure_history(one)), critical / 2);
+}
+
+TEST_P(BondRunsIn, PointsThatCoincideAreDegenerate) {
+  const BoxBody body(rows_of(GetParam(), whole));
+  Assembler along(body.points, body.model, 1);
+  std::vector<double> u(body.dofs(), 0.0), forces(u.size());
+  const Index middle = body.points.count() / 2 + 1;
+  EXPECT_FALSE(along.gradient(StateView{u}, forces).degenerate);
+  for (int c = 0; c < GetParam(); ++c) {
+    const auto at = [&](Index i) { return std::size_t(i * GetParam() + c); };
+    u[at(middle)] = body.points.reference[at(middle + 1)] - body.points.reference[at(middle)];
+  }
+  EXPECT_TRUE(along.gradient(StateView{u}, forces).degenerate);
+}
+
+TEST(BondRuns, AreRowsOfALattice) {
+  BoxSetting box = tests::small_box(2);
+  box.extent = {30, 12, 0};
+  const BoxBody body(box);
+  const std::vector<BondRun> runs = bond_runs(body.points, body.model.bonds(), 1);
+  // The last row has bonds along itself alone; its last two points lack some.
+  EXPECT_EQ(runs.size(), 12u);
+  for (const BondRun& run : runs) {
+    EXPECT_GE(run.last - run.first, 26);
+    for (Index i = run.first + 1; i < run.last; ++i) {
+      const Bonds& bonds = body.model.bonds();
+      ASSERT_EQ(bonds.offset[i + 1] - bonds.offset[i],
+                bonds.offset[run.first + 1] - bonds.offset[run.first]);
+    }
+  }
+}
+
+TEST(BondRuns, NeedAlikeBonds) {
+  BoxSetting box = tests::small_box(2);
+  box.extent = {30, 12, 0};
+  box.perturbation = 1e-9;
+  const BoxBody cloud(box);
+  EXPECT_EQ(share_in_runs(cloud.points, cloud.model.bonds(), 1), 0.0);
+
+  box.perturbation = 0.0;
+  BoxBody weighted(box);
+  Bonds bonds = weighted.model.bonds();
+  bonds.set_weights([](Index i, Offset) { return 1.0 + 1e-6 * i; });
+  EXPECT_EQ(share_in_runs(weighted.points, bonds, 1), 0.0);
+
+  BoxBody owned(box);
+  owned.points.owned = 6 * 30;
+  for (const BondRun& run : bond_runs(owned.points, owned.model.bonds(), 1))
+    EXPECT_LT(run.last, 4 * 30 + 1);
+}
+
+}  // namespace
+}  // namespace peristat
