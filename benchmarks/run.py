@@ -23,6 +23,9 @@ ROWS = {
     "gradient": ("bond", 1e6, "M bonds/s", None),
     "tangent": ("bond", 1e6, "M bonds/s", 80e6),
     "matrix_free_product": ("bond", 1e6, "M bonds/s", 300e6),
+    "listed_energy": ("bond", 1e6, "M bonds/s", None),
+    "listed_gradient": ("bond", 1e6, "M bonds/s", None),
+    "listed_product": ("bond", 1e6, "M bonds/s", None),
     "state_gradient": ("bond", 1e6, "M bonds/s", None),
     "state_product": ("bond", 1e6, "M bonds/s", None),
     "stored_product": ("bond", 1e6, "M bonds/s", None),
@@ -61,11 +64,11 @@ def measure(program, threads, options):
 
 def print_relaxation(name, one, many):
     """A table row of relaxation's iterations, counted in products."""
-    case = name.partition("/")[2]
+    kind, _, case = name.partition("/")
     dimension, law, transient = (part.split(":")[-1] for part in case.split("/"))
-    product = f"relaxation_product/{case}"
+    product = f"{kind}_product/{case}"
     breaking = ", breaking in every iteration" if transient == "1" else ""
-    print(f"| relaxation iteration, {dimension}D, {LAWS[int(law)]}{breaking} | products "
+    print(f"| {kind.replace('_', ' ')} iteration, {dimension}D, {LAWS[int(law)]}{breaking} | products "
           f"| {one[product] / one[name]:.2f} | {many[product] / many[name]:.2f} "
           f"| {many[name] / one[name]:.2f} | at most {PRODUCTS_PER_ITERATION} |")
 
@@ -112,8 +115,8 @@ def print_table(threads, one, many):
               f"| {many[name] / rate:.2f} | {goal} |")
     for name in sorted(one):
         if name.startswith(("state_gradient/", "state_product/")):
-            print_states(name, "gradient" if "gradient" in name else "matrix_free_product", one, many)
-        if name.startswith("relaxation/"):
+            print_states(name, "listed_gradient" if "gradient" in name else "listed_product", one, many)
+        if name.startswith(("relaxation/", "listed_relaxation/")):
             print_relaxation(name, one, many)
 
 

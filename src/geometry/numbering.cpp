@@ -15,6 +15,9 @@ LocalityCells::LocalityCells(int dimension, const Spacing& spacing, const Coordi
     : dimension_(dimension), spacing_(spacing), low_(low) {
   std::stable_sort(directions_.begin(), directions_.begin() + dimension,
                    [&](int a, int b) { return along(high[a], a) > along(high[b], b); });
+  if (dimension < 3) return;
+  auto& [slowest, second, third] = directions_;
+  if (along(high[second], second) > along(high[third], third)) std::swap(second, third);
 }
 
 /// Whole numbers, so that round-off does not decide between equal lengths.

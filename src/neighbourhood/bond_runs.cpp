@@ -5,8 +5,6 @@
 namespace peristat {
 namespace {
 
-constexpr double largest_difference = 1e-12;  // of reference vectors [lengths]
-
 /// True if the bonds of both points are alike.
 bool are_alike(const Points& points, const Bonds& bonds, Index one, Index other) {
   const Offset first = bonds.offset[one], second = bonds.offset[other];
@@ -18,7 +16,7 @@ bool are_alike(const Points& points, const Bonds& bonds, Index one, Index other)
     const Index near = bonds.partner[first + k], far = bonds.partner[second + k];
     if (far - other != near - one || !(bonds.kind[first + k] == bonds.kind[second + k]))
       return false;
-    const double allowed = largest_difference * bonds.length(first + k);
+    const double allowed = alike_within * bonds.length(first + k);
     for (int c = 0; c < dimension; ++c) {
       const auto at = [&](Index i) { return x[std::size_t(i) * dimension + c]; };
       if (!(std::abs((at(far) - at(other)) - (at(near) - at(one))) <= allowed)) return false;

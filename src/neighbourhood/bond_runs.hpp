@@ -16,8 +16,11 @@ struct BondRun {
 /// Fewest points that make a run.
 inline constexpr Index least_run = 8;
 
+/// Largest difference of reference vectors that are alike [lengths].
+inline constexpr double alike_within = 1e-12;
+
 /// Runs of a body, ascending. On a lattice they are parts of its rows, where holes, cracks and the
-/// surface leave alike bonds. Reference vectors agree to 1e-12 of their length, as kinds do. Bonds
+/// surface leave alike bonds. Reference vectors agree to `alike_within`, as kinds do. Bonds
 /// to ghosts are in none.
 [[nodiscard]] std::vector<BondRun> bond_runs(const Points& points, const Bonds& bonds, int threads);
 

@@ -180,6 +180,7 @@ class Refusals(OnRanks):
         said = self.refusal(PLATE, 'solver.operator="fft"')
         self.assertIn("solver.operator", said)
         self.assertIn('take "bonds" or "auto"', said)
+        self.assertIn('"bonds" sums along rows', self.refusal(PLATE, 'solver.operator="stencil"'))
         for operator in ("fft", "auto"):
             said = self.refusal(PLATE, f'solver.operator="{operator}"', 'material.model="green_bond"')
             self.assertIn("models with bonds", said)

@@ -64,8 +64,7 @@ class FailingBatchOf final : public FailingBatch {
       if (!(damaged >> l & 1u) && !(stretch[l] > piece.free_below)) continue;
       const Offset bond = batch.bond + l * batch.per_point;
       if (changing_) commit(piece, batch, l, stretch[l]);
-      const PotentialDensity<double> one =
-          potential_.of_bond(bond)(stretch[l], largest_stretch_[bond]);
+      const PotentialDensity<double> one = density(potential_.of_bond(bond), bond, stretch[l]);
       all.value.set(l, one.value);
       all.first.set(l, one.first);
       all.second.set(l, one.second);
@@ -74,6 +73,16 @@ class FailingBatchOf final : public FailingBatch {
   }
 
  private:
+  /// Most damaged bonds are broken: they need no law.
+  template <class OfBond>
+  [[nodiscard]] PotentialDensity<double> density(const OfBond& of_bond, Offset bond,
+                                                 double stretch) const {
+    const double largest = largest_stretch_[bond];
+    const bool is_closed = of_bond.closes && !(stretch > 0.0);
+    if (of_bond.is_broken(largest) && !is_closed) return {0.0, 0.0, 0.0};
+    return of_bond(stretch, largest);
+  }
+
   void commit(const RunPiece& piece, const RunBatch& batch, int l, double stretch) {
     const Offset bond = batch.bond + l * batch.per_point;
     const Index i = batch.point + l;
@@ -135,6 +144,8 @@ class RunPass {
         failing_(failing) {}
 
   /// Adds forces and energy; the columns are displacements.
+  /// @param shortest length of a bond, less what cannot be told from zero, because reference
+  /// vectors are those of another point
   /// @param sums of forces; null: not wanted
   template <bool with_energy>
   [[gnu::noinline]] void add_forces(const RunPiece& piece, PointColumns* sums, double& energy,
@@ -153,11 +164,13 @@ class RunPass {
       });
       const Lanes inverse_length = bond.kind.inverse_length, weight = bond.kind.weight;
       const Lanes of_energy = bond.kind.weight / bond.kind.inverse_length;
+      const Lanes least_length = alike_within / bond.kind.inverse_length;
       for_each_batch(piece, [&](int b, Index i) {
         auto measure = Length::from_squares(inverse_length, squared[b], change[b]);
         const RunBatch batch = batch_of(piece, bond, i);
         relieve(measure, batch);
-        least = min(least, within(batch, measure.current, std::numeric_limits<double>::infinity()));
+        const Lanes above_zero = measure.current - least_length;
+        least = min(least, within(batch, above_zero, std::numeric_limits<double>::infinity()));
         const auto phi = density(piece, batch, measure.relative_change);
         if constexpr (with_energy) total += within(batch, phi.value, 0.0) * of_energy;
         tension[b] = within(batch, weight * phi.first * measure.inverse, 0.0);

@@ -33,9 +33,9 @@ BondPotential whole(double modulus) { return Harmonic{modulus}; }
 
 BoxSetting rows_of(int dimension, const std::function<BondPotential(double)>& potential) {
   BoxSetting box = tests::small_box(dimension);
-  box.extent = dimension == 1   ? std::array{47, 0, 0}
-               : dimension == 2 ? std::array{150, 9, 0}  // longer than a piece
-                                : std::array{21, 8, 7};
+  box.extent = dimension == 1   ? std::array{300, 0, 0}  // longer than a piece
+               : dimension == 2 ? std::array{21, 14, 0}
+                                : std::array{14, 8, 15};
   box.quadrature = {VolumeCorrection::linear, SurfaceCorrection::none};
   box.potential = potential;
   return box;
@@ -154,6 +154,8 @@ TEST_P(BondRunsIn, DamageIsThatOfSingleBonds) {
                  kept_by_single = body.model.failure_history(other);
       ASSERT_EQ(kept.size(), kept_by_single.size());
       for (std::size_t k = 0; k < kept.size(); ++k) ASSERT_NEAR(kept[k], kept_by_single[k], 1e-12);
+      // Just at their largest stretches bonds may load or unload.
+      for (double& entry : u) entry *= 0.98;
       expect_equal(sums_of(along, {u, one}, u.size()), sums_of(single, {u, other}, u.size()));
     }
     EXPECT_GT(degraded, 0);
@@ -224,24 +226,17 @@ TEST_P(BondRunsIn, PointsThatCoincideAreDegenerate) {
 
 TEST(BondRuns, AreRowsOfALattice) {
   BoxSetting box = tests::small_box(2);
-  box.extent = {30, 12, 0};
+  box.extent = {30, 20, 0};
   const BoxBody body(box);
-  const std::vector<BondRun> runs = bond_runs(body.points, body.model.bonds(), 1);
-  // The last row has bonds along itself alone; its last two points lack some.
-  EXPECT_EQ(runs.size(), 12u);
-  for (const BondRun& run : runs) {
-    EXPECT_GE(run.last - run.first, 26);
-    for (Index i = run.first + 1; i < run.last; ++i) {
-      const Bonds& bonds = body.model.bonds();
-      ASSERT_EQ(bonds.offset[i + 1] - bonds.offset[i],
-                bonds.offset[run.first + 1] - bonds.offset[run.first]);
-    }
-  }
+  const std::vector<BondRun> runs = bond_runs(body.points, body.model.bonds(), 2);
+  // Points next to the ends of a row, which is along the shorter side, lack bonds.
+  EXPECT_EQ(runs.size(), 30u);
+  for (const BondRun& run : runs) EXPECT_GE(run.last - run.first, 16);
 }
 
 TEST(BondRuns, NeedAlikeBonds) {
   BoxSetting box = tests::small_box(2);
-  box.extent = {30, 12, 0};
+  box.extent = {30, 20, 0};
   box.perturbation = 1e-9;
   const BoxBody cloud(box);
   EXPECT_EQ(share_in_runs(cloud.points, cloud.model.bonds(), 1), 0.0);
@@ -253,9 +248,10 @@ TEST(BondRuns, NeedAlikeBonds) {
   EXPECT_EQ(share_in_runs(weighted.points, bonds, 1), 0.0);
 
   BoxBody owned(box);
-  owned.points.owned = 6 * 30;
-  for (const BondRun& run : bond_runs(owned.points, owned.model.bonds(), 1))
-    EXPECT_LT(run.last, 4 * 30 + 1);
+  owned.points.owned = 10 * 20;
+  const std::vector<BondRun> runs = bond_runs(owned.points, owned.model.bonds(), 1);
+  EXPECT_EQ(runs.size(), 8u);  // points of the last two rows that are owned have bonds to others
+  for (const BondRun& run : runs) EXPECT_LE(run.last, 8 * 20);
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ TEST(Correspondence, IsTheDirectSumsOverNeighbours) {
 TEST(Correspondence, HasTheForcesAndTheTangentOfItsEnergy) {
   for (const std::vector<int>& counts : both_dimensions()) {
     const HoledBody body({counts});
-    const std::vector<double> u = body.random(5), v = body.random(6), w = body.random(7);
+    const std::vector<double> u = body.random(5), v = body.random(9), w = body.random(7);
     Correspondence material = material_of(body);
     material.set_integrity(body.mask());
     tests::expect_forces_of_energy(material, u, v, body.count());

@@ -1,0 +1,67 @@
+"""Sums along the rows of a lattice, where a case demands them."""
+
+import unittest
+
+import numpy
+
+from tests.acceptance.folder import Folder
+
+PLATE = """\
+dimension = 2
+[lattice]
+spacing = 0.05
+horizon_ratio = 2.015
+thickness = 0.1
+[[lattice.shape]]
+add = "box"
+min = [0, 0]
+max = [1.5, 1]
+[[lattice.shape]]
+remove = "ball"
+center = [0.75, 0.5]
+radius = 0.15
+[material]
+youngs_modulus = 1e9
+[material.damage]
+law = "critical_stretch"
+critical = 0.01
+[[set]]
+name = "left"
+where = "x < 0.1"
+[[set]]
+name = "right"
+where = "x > 1.4"
+[[support]]
+set = "left"
+displacement = [0, 0]
+[[support]]
+set = "right"
+displacement = ["0.012*load", 0]
+[loading]
+steps = 3
+[solver]
+mode = "relaxation"
+operator = "stencil"
+"""
+
+
+class Stencil(Folder):
+    def test_rows_through_fracture(self):
+        demanded, bonds = (self.results(PLATE, f'solver.operator="{name}"', name=name) for name in ("stencil", "bonds"))
+        last = demanded.steps[-1]
+        self.assertGreater(last.damage.max(), 0)
+        numpy.testing.assert_array_equal(last.displacement, bonds.steps[-1].displacement)
+
+    def test_bodies_without_rows_are_refused(self):
+        for changes, words in (
+            (["lattice.perturbation=0.2"], ["only 0 %"]),
+            (["lattice.spacing=0.2"], ["rows"]),
+            (["material.kinematics=linear"], ["finite deformation"]),
+            (["material={model=\"state\", youngs_modulus=1e9, poisson_ratio=0.2}"], ["finite deformation"]),
+        ):
+            with self.subTest(changes):
+                self.assert_refused(self.command("check", PLATE, *changes), "solver.operator", '"stencil"', 'take "bonds"', *words)
+
+
+if __name__ == "__main__":
+    unittest.main()
