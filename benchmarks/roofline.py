@@ -73,21 +73,31 @@ def draw(rates, points, file):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
+    from matplotlib.ticker import ScalarFormatter
+
     dgemm, triad = rates["dgemm"] / 1e9, rates["stream_triad"] / 1e9
-    figure, axes = pyplot.subplots(figsize=(8, 5), layout="constrained")
-    reach = [0.3, 100]
-    axes.loglog(reach, [min(dgemm, triad * x) for x in reach], alpha=0)
-    corner = dgemm / triad
-    axes.plot([reach[0], corner, reach[1]], [triad * reach[0], dgemm, dgemm], color="black", label="DGEMM and STREAM triad")
-    for point, marker in zip(points, "osD^v<>" * 2):
-        gained = point.rate * point.flops / 1e9
-        color = "tab:blue" if point.dimension == 2 else "tab:red"
-        axes.plot(point.intensity, gained, "*" if not point.name.startswith(("listed", "stored")) else "o", color=color)
-        axes.annotate(str(point), (point.intensity, gained), xytext=(5, 3), textcoords="offset points", fontsize=7)
+    figure, axes = pyplot.subplots(figsize=(9, 4.8), layout="constrained")
+    low, corner, high = 0.3, dgemm / triad, 40
+    axes.plot([low, corner, high], [triad * low, dgemm, dgemm], color="black", label="DGEMM and STREAM triad")
+    kinds = {"energy": "tab:green", "gradient": "tab:blue", "product": "tab:red"}
+    for point in points:
+        color = kinds[point.name.split("_")[-1]]
+        kind = "hollow" if point.name.startswith("listed") else "stored" if point.name.startswith("stored") else "full"
+        axes.plot(point.intensity, point.rate * point.flops / 1e9, "os"[point.dimension - 2], label=str(point),
+                  color=color, markersize=9, fillstyle={"hollow": "none", "stored": "bottom", "full": "full"}[kind])  # fmt: skip
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    for axis in (axes.xaxis, axes.yaxis):
+        for number in (axis.set_major_formatter, axis.set_minor_formatter):
+            number(ScalarFormatter())
+    axes.set_xticks([0.3, 1, 3, 10, 30])
+    axes.set_yticks([number for number in (1, 2, 5, 10, 20, 50, 100) if number < 1.2 * dgemm])
+    axes.minorticks_off()
+    axes.grid(alpha=0.3)
     axes.set_xlabel("flops per byte that has to come from memory")
     axes.set_ylabel("GF/s on one thread")
-    axes.set_title("Passes over bonds (stars: along rows of a lattice)")
-    axes.legend(loc="lower right")
+    axes.set_title("Passes over bonds: full along rows of a lattice, hollow bond by bond")
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8)
     figure.savefig(file)
 
 
