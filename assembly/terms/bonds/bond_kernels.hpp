@@ -9,6 +9,23 @@
 
 namespace peristat {
 
+/// Calls visit(pass) with the pass over runs of bonds with a potential.
+/// @param largest_stretch history of the bonds, which moves if it is not const
+template <int D, class P, class E, class Stretch, class Visit>
+void with_pass(const BondWorkspace& a, const P& potential, const E& eigenstretch,
+               Stretch* largest_stretch, DamageGrowth& growth, const Visit& visit) {
+  const auto whole = whole_potential(potential);
+  using Pass = RunPass<D, std::remove_const_t<decltype(whole)>, E>;
+  if constexpr (PotentialWithHistory<P>) {
+    double* changing = nullptr;
+    if constexpr (!std::is_const_v<Stretch>) changing = largest_stretch;
+    FailingBatchOf<P> failing(potential, a.points, largest_stretch, changing, growth);
+    visit(Pass(a.points, a.bonds, a.columns, whole, eigenstretch, &failing));
+  } else {
+    visit(Pass(a.points, a.bonds, a.columns, whole, eigenstretch, nullptr));
+  }
+}
+
 /// The passes over the bonds, for one dimension; the potential is chosen once, outside the loops.
 /// `largest_stretch` is the bonds' history, padded by a batch; null for a potential without one.
 template <int D>
@@ -29,20 +46,17 @@ struct BondKernels {
     const bool energy_only = result.empty();
     const Index owned = a.points.owned.value_or(a.points.count());
     constexpr int width = vector_width(D);
-    const auto whole = whole_potential(potential);
     const auto body = [&](int thread, RowRange range, double* sums) __attribute__((flatten)) {
       Lanes shortest = std::numeric_limits<double>::infinity();
       double energy = 0.0;
       DamageGrowth growth;
-      const auto along_run = [&](const RunPiece& piece) {
-        with_failing(potential, a.points, largest_stretch, growth, [&](FailingBatch* failing) {
-          const RunPass<D, decltype(whole), E> pass(a.points, bonds, a.columns, whole, eigenstretch,
-                                                    failing);
-          PointColumns* const to = energy_only ? nullptr : &a.column_sums[std::size_t(thread)];
-          pass.template add_forces<with_energy>(piece, to, energy, shortest);
+      const auto on_piece = [&](const RunPiece& piece, PointColumns& columns) {
+        with_pass<D>(a, potential, eigenstretch, largest_stretch, growth, [&](const auto& pass) {
+          pass.template add_forces<with_energy>(piece, energy_only ? nullptr : &columns, energy,
+                                                shortest);
         });
       };
-      const auto along_rows = [&](Index first, Index last) {
+      const auto on_rows = [&](Index first, Index last, double* to) {
         for (Index i = first; i < last; ++i) {
           const Index whole_below = i < owned ? owned : 0;
           Lanes row_energy = 0.0;
@@ -73,15 +87,13 @@ struct BondKernels {
                                     measure.gradient[0]);
                 }
                 for (int c = 0; c < D; ++c) own[c] -= force[c];
-                add_to_partners<D>(sums, batch.partner, force);
+                add_to_partners<D>(to, batch.partner, force);
               });
           energy += sum(row_energy);
-          for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
+          for (int c = 0; c < D; ++c) to[std::ptrdiff_t(i) * width + c] += sum(own[c]);
         }
       };
-      a.clear_column_sums(thread);
-      a.runs.for_each(range, along_run, along_rows);
-      a.add_column_sums<D, width>(thread, range, sums);
+      a.sum_range<D, width>(thread, range, sums, on_piece, on_rows);
       parts[thread] = {energy, !(smallest(shortest) > 0.0), growth};
     };
     a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
@@ -147,19 +159,15 @@ struct BondKernels {
       }
     }
     a.pack_columns<D>(0, 2 * D);
-    const auto whole = whole_potential(potential);
     const Bonds& bonds = a.bonds;
     constexpr int width = vector_width(D);
     const auto body = [&](int thread, RowRange range, double* sums) {
       DamageGrowth none;
-      const auto along_run = [&](const RunPiece& piece) {
-        with_failing(potential, a.points, largest_stretch, none, [&](FailingBatch* failing) {
-          const RunPass<D, decltype(whole), E> pass(a.points, bonds, a.columns, whole, eigenstretch,
-                                                    failing);
-          pass.add_products(piece, projection, a.column_sums[std::size_t(thread)]);
-        });
+      const auto on_piece = [&](const RunPiece& piece, PointColumns& columns) {
+        with_pass<D>(a, potential, eigenstretch, largest_stretch, none,
+                     [&](const auto& pass) { pass.add_products(piece, projection, columns); });
       };
-      const auto along_rows = [&](Index first, Index last) {
+      const auto on_rows = [&](Index first, Index last, double* to) {
         for (Index i = first; i < last; ++i) {
           Vector<D, Lanes> own;
           own.fill(Lanes(0.0));
@@ -174,14 +182,12 @@ struct BondKernels {
                 const Vector<D, Lanes> force =
                     energy_hessian_times(psi, measure, Arms<1, D, Lanes>{batch.vector1})[0];
                 for (int c = 0; c < D; ++c) own[c] -= force[c];
-                add_to_partners<D>(sums, batch.partner, force);
+                add_to_partners<D>(to, batch.partner, force);
               });
-          for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
+          for (int c = 0; c < D; ++c) to[std::ptrdiff_t(i) * width + c] += sum(own[c]);
         }
       };
-      a.clear_column_sums(thread);
-      a.runs.for_each(range, along_run, along_rows);
-      a.add_column_sums<D, width>(thread, range, sums);
+      a.sum_range<D, width>(thread, range, sums, on_piece, on_rows);
     };
     a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
       put<D>(how, total, &result[std::size_t(i) * D]);

@@ -70,15 +70,18 @@ struct BondWorkspace {
     }
   }
 
-  void clear_column_sums(int thread) {
-    if (!runs.empty()) column_sums[std::size_t(thread)].clear();
-  }
-
-  /// Adds what a thread has summed along runs to its sums of `width` doubles per row.
-  template <int D, int width>
-  void add_column_sums(int thread, RowRange range, double* sums) const {
-    if (runs.empty()) return;
-    const PointColumns& of = column_sums[std::size_t(thread)];
+  /// Sums a thread's rows: pieces of runs by on_piece(piece, columns to add to), the other rows by
+  /// on_rows(first, last, sums).
+  /// @param sums `width` doubles per row, which everything is added to
+  template <int D, int width, class OnPiece, class OnRows>
+  void sum_range(int thread, RowRange range, double* sums, const OnPiece& on_piece,
+                 const OnRows& on_rows) {
+    if (runs.empty()) return on_rows(range.first, range.last, sums);
+    PointColumns& of = column_sums[std::size_t(thread)];
+    of.clear();
+    runs.for_each(
+        range, [&](const RunPiece& piece) { on_piece(piece, of); },
+        [&](Index first, Index last) { on_rows(first, last, sums); });
     for (Index i = range.first; i < range.touched_end; ++i) {
       for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += of[c][i];
     }

@@ -100,21 +100,6 @@ class FailingBatchOf final : public FailingBatch {
   DamageGrowth& growth_;
 };
 
-/// Calls visit(failing) with the densities of bonds that start to fail; null if none can.
-/// @param largest_stretch history of the bonds, which moves if it is not const
-template <class P, class Stretch, class Visit>
-void with_failing(const P& potential, const Points& points, Stretch* largest_stretch,
-                  DamageGrowth& growth, const Visit& visit) {
-  if constexpr (PotentialWithHistory<P>) {
-    double* commits = nullptr;
-    if constexpr (!std::is_const_v<Stretch>) commits = largest_stretch;
-    FailingBatchOf<P> failing(potential, points, largest_stretch, commits, growth);
-    visit(&failing);
-  } else {
-    visit(nullptr);
-  }
-}
-
 /// The lanes of a batch; `none` past them.
 [[nodiscard, gnu::always_inline]] inline Lanes within(const RunBatch& batch, const Lanes& lanes,
                                                       double none) {

@@ -19,22 +19,28 @@ class RunFlags {
   RunFlags(Index points, Offset per_point)
       : stride_(std::size_t(points) / 8 + 2), bits_(stride_ * std::size_t(per_point), 0) {}
 
-  void clear() { std::fill(bits_.begin(), bits_.end(), 0); }
-
   /// Flags of the bonds k of lane_count points from this one of the run on, the first in the lowest
   /// bit.
-  [[nodiscard]] unsigned of(Offset k, Index point) const {
-    const std::uint8_t* const at = &bits_[std::size_t(k) * stride_ + std::size_t(point) / 8];
-    return ((unsigned(at[0]) | unsigned(at[1]) << 8) >> (point % 8)) & ((1u << lane_count) - 1);
+  [[nodiscard]] unsigned of(Offset k, Index point) {
+    const std::size_t at = place(k, point);
+    const unsigned two = unsigned(byte(at).load(std::memory_order_relaxed)) |
+                         unsigned(byte(at + 1).load(std::memory_order_relaxed)) << 8;
+    return (two >> (point % 8)) & ((1u << lane_count) - 1);
   }
 
-  /// Threads may raise flags of the same run.
   void raise(Offset k, Index point) {
-    std::uint8_t& byte = bits_[std::size_t(k) * stride_ + std::size_t(point) / 8];
-    std::atomic_ref(byte).fetch_or(std::uint8_t(1u << (point % 8)), std::memory_order_relaxed);
+    byte(place(k, point)).fetch_or(std::uint8_t(1u << (point % 8)), std::memory_order_relaxed);
   }
 
  private:
+  [[nodiscard]] std::size_t place(Offset k, Index point) const {
+    return std::size_t(k) * stride_ + std::size_t(point) / 8;
+  }
+  /// Threads that share a run may share a byte.
+  [[nodiscard]] std::atomic_ref<std::uint8_t> byte(std::size_t at) {
+    return std::atomic_ref(bits_[at]);
+  }
+
   std::size_t stride_ = 0;  // with a byte that may be read past the points
   std::vector<std::uint8_t> bits_;
 };
