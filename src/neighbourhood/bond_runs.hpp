@@ -8,7 +8,7 @@
 namespace peristat {
 
 /// Consecutive points whose bonds are alike: as many, to partners that are as many points ahead,
-/// with the same reference vectors, lengths and weights.
+/// with the same lengths and weights.
 struct BondRun {
   Index first, last;  ///< the last one is not part of it
 };
@@ -16,12 +16,8 @@ struct BondRun {
 /// Fewest points that make a run.
 inline constexpr Index least_run = 8;
 
-/// Largest difference of reference vectors that are alike [lengths].
-inline constexpr double alike_within = 1e-12;
-
 /// Runs of a body, ascending. On a lattice they are parts of its rows, where holes, cracks and the
-/// surface leave alike bonds. Reference vectors agree to `alike_within`, as kinds do. Bonds
-/// to ghosts are in none.
+/// surface leave alike bonds. Bonds to ghosts are in none.
 [[nodiscard]] std::vector<BondRun> bond_runs(const Points& points, const Bonds& bonds, int threads);
 
 /// Share of the bonds that are in runs, from 0 to 1.

@@ -17,8 +17,8 @@ add = "box"
 min = [0, 0]
 max = [1.5, 1]
 [[lattice.shape]]
-remove = "ball"
-center = [0.75, 0.5]
+subtract = "disk"
+centre = [0.75, 0.5]
 radius = 0.15
 [material]
 youngs_modulus = 1e9
@@ -55,12 +55,12 @@ class Stencil(Folder):
     def test_bodies_without_rows_are_refused(self):
         for changes, words in (
             (["lattice.perturbation=0.2"], ["only 0 %"]),
-            (["lattice.spacing=0.2"], ["rows"]),
-            (["material.kinematics=linear"], ["finite deformation"]),
+            (["lattice.shape=[{add=\"box\", min=[0, 0], max=[1.5, 0.5]}]"], ["only 0 %"]),
+            (["material={kinematics=\"linear\", youngs_modulus=1e9}"], ["finite deformation"]),
             (["material={model=\"state\", youngs_modulus=1e9, poisson_ratio=0.2}"], ["finite deformation"]),
         ):
             with self.subTest(changes):
-                self.assert_refused(self.command("check", PLATE, *changes), "solver.operator", '"stencil"', 'take "bonds"', *words)
+                self.assert_refused(self.command("check", PLATE, *changes), "solver.operator", "stencil", 'take "bonds"', *words)
 
 
 if __name__ == "__main__":

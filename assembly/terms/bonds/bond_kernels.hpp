@@ -20,9 +20,9 @@ void with_pass(const BondWorkspace& a, const P& potential, const E& eigenstretch
     double* changing = nullptr;
     if constexpr (!std::is_const_v<Stretch>) changing = largest_stretch;
     FailingBatchOf<P> failing(potential, a.points, largest_stretch, changing, growth);
-    visit(Pass(a.points, a.bonds, a.columns, whole, eigenstretch, &failing));
+    visit(Pass(a.bonds, a.columns, whole, eigenstretch, &failing));
   } else {
-    visit(Pass(a.points, a.bonds, a.columns, whole, eigenstretch, nullptr));
+    visit(Pass(a.bonds, a.columns, whole, eigenstretch, nullptr));
   }
 }
 
@@ -40,7 +40,7 @@ struct BondKernels {
                              std::conditional_t<commits, double*, const double*> largest_stretch,
                              std::span<double> result, Write how) {
     a.pack<D>(a.points.reference, displacement);
-    a.pack_columns<D>(D, D);
+    a.pack_columns<D>();
     std::vector<Evaluation>& parts = a.threads.evaluations;
     const Bonds& bonds = a.bonds;
     const bool energy_only = result.empty();
@@ -158,7 +158,7 @@ struct BondKernels {
         a.rows[std::size_t(i) * row + c] += a.points.reference[std::size_t(i) * D + c];
       }
     }
-    a.pack_columns<D>(0, 2 * D);
+    a.pack_columns<D>();
     const Bonds& bonds = a.bonds;
     constexpr int width = vector_width(D);
     const auto body = [&](int thread, RowRange range, double* sums) {

@@ -54,18 +54,18 @@ struct BondWorkspace {
     }
   }
 
-  /// Copies components of the two packed vectors to the columns, counted through both.
+  /// Copies the packed vectors to the columns, the components of the first one first.
   template <int D>
-  void pack_columns(int first_component, int components) {
+  void pack_columns() {
     if (runs.empty()) return;
     constexpr int width = row_width(D);
     const Index count = points.count();
 #pragma omp parallel for num_threads(threads.threads())
     for (Index i = 0; i < count; ++i) {
       const double* const row = &rows[std::size_t(i) * width];
-      for (int k = 0; k < components; ++k) {
-        const int c = first_component + k;
-        columns[k][i] = row[c < D ? c : width / 2 + c - D];
+      for (int c = 0; c < D; ++c) {
+        columns[c][i] = row[c];
+        columns[D + c][i] = row[width / 2 + c];
       }
     }
   }

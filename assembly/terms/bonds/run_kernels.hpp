@@ -109,7 +109,7 @@ class FailingBatchOf final : public FailingBatch {
 }
 
 /// Sums over the bonds of a piece of a run. All points have alike bonds, so the passes go through
-/// the k-th bonds of all points before the next ones, with one reference vector and kind. Each goes
+/// the k-th bonds of all points before the next ones, with one kind. Each goes
 /// thrice through the piece: differences between points, then square roots and divisions, then
 /// sums. One loop with all three waits for the roots of each batch: processors do not look far
 /// enough ahead. The passes are compiled once for all laws of damage: they are not inlined.
@@ -119,18 +119,15 @@ class RunPass {
   /// @param columns what is read, see the passes
   /// @param whole potential of the undamaged bonds
   /// @param failing null: none can
-  RunPass(const Points& points, const Bonds& bonds, const PointColumns& columns, const Whole& whole,
+  RunPass(const Bonds& bonds, const PointColumns& columns, const Whole& whole,
           const E& eigenstretch, FailingBatch* failing)
-      : points_(points),
-        bonds_(bonds),
+      : bonds_(bonds),
         columns_(columns),
         whole_(whole),
         eigenstretch_(eigenstretch),
         failing_(failing) {}
 
-  /// Adds forces and energy; the columns are displacements.
-  /// @param shortest length of a bond, less what cannot be told from zero, because reference
-  /// vectors are those of another point
+  /// Adds forces and energy; the columns are reference positions and displacements.
   /// @param sums of forces; null: not wanted
   template <bool with_energy>
   [[gnu::noinline]] void add_forces(const RunPiece& piece, PointColumns* sums, double& energy,
@@ -139,9 +136,9 @@ class RunPass {
     Row squared, change, tension;
     Lanes total = 0.0, least = shortest;
     for_each_bond(piece, [&](const Bond& bond) {
-      const Vector<D, Lanes> reference = bond.reference;
       for_each_batch(piece, [&](int b, Index i) {
-        const Vector<D, Lanes> displacement = difference(i, bond.ahead, 0);
+        const Vector<D, Lanes> reference = difference(i, bond.ahead, 0),
+                               displacement = difference(i, bond.ahead, D);
         const Vector<D, Lanes> current = plus<D>(reference, displacement);
         for (int c = 0; c < D; ++c) arm[c][b] = current[c];
         squared[b] = dot<D>(current, current);
@@ -149,13 +146,11 @@ class RunPass {
       });
       const Lanes inverse_length = bond.kind.inverse_length, weight = bond.kind.weight;
       const Lanes of_energy = bond.kind.weight / bond.kind.inverse_length;
-      const Lanes least_length = alike_within / bond.kind.inverse_length;
       for_each_batch(piece, [&](int b, Index i) {
         auto measure = Length::from_squares(inverse_length, squared[b], change[b]);
         const RunBatch batch = batch_of(piece, bond, i);
         relieve(measure, batch);
-        const Lanes above_zero = measure.current - least_length;
-        least = min(least, within(batch, above_zero, std::numeric_limits<double>::infinity()));
+        least = min(least, within(batch, measure.current, std::numeric_limits<double>::infinity()));
         const auto phi = density(piece, batch, measure.relative_change);
         if constexpr (with_energy) total += within(batch, phi.value, 0.0) * of_energy;
         tension[b] = within(batch, weight * phi.first * measure.inverse, 0.0);
@@ -215,7 +210,6 @@ class RunPass {
     Index ahead;
     Offset first, per_point, k;
     BondKind kind;
-    Vector<D, Lanes> reference;
   };
 
   template <class Visit>
@@ -223,14 +217,8 @@ class RunPass {
     const Offset first = bonds_.offset[piece.first];
     const Offset per_point = bonds_.offset[piece.first + 1] - first;
     for (Offset bond = first; bond < first + per_point; ++bond) {
-      const Index partner = bonds_.partner[bond];
-      Vector<D, Lanes> reference;
-      for (int c = 0; c < D; ++c) {
-        reference[c] = points_.reference[std::size_t(partner) * D + c] -
-                       points_.reference[std::size_t(piece.first) * D + c];
-      }
-      visit(
-          Bond{partner - piece.first, bond, per_point, bond - first, bonds_.kind[bond], reference});
+      visit(Bond{bonds_.partner[bond] - piece.first, bond, per_point, bond - first,
+                 bonds_.kind[bond]});
     }
   }
 
@@ -291,7 +279,6 @@ class RunPass {
     (Lanes(own + ahead) + force).copy_to(own + ahead);
   }
 
-  const Points& points_;
   const Bonds& bonds_;
   const PointColumns& columns_;
   const Whole& whole_;
