@@ -55,7 +55,7 @@ class Stencil(Folder):
     def test_bodies_without_rows_are_refused(self):
         for changes, words in (
             (["lattice.perturbation=0.2"], ["only 0 %"]),
-            (["lattice.shape=[{add=\"box\", min=[0, 0], max=[1.5, 0.5]}]"], ["only 0 %"]),
+            (["lattice.shape=[{add=\"box\", min=[0, 0], max=[1.5, 0.5]}]"], ["rows of lattice points"]),
             (["material={kinematics=\"linear\", youngs_modulus=1e9}"], ["finite deformation"]),
             (["material={model=\"state\", youngs_modulus=1e9, poisson_ratio=0.2}"], ["finite deformation"]),
         ):
