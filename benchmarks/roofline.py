@@ -24,8 +24,8 @@ BONDS_PER_POINT = {2: 14, 3: 61}  # unique, horizon 3.015 spacings
 # Pass: flops per bond, bytes per bond, vectors of a point that are read or written; by dimension d.
 ALONG_ROWS = 6 / 128  # of the list, read once for a piece
 PASSES = {
-    "energy": (lambda d: 7 * d + 14, lambda d: ALONG_ROWS, 4),
-    "gradient": (lambda d: 10 * d + 16, lambda d: ALONG_ROWS, 10),
+    "energy": (lambda d: 8 * d + 14, lambda d: ALONG_ROWS, 6),
+    "gradient": (lambda d: 11 * d + 16, lambda d: ALONG_ROWS, 12),
     "matrix_free_product": (lambda d: 11 * d + 10, lambda d: ALONG_ROWS, 12),
     "listed_energy": (lambda d: 9 * d + 16, lambda d: 6, 4),
     "listed_gradient": (lambda d: 12 * d + 16, lambda d: 6, 8),

@@ -87,7 +87,7 @@ bool cuts_struts(const BodySpecification& of) {
 void require_rows(const Body& body, int threads) {
   constexpr double least_share = 0.5;
   const auto refuse = [](const std::string& why) {
-    throw InputError("force_operator", "stencil", why + "; take \"bonds\"");
+    throw InputError("force_operator", "\"stencil\"", why + "; take \"bonds\"");
   };
   if (!body.model.find<BondTerm>()) refuse("is for bonds of finite deformation");
   const double share = share_in_runs(body.points, body.model.bonds(), threads);

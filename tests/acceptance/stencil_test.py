@@ -60,7 +60,7 @@ class Stencil(Folder):
             (["material={model=\"state\", youngs_modulus=1e9, poisson_ratio=0.2}"], ["finite deformation"]),
         ):
             with self.subTest(changes):
-                self.assert_refused(self.command("check", PLATE, *changes), "solver.operator", "stencil", 'take "bonds"', *words)
+                self.assert_refused(self.command("check", PLATE, *changes), "solver.operator", '"stencil"', 'take "bonds"', *words)
 
 
 if __name__ == "__main__":

@@ -108,7 +108,8 @@ void RunPieces::follow(const Bonds& bonds, const P& law, const double* largest_s
       for (Offset k = 0; k < per_point; ++k, ++bond) {
         const double onset = law.onset_of(bond);
         found.free_below = std::min(found.free_below, onset);
-        if (largest_stretch[bond] > onset) found.damaged.raise(k, i);
+        // Brittle bonds may be broken at their onset itself.
+        if (largest_stretch[bond] >= onset) found.damaged.raise(k, i);
       }
     }
     damage_[std::size_t(r)] = std::move(found);

@@ -172,6 +172,20 @@ TEST_P(BondRunsIn, DamageIsThatOfSingleBonds) {
   }
 }
 
+/// As in mode path, and where release breaks a bond.
+TEST_P(BondRunsIn, BondsMayBeBrokenAtTheirOnset) {
+  const BoxBody body = cut_body(rows_of(GetParam(), brittle));
+  const Model list = one_by_one(body.model);
+  Assembler along(body.points, body.model, 2), single(body.points, list, 2);
+  std::vector<double> largest(std::size_t(body.model.bonds().count()), 0.0);
+  for (std::size_t bond = 0; bond < largest.size(); bond += 7) largest[bond] = critical;
+  const History history = along.history_of(largest);
+  const std::vector<double> u = stretched(body.points, 5, 0.1);
+  const Sums found = sums_of(along, {u, history}, u.size());
+  expect_equal(found, sums_of(single, {u, history}, u.size()));
+  EXPECT_LT(found.energy, 0.95 * along.energy({u, along.initial_history()}).energy);
+}
+
 TEST_P(BondRunsIn, EigenstretchesAreThoseOfSingleBonds) {
   const BoxBody body = cut_body(rows_of(GetParam(), softening));
   const Model list = one_by_one(body.model);
