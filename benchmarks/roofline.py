@@ -116,12 +116,27 @@ def losses(now, before):
             yield name, lost
 
 
+def stored_ratios(file):
+    """Those of an earlier run, read before anything is measured."""
+    try:
+        before = json.loads(file.read_text())
+        if all(len(pair) == 2 and all(ratio > 0 for ratio in pair) for pair in before.values()):
+            return before
+    except (OSError, ValueError, AttributeError, TypeError) as error:
+        raise ValueError(f"{file}: cannot be read: {error}") from None
+    raise ValueError(f"{file}: needs two ratios above 0 for each pass, as --store writes them")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--picture", type=pathlib.Path)
     parser.add_argument("--store", type=pathlib.Path)
     parser.add_argument("--against", type=pathlib.Path)
     asked = parser.parse_args()
+    try:
+        before = stored_ratios(asked.against) if asked.against else {}
+    except ValueError as error:
+        parser.error(str(error))
     program = ROOT / "build/release/peristat_bench"
     rates = measure(program, 1, [f"--benchmark_filter=^(dgemm|stream_triad|{'|'.join(PASSES)})(/|$)"])
     points = list(points_of(rates))
@@ -131,9 +146,7 @@ def main():
     now = ratios(rates, points)
     if asked.store:
         asked.store.write_text(json.dumps(now, indent=1) + "\n")
-    if not asked.against:
-        return 0
-    lost = list(losses(now, json.loads(asked.against.read_text())))
+    lost = list(losses(now, before))
     for name, share in lost:
         print(f"{name}: {share:.0%} slower beside DGEMM and STREAM than in {asked.against}", file=sys.stderr)
     return 1 if lost else 0

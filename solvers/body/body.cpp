@@ -92,8 +92,8 @@ void require_rows(const Body& body, int threads) {
   if (!body.model.find<BondTerm>()) refuse("is for bonds of finite deformation");
   const double share = share_in_runs(body.points, body.model.bonds(), threads);
   if (share >= least_share) return;
-  refuse("is for rows of lattice points with alike bonds, which have only " +
-         std::to_string(std::lround(100.0 * share)) + " % of this body's bonds");
+  refuse("is for rows of lattice points with alike bonds; of this body's bonds only " +
+         std::to_string(std::lround(100.0 * share)) + " % are in such rows");
 }
 
 /// Makes the model of a body, and stores the bonds that its pre-cracks have cut.

@@ -47,10 +47,13 @@ operator = "stencil"
 
 class Stencil(Folder):
     def test_rows_through_fracture(self):
-        demanded, bonds = (self.results(PLATE, f'solver.operator="{name}"', name=name) for name in ("stencil", "bonds"))
-        last = demanded.steps[-1]
-        self.assertGreater(last.damage.max(), 0)
-        numpy.testing.assert_array_equal(last.displacement, bonds.steps[-1].displacement)
+        """Points that are moved by a billionth of the spacing have no rows: their bonds are summed one by one."""
+        rows = self.results(PLATE, name="rows").steps[-1]
+        single = self.results(PLATE, 'solver.operator="bonds"', "lattice.perturbation=1e-9", name="single").steps[-1]
+        self.assertGreater(rows.damage.max(), 0)
+        numpy.testing.assert_allclose(rows.damage, single.damage, atol=1e-12)
+        # Residuals of relaxation, 1e-6 of the forces, and the moved points differ.
+        numpy.testing.assert_allclose(rows.displacement, single.displacement, atol=1e-6 * abs(rows.displacement).max())
 
     def test_bodies_without_rows_are_refused(self):
         for changes, words in (

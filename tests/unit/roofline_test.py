@@ -1,6 +1,7 @@
 """The comparison of measured passes with stored ones: benchmarks/roofline.py."""
 
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -30,6 +31,15 @@ class Roofline(unittest.TestCase):
 
     def test_a_pass_that_is_no_more_measured_is_told(self):
         self.assertEqual(lost(RATES, self.before | {"old, 2D": [1.0, 1.0]}), ["old, 2D"])
+
+    def test_files_that_hold_no_ratios_are_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for text in (None, "{", "[]", '{"a": 1}', '{"a": [1, 0]}', '{"a": ["x", "y"]}'):
+                file = Path(folder) / "stored.json"
+                if text is not None:
+                    file.write_text(text)
+                with self.subTest(text), self.assertRaisesRegex(ValueError, "stored.json"):
+                    roofline.stored_ratios(file)
 
     def test_flops_are_those_of_the_points(self):
         point = next(point for point in roofline.points_of(RATES) if str(point) == "stored product, 3D")

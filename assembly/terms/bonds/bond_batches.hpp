@@ -279,6 +279,18 @@ template <class P>
   }
 }
 
+/// The potential of undamaged bonds.
+template <class P>
+auto whole_potential(const P& potential) {
+  if constexpr (PotentialWithHistory<P>) {
+    auto whole = potential.shape;
+    whole.modulus = potential.modulus;
+    return whole;
+  } else {
+    return potential;
+  }
+}
+
 /// The potential's first derivative alone, at the bonds' histories if it has one. The result of
 /// at_history passes through memory, which takes as long as the rest of a pass.
 template <class P>
@@ -294,9 +306,7 @@ template <class P>
         return potential.of_bond(first_bond + l)(double(e[l]), double(largest[l])).first;
       });
     }
-    auto whole = potential.shape;
-    whole.modulus = potential.modulus;
-    Lanes first = whole(e).first;
+    Lanes first = whole_potential(potential)(e).first;
     first = chosen(broken, 0.0, first);
     return first;
   } else {

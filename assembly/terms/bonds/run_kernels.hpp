@@ -10,18 +10,6 @@
 
 namespace peristat {
 
-/// The potential of undamaged bonds.
-template <class P>
-auto whole_potential(const P& potential) {
-  if constexpr (PotentialWithHistory<P>) {
-    auto whole = potential.shape;
-    whole.modulus = potential.modulus;
-    return whole;
-  } else {
-    return potential;
-  }
-}
-
 /// A batch of bonds of consecutive points: those that are k-th of their points.
 struct RunBatch {
   Index point;       ///< of lane 0
@@ -109,10 +97,10 @@ class FailingBatchOf final : public FailingBatch {
 }
 
 /// Sums over the bonds of a piece of a run. All points have alike bonds, so the passes go through
-/// the k-th bonds of all points before the next ones, with one kind. Each goes
-/// thrice through the piece: differences between points, then square roots and divisions, then
-/// sums. One loop with all three waits for the roots of each batch: processors do not look far
-/// enough ahead. The passes are compiled once for all laws of damage: they are not inlined.
+/// the k-th bonds of all points before the next ones, with one kind. Each goes thrice through the
+/// piece: differences between points, then square roots and divisions, then sums. One loop with all
+/// three waits for the roots of each batch: processors do not look far enough ahead. The passes are
+/// compiled once for all laws of damage: they are not inlined.
 template <int D, class Whole, class E>
 class RunPass {
  public:

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "assembly/operators/block_pattern.hpp"
@@ -59,7 +60,7 @@ class RunPieces {
   /// Most points of a piece.
   static constexpr Index longest = 128;
 
-  explicit RunPieces(std::vector<BondRun> runs);
+  explicit RunPieces(std::vector<BondRun> runs) : runs_(std::move(runs)) {}
 
   [[nodiscard]] bool empty() const { return runs_.empty(); }
 
