@@ -33,10 +33,9 @@ double body_bytes(const BodySize& size) {
   // Reference position, last and present displacement, present and last gradient, loads, working
   // force, right-hand side, solution, and equations as pairs of integers.
   const double vectors = 11.5 * d;
-  // Workspace: gathered rows and sums, see row_width and block_width, and the columns and sums of
-  // runs. With convolutions there are none, and a checkpoint determines the peak: four vectors as
-  // they are and as bytes.
-  const double gathered = (size.dimension == 3 ? 8.0 + 6.0 : 4.0 + 4.0) + 3.0 * d;
+  // Workspace: gathered rows and sums, see row_width and block_width. With convolutions there are
+  // none, and a checkpoint determines the peak: four vectors as they are and as bytes.
+  const double gathered = size.dimension == 3 ? 8.0 + 6.0 : 4.0 + 4.0;
   const double workspace = size.is_convolved ? 8.0 * d : gathered;
   const double scalars = 4.0;
   // Largest stretches, a copy of them for a step back, and flags.

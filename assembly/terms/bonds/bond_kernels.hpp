@@ -12,17 +12,18 @@ namespace peristat {
 /// Calls visit(pass) with the pass over runs of bonds with a potential.
 /// @param largest_stretch history of the bonds, which moves if it is not const
 template <int D, class P, class E, class Stretch, class Visit>
-void with_pass(const BondWorkspace& a, const P& potential, const E& eigenstretch,
-               Stretch* largest_stretch, DamageGrowth& growth, const Visit& visit) {
+void with_pass(const BondWorkspace& a, const RunWindow& window, const P& potential,
+               const E& eigenstretch, Stretch* largest_stretch, DamageGrowth& growth,
+               const Visit& visit) {
   const auto whole = whole_potential(potential);
   using Pass = RunPass<D, std::remove_const_t<decltype(whole)>, E>;
   if constexpr (PotentialWithHistory<P>) {
     double* changing = nullptr;
     if constexpr (!std::is_const_v<Stretch>) changing = largest_stretch;
     FailingBatchOf<P> failing(potential, a.points, largest_stretch, changing, growth);
-    visit(Pass(a.bonds, a.columns, whole, eigenstretch, &failing));
+    visit(Pass(a.bonds, window.vectors, whole, eigenstretch, &failing));
   } else {
-    visit(Pass(a.bonds, a.columns, whole, eigenstretch, nullptr));
+    visit(Pass(a.bonds, window.vectors, whole, eigenstretch, nullptr));
   }
 }
 
@@ -40,7 +41,6 @@ struct BondKernels {
                              std::conditional_t<commits, double*, const double*> largest_stretch,
                              std::span<double> result, Write how) {
     a.pack<D>(a.points.reference, displacement);
-    a.pack_columns<D>();
     std::vector<Evaluation>& parts = a.threads.evaluations;
     const Bonds& bonds = a.bonds;
     const bool energy_only = result.empty();
@@ -50,11 +50,12 @@ struct BondKernels {
       Lanes shortest = std::numeric_limits<double>::infinity();
       double energy = 0.0;
       DamageGrowth growth;
-      const auto on_piece = [&](const RunPiece& piece, PointColumns& columns) {
-        with_pass<D>(a, potential, eigenstretch, largest_stretch, growth, [&](const auto& pass) {
-          pass.template add_forces<with_energy>(piece, energy_only ? nullptr : &columns, energy,
-                                                shortest);
-        });
+      const auto on_piece = [&](const RunPiece& piece, RunWindow& window) {
+        with_pass<D>(a, window, potential, eigenstretch, largest_stretch, growth,
+                     [&](const auto& pass) {
+                       pass.template add_forces<with_energy>(
+                           piece, energy_only ? nullptr : &window.sums, energy, shortest);
+                     });
       };
       const auto on_rows = [&](Index first, Index last, double* to) {
         for (Index i = first; i < last; ++i) {
@@ -158,14 +159,13 @@ struct BondKernels {
         a.rows[std::size_t(i) * row + c] += a.points.reference[std::size_t(i) * D + c];
       }
     }
-    a.pack_columns<D>();
     const Bonds& bonds = a.bonds;
     constexpr int width = vector_width(D);
     const auto body = [&](int thread, RowRange range, double* sums) {
       DamageGrowth none;
-      const auto on_piece = [&](const RunPiece& piece, PointColumns& columns) {
-        with_pass<D>(a, potential, eigenstretch, largest_stretch, none,
-                     [&](const auto& pass) { pass.add_products(piece, projection, columns); });
+      const auto on_piece = [&](const RunPiece& piece, RunWindow& window) {
+        with_pass<D>(a, window, potential, eigenstretch, largest_stretch, none,
+                     [&](const auto& pass) { pass.add_products(piece, projection, window.sums); });
       };
       const auto on_rows = [&](Index first, Index last, double* to) {
         for (Index i = first; i < last; ++i) {

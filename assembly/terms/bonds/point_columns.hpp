@@ -11,15 +11,17 @@
 
 namespace peristat {
 
-/// Vectors of the points first .. last-1, one array per component: a batch of lanes reads those of
+/// Vectors of consecutive points, one array per component: a batch of lanes reads those of
 /// consecutive points at once. Lanes past the last point may be read, and zeros added to them.
 class PointColumns {
  public:
   PointColumns() = default;
-  PointColumns(int components, Index first, Index last)
-      : first_(first),
-        stride_(staggered(std::size_t(last - first) + lane_count)),
+  PointColumns(int components, Index points)
+      : stride_(staggered(std::size_t(points) + lane_count)),
         values_(std::size_t(components) * stride_, 0.0) {}
+
+  /// Point of the first entry from now on.
+  void start_at(Index first) { first_ = first; }
 
   /// Component of the vectors, by point.
   [[nodiscard]] double* operator[](int component) {

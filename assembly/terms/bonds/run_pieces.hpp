@@ -64,6 +64,15 @@ class RunPieces {
 
   [[nodiscard]] bool empty() const { return runs_.empty(); }
 
+  /// Points to the farthest partner ahead of a run's point.
+  [[nodiscard]] Index reach(const Bonds& bonds) const {
+    Index most = 0;
+    for (const BondRun& run : runs_) {
+      most = std::max(most, bonds.partner[bonds.offset[run.first + 1] - 1] - run.first);
+    }
+    return most;
+  }
+
   /// Finds the damaged bonds of a history, unless they are known.
   /// @param law of the bonds at that history
   /// @param version of the history, see History::version
