@@ -16,7 +16,7 @@ namespace {
 constexpr int most_corrections = 50;
 /// Relative change of w that ends the iterations; and that is enough if they do not come closer,
 /// because of round-off.
-constexpr double wanted = 1e-9, enough = 1e-6;
+constexpr double wanted = 1e-8, enough = 1e-6;
 constexpr double linear_tolerance = 1e-4;
 
 /// Largest difference between the solved body's history and the mean of the neighbours', relative
@@ -96,8 +96,11 @@ Neighbours::Neighbours(const Body& less, const Body& more, const Assembler& solv
 std::string Neighbours::follow(const SolvedBody& solved, const StepRecord& record,
                                const AcceptedState& accepted, const LoadAnswer* answer) {
   const std::array<Trial, 2> before{less().state, more().state};
-  std::string fault = equilibrate(solved, record, accepted, answer);
-  if (!fault.empty()) return fault;
+  if (!equilibrate(solved, record, accepted, answer)) {
+    return "no equilibria have been found beside the state; the step may have damaged bonds one "
+           "after another at one load";
+  }
+  if (record.step == 0 && less().body.conditions->control()) held_ = -control_gap(record);
   for (std::size_t side = 0; side < 2; ++side) add_work(of_[side], record, before[side]);
   if (!solved.assembler.model().has_history()) return {};
   for (Neighbour& of : of_) {
@@ -129,25 +132,25 @@ void Neighbours::place(const FreeDofs& free, const StepRecord& record,
   }
 }
 
-std::string Neighbours::equilibrate(const SolvedBody& solved, const StepRecord& record,
-                                    const AcceptedState& accepted, const LoadAnswer* answer) {
+bool Neighbours::equilibrate(const SolvedBody& solved, const StepRecord& record,
+                             const AcceptedState& accepted, const LoadAnswer* answer) {
   const FreeDofs& free = solved.free;
   const EquilibriumProblem problem{solved.assembler, *less().body.conditions, free};
   Linearisation linearisation(problem, solved.solver, solved.tangent, accepted.external_force);
   std::vector<double> force(change_.size()), step;
-  double last = std::numeric_limits<double>::infinity();
-  place(free, record, accepted.trial.displacement);
-  for (int k = 0; k < most_corrections; ++k, ++iterations_) {
-    if (less().state.degenerate || more().state.degenerate) break;
-    for (std::size_t dof = 0; dof < force.size(); ++dof) {
-      force[dof] = 0.5 * (more().external_force[dof] - more().state.gradient[dof] -
-                          less().external_force[dof] + less().state.gradient[dof]);
-    }
+  double size = std::numeric_limits<double>::infinity(), residual = 0.0;
+  for (int k = 0; k < most_corrections; ++k, ++corrections_) {
+    place(free, record, accepted.trial.displacement);
+    if (less().state.degenerate || more().state.degenerate) return false;
+    const double last_size = size, last_residual = residual;
+    find_half_residual(force);
+    residual = norm_of_free(free, force);
     const double gap = answer ? control_gap(record) : 0.0;
-    if (norm_of_free(free, force) == 0.0 && gap == 0.0) last = 0.0;
-    if (last == 0.0) break;
+    if (residual == 0.0 && gap == 0.0) return true;
+    // The next correction would be smaller than the last one as the residual is.
+    if (k > 0 && size * residual <= wanted * last_residual) return true;
     if (linearisation.solve_again(force, {}, linear_tolerance, step) != LinearOutcome::solved) {
-      return "the linear solver has failed";
+      return false;
     }
     if (answer) {
       const double change =
@@ -156,24 +159,24 @@ std::string Neighbours::equilibrate(const SolvedBody& solved, const StepRecord& 
       load_change_ += change;
     }
     add_scaled(change_, 1.0, step);
-    place(free, record, accepted.trial.displacement);
     // A change far below that of a displacement proportional to the parameter is round-off.
     const double scale = std::max(norm_of_free(free, change_),
-                                  relative_change_ * norm_of_free(free, of_[0].state.displacement));
-    const double size = scale > 0.0 ? norm_of_free(free, step) / scale : 0.0;
-    if (size <= wanted || (size <= enough && size > 0.3 * last)) {
-      last = 0.0;
-      break;
+                                  relative_change_ * norm_of_free(free, less().state.displacement));
+    size = scale > 0.0 ? norm_of_free(free, step) / scale : 0.0;
+    if (!std::isfinite(size)) return false;
+    if (size <= wanted || (size <= enough && size > 0.3 * last_size)) {
+      place(free, record, accepted.trial.displacement);
+      return true;
     }
-    if (!std::isfinite(size)) break;
-    last = size;
   }
-  if (last > 0.0) {
-    return "no equilibria have been found beside the state; the step may have damaged bonds one "
-           "after another at one load";
+  return false;
+}
+
+void Neighbours::find_half_residual(std::span<double> force) {
+  for (std::size_t dof = 0; dof < force.size(); ++dof) {
+    force[dof] = 0.5 * (more().external_force[dof] - more().state.gradient[dof] -
+                        less().external_force[dof] + less().state.gradient[dof]);
   }
-  if (record.step == 0 && less().body.conditions->control()) held_ = -control_gap(record);
-  return {};
 }
 
 double Neighbours::control_gap(const StepRecord& record) const {

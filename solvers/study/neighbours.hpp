@@ -64,14 +64,16 @@ class Neighbours {
 
   [[nodiscard]] Neighbour& less() { return of_[0]; }
   [[nodiscard]] Neighbour& more() { return of_[1]; }
-  [[nodiscard]] int iterations() const { return iterations_; }  ///< so far
+  [[nodiscard]] int corrections() const { return corrections_; }  ///< so far
 
  private:
   /// Moves both to u -+ w, and evaluates them there.
   void place(const FreeDofs& free, const StepRecord& record, std::span<const double> displacement);
-  /// Finds the change of the displacement.
-  [[nodiscard]] std::string equilibrate(const SolvedBody& solved, const StepRecord& record,
-                                        const AcceptedState& accepted, const LoadAnswer* answer);
+  /// Finds the change of the displacement, and of a load that is found; false if there is none.
+  [[nodiscard]] bool equilibrate(const SolvedBody& solved, const StepRecord& record,
+                                 const AcceptedState& accepted, const LoadAnswer* answer);
+  /// Half the difference of their residuals [N].
+  void find_half_residual(std::span<double> force);
   void add_work(Neighbour& of, const StepRecord& record, const Trial& before) const;
   /// Half the difference of the controlled displacements that they have and that they should have.
   [[nodiscard]] double control_gap(const StepRecord& record) const;
@@ -81,7 +83,7 @@ class Neighbours {
   std::vector<double> change_;  // of the displacement
   double load_change_ = 0.0;    // of a load that is found
   double held_ = 0.0;           // change of the controlled displacement at load 0
-  int iterations_ = 0;
+  int corrections_ = 0;
 };
 
 }  // namespace peristat

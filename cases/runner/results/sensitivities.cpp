@@ -6,6 +6,7 @@
 #include <set>
 
 #include "assembly/terms/damage.hpp"
+#include "cases/runner/input/quantity.hpp"
 #include "cases/runner/input/toml_text.hpp"
 #include "cases/runner/input/toml_value.hpp"
 #include "cases/runner/results/state_values.hpp"
@@ -62,9 +63,13 @@ std::optional<double> number_at(const TomlValue& document, const std::string& ke
       at = end;
     }
   }
-  if (value && value->kind == TomlValue::Kind::real) return value->real;
-  if (value && value->kind == TomlValue::Kind::integer) return double(value->integer);
-  return std::nullopt;
+  if (!value) return std::nullopt;
+  if (value->kind == TomlValue::Kind::real) return value->real;
+  if (value->kind == TomlValue::Kind::integer) return double(value->integer);
+  // Components of forces and displacements are expressions, also those that are numbers.
+  const bool is_number = value->kind == TomlValue::Kind::string && !value->string.empty() &&
+                         length_of_number(value->string) == value->string.size();
+  return is_number ? std::optional(std::stod(value->string)) : std::nullopt;
 }
 
 /// Refuses bodies whose damage does not follow from one state to the next.
