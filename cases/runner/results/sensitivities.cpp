@@ -120,8 +120,10 @@ Sensitivities::Parameter::Parameter(const Case& from, const TomlValue& resolved,
   change = relative_change * std::abs(value);
   for (std::size_t side = 0; side < 2; ++side) {
     const double changed = value + (side == 0 ? -change : change);
-    cases[side] = std::make_unique<const Case>(
+    auto beside = std::make_unique<Case>(
         read_case(from.file, from.as_resolved, {{key, toml_number(changed)}}, from.givens));
+    beside->sensitivity = {};  // it has no bodies beside it
+    cases[side] = std::move(beside);
   }
 }
 
