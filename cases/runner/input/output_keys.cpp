@@ -275,7 +275,7 @@ Table<SensitivitySpecification> sensitivity_keys() {
              "are differentiated ([sensitivities](sensitivities.md))")
                .default_words("none")
                .then([](auto& at, auto& sensitivity) {
-                 if (at.so_far.solver.mode != Mode::newton)
+                 if (!sensitivity.over.empty() && at.so_far.solver.mode != Mode::newton)
                    at.refuse("needs solver.mode = \"newton\", not \"" +
                              std::string(at.so_far.solver.mode.name) + "\"");
                  for (std::size_t k = 0; k < sensitivity.over.size(); ++k)
