@@ -143,6 +143,18 @@ class Sensitivities(Folder):
         self.assertEqual(counts, [9, 9, 9])
         self.assertNotEqual(table(self.folder / "out/sensitivities.csv")[-1]["d_load_factor"], 0.0)
 
+    def test_softening_by_release(self):
+        for model, ratio in (("state", 0.2), ("cpd", 0.4)):
+            with self.subTest(model):
+                case = STRIP.replace("strength = 4e6", "")
+                changes = (f"material.model={model}", f"material.poisson_ratio={ratio}", "loading.table=[0, 0.25]",
+                           "loading.steps=5")  # fmt: skip
+                keys = (MATERIAL[0], "material.poisson_ratio", MATERIAL[1])
+                # Commits end within a tolerance, which differences of runs show.
+                counts = self.assert_differences(case, keys, *changes, tolerance=1e-4)
+                self.assertEqual(counts, [6, 6, 6])
+                self.assertGreater(table(self.folder / "out/history.csv")[-1]["dissipated_energy"], 0.0)
+
     def test_models_and_loads(self):
         flat = dict(dimension=2, low=[0, 0], high=[1.5, 0.4], zero=[0, 0], force=[0, -2e4])
         solid = dict(dimension=3, low=[0, 0, 0], high=[1.2, 0.3, 0.3], zero=[0, 0, 0], force=[0, -2e3, 0])
@@ -168,7 +180,7 @@ class Sensitivities(Folder):
 
     def test_end_where_damage_and_equilibrium_take_turns(self):
         self.run_case(STRIP + CONTROL, "loading.table=[0, 3e-3]", "loading.steps=20", over(*MATERIAL))
-        self.assertIn("warning: sensitivities end before step 10: material.youngs_modulus: no equilibria", self.ended.output)
+        self.assertIn("warning: sensitivities end before step 10: material.youngs_modulus: other bonds", self.ended.output)
         steps = [int(row["step"]) for row in table(self.folder / "out/sensitivities.csv")]
         self.assertEqual(max(steps), 9)
         self.assertEqual(len(steps), 30)
@@ -184,8 +196,10 @@ class Sensitivities(Folder):
             with self.subTest(keys=keys):
                 self.assertIn(words, self.refusal(STRIP, over(*keys)))
         self.assertIn('needs solver.mode = "newton"', self.refusal(STRIP, over(MATERIAL[0]), "solver.mode=adaptive"))
-        by_release = ("material.model=state", "material.poisson_ratio=0.3")
-        self.assertIn("bonds that fail by their stretch", self.refusal(STRIP, over(MATERIAL[0]), *by_release))
+        by_stretch = ("material.model=cpd", "material.poisson_ratio=0.4", "material.damage.drive=stretch")
+        strip = STRIP.replace("strength = 4e6", "")
+        self.assertIn("not by stretch", self.refusal(strip, over(MATERIAL[0]), *by_stretch))
+        self.assertIn("is not for contact", self.refusal(STRIP + '[[contact]]\nset = "pulled"\n', over(MATERIAL[0])))
 
     def test_the_table_belongs_to_the_run(self):
         few = ("loading.table=[0, 0.1]", "loading.steps=2")

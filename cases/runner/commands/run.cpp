@@ -342,6 +342,9 @@ class CaseRun {
     LoadSteppingObserver told;
     told.iteration = [this](const IterationRecord& record) { recorder_->iteration(record); };
     told.decision = [this](const DecisionRecord& record) { recorder_->decided(record); };
+    if (sensitivities_) {
+      told.commits = [this](const UncommittedState& state) { sensitivities_->follow(state); };
+    }
     told.accepted = [this](const StepRecord& record, const AcceptedState& state) {
       recorder_->accepted(record, state);
       if (sensitivities_) warn(sensitivities_->add(*recorder_->last(), state));

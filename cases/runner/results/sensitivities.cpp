@@ -75,12 +75,14 @@ std::optional<double> number_at(const TomlValue& document, const std::string& ke
 /// Refuses bodies whose damage does not follow from one state to the next.
 void refuse_bodies_without_derivatives(const Body& body) {
   const auto refuse = [](const std::string& why) { throw InputError("sensitivity.over", "", why); };
-  const bool is_of_bonds = takes(body.specification, Option::critical_stretch);
-  if (body.model.has_history() && (!is_of_bonds || body.model.fails_by_release() ||
-                                   body.model.fails_in_avalanches() || body.model.struts())) {
-    refuse(
-        "is for damage of bonds that fail by their stretch: by release, with struts, and where "
-        "points fail, damage and equilibrium take turns within a step");
+  const bool is_of_points = body.model.has_history() && !body.model.failing_bonds();
+  if (is_of_points || body.model.struts()) {
+    refuse("is for damage of bonds, without struts: points and struts that fail jump");
+  }
+  const OptionSet can = options_of(body.specification);
+  const bool loses_more = can.has(Option::critical_stretch) && !can.has(Option::events);
+  if (body.model.has_history() && loses_more && !body.model.fails_by_release()) {
+    refuse("is for damage of this model by release, not by stretch (material.damage.drive)");
   }
   if (!body.model.balances().potential) refuse("is for models with an energy");
   if (!body.specification.contacts.empty() || !body.conditions->obstacles().none()) {
@@ -176,24 +178,59 @@ void Sensitivities::open(const std::filesystem::path& folder) {
   table_ = std::make_unique<CsvTable>(folder / file_name, columns_);
 }
 
+void Sensitivities::follow(const UncommittedState& state) {
+  if (has_ended_) return;
+  // Each attempt of a step begins with the history of the accepted state.
+  const std::uint64_t version = state.trial.history.version();
+  if (!version_of_start_) version_of_start_ = version;
+  if (version == *version_of_start_ || !has_followed_) {
+    fault_.clear();
+    for (const auto& parameter : parameters_) parameter->neighbours->begin();
+  }
+  move_to(state, true);
+  has_followed_ = true;
+}
+
+void Sensitivities::move_to(const UncommittedState& state, bool commits) {
+  if (!fault_.empty()) return;
+  const SolvedBody solved = study_.equations().solved();
+  std::optional<LoadAnswer> answer;
+  if (state.at.load && study_.body().conditions->control()) {
+    answer = load_answer(solved, *study_.body().conditions, state);
+    if (!answer) fault_ = "the linear solver has failed";
+  }
+  for (const auto& parameter : parameters_) {
+    if (!fault_.empty()) return;
+    Neighbours& neighbours = *parameter->neighbours;
+    const std::string fault = neighbours.follow(solved, state, answer ? &*answer : nullptr);
+    if (!fault.empty()) fault_ = parameter->key + ": " + fault;
+    if (commits) neighbours.commit();
+  }
+}
+
 std::string Sensitivities::add(const StepRecord& record, const AcceptedState& state) {
   if (has_ended_) return {};
-  const auto ends = [&](const std::string& why) {
-    has_ended_ = true;
-    return "sensitivities end before step " + std::to_string(record.step) + ": " + why;
-  };
-  if (std::ranges::any_of(state.piece, [](std::int32_t piece) { return piece > 0; })) {
-    return ends("a piece has come off");
+  const bool is_preload = record.step == 0;
+  if (!has_followed_) {
+    fault_.clear();
+    for (const auto& parameter : parameters_) parameter->neighbours->begin();
+    LoadPoint at(record.stage);
+    if (study_.body().conditions->control() && !is_preload) at.load = record.load_factor;
+    move_to({state.trial, state.external_force, at}, false);
   }
-  const SolvedBody solved = study_.equations().solved();
-  const bool is_found = study_.body().conditions->control() && record.step > 0;
-  const std::optional<LoadAnswer> answer =
-      is_found ? load_answer(solved, *study_.body().conditions, record, state) : std::nullopt;
-  if (is_found && !answer) return ends("the linear solver has failed");
+  if (std::ranges::any_of(state.piece, [](std::int32_t piece) { return piece > 0; })) {
+    fault_ = "a piece has come off";
+  }
   for (const auto& parameter : parameters_) {
-    const std::string fault =
-        parameter->neighbours->follow(solved, record, state, answer ? &*answer : nullptr);
-    if (!fault.empty()) return ends(parameter->key + ": " + fault);
+    if (!fault_.empty()) break;
+    const std::string fault = parameter->neighbours->accept(state.trial.history, is_preload);
+    if (!fault.empty()) fault_ = parameter->key + ": " + fault;
+  }
+  has_followed_ = false;
+  version_of_start_ = state.trial.history.version();
+  if (!fault_.empty()) {
+    has_ended_ = true;
+    return "sensitivities end before step " + std::to_string(record.step) + ": " + fault_;
   }
   for (const auto& parameter : parameters_) {
     table_->append(derivatives(*parameter, record, state));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -32,12 +33,16 @@ class Sensitivities {
 
   /// Creates the table in the results folder.
   void open(const std::filesystem::path& folder);
+  /// Follows an equilibrium that is about to be committed.
+  void follow(const UncommittedState& state);
   /// Adds the rows of an accepted state.
   /// @return why the derivatives end before this state, once; empty otherwise
   [[nodiscard]] std::string add(const StepRecord& record, const AcceptedState& state);
 
  private:
   struct Parameter;
+  /// Lets all bodies follow; a failure becomes the attempt's fault.
+  void move_to(const UncommittedState& state, bool commits);
   [[nodiscard]] StepRecord record_of(const Parameter& parameter, std::size_t side,
                                      const StepRecord& accepted, const AcceptedState& state) const;
   [[nodiscard]] Row derivatives(const Parameter& parameter, const StepRecord& accepted,
@@ -52,6 +57,9 @@ class Sensitivities {
   std::vector<std::unique_ptr<Parameter>> parameters_;
   std::unique_ptr<CsvTable> table_;
   bool has_ended_ = false;
+  std::optional<std::uint64_t> version_of_start_;  // of the history before the step
+  bool has_followed_ = false;                      // an equilibrium of the step
+  std::string fault_;                              // of the present attempt of the step
 };
 
 }  // namespace peristat
