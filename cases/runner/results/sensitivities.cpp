@@ -79,9 +79,8 @@ void refuse_bodies_without_derivatives(const Body& body) {
   if (is_of_points || body.model.struts()) {
     refuse("is for damage of bonds, without struts: points and struts that fail jump");
   }
-  const OptionSet can = options_of(body.specification);
-  const bool loses_more = can.has(Option::critical_stretch) && !can.has(Option::events);
-  if (body.model.has_history() && loses_more && !body.model.fails_by_release()) {
+  const bool is_bond = body.specification.material.model == MaterialModel::bond;
+  if (body.model.has_history() && !is_bond && !body.model.fails_by_release()) {
     refuse("is for damage of this model by release, not by stretch (material.damage.drive)");
   }
   if (!body.model.balances().potential) refuse("is for models with an energy");
