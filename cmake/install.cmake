@@ -53,7 +53,7 @@ endif()
 install(PROGRAMS peristat TYPE BIN)
 install(TARGETS peristat RUNTIME DESTINATION ${program_folder})
 set(tools_folder share/peristat)
-foreach(tool IN ITEMS sweep trust meshes)
+foreach(tool IN ITEMS sweep fit trust meshes)
   install(DIRECTORY cases/runner/${tool} DESTINATION ${tools_folder} FILES_MATCHING PATTERN *.py)
 endforeach()
 install(DIRECTORY python/peristat/ DESTINATION ${python_folder}

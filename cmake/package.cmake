@@ -24,6 +24,9 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
     "libopenblas0-openmp, openmpi-bin, python3 (>= 3.11), python3 (<< 3.12), python3-munkres, python3-numpy, python3-h5py, python3-matplotlib, python3-pil, python3-meshio, python3-netcdf4")
 
+# For fits alone: it brings a compiler with it.
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-scipy")
+
 # Compile the package of Python, and remove what was compiled.
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/postinst ${PROJECT_SOURCE_DIR}/cmake/prerm)
 

@@ -8,6 +8,8 @@ from .dial import Dial as Dial
 from .errors import InputError as InputError
 from .errors import MachineError as MachineError
 from .errors import MemoryError as MemoryError
+from .fitting.api import Fit as Fit
+from .fitting.api import fit as fit
 from .law import sampled_law as sampled_law
 from .points import Points as Points
 from .results import Results as Results

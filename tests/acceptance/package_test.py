@@ -49,6 +49,7 @@ class Package(Folder):
         self.assert_completed(self.launch("report", "results/strip"))
         sweep = self.launch("sweep", "strip.toml", "--vary", "material.youngs_modulus=1e9,2e9", "--output", "moduli")
         self.assert_completed(sweep)
+        self.assert_completed(self.launch("fit", "--help"))
 
         self.assertTrue((self.folder / "results/strip/results.h5").is_file())
         self.assertGreater(len(list((self.folder / "results/strip/plots").glob("*.png"))), 1)
@@ -144,7 +145,7 @@ class Package(Folder):
         told = self.launch("help").output
         self.assertNotIn("./peristat", told)
         listed = set(re.findall(r"^  peristat ([a-z-]+)", told, re.MULTILINE))
-        self.assertLessEqual({"run", "resume", "check", "sweep", "trust", "plot", "report", "python", "help"}, listed)
+        self.assertLessEqual({"run", "resume", "check", "sweep", "fit", "trust", "plot", "report", "python", "help"}, listed)
         self.assertTrue(listed.isdisjoint({"build", "test", "bench", "package", "site"}))
         first = re.search(r"Start with: peristat run (.*)", told)[1]
         self.assert_completed(self.launch("check", first))

@@ -34,6 +34,8 @@ run: ps.Run = case.body().solve(mode="adaptive", on_step=lambda step: step.stop(
 furthest: float = run.displacement().max()
 for step in case.steps():
     loads: float = step.load + step.field("damage").max()
+found: ps.Fit = ps.fit(case, "curve.csv", ["material.youngs_modulus"], start={"material.youngs_modulus": "70 GPa"}, jobs=2)
+values: dict[str, float] = found.values
 results: ps.Results = ps.open_results("results/strip")
 print(results.history["load_factor"], ps.resume("results/strip", {"loading.steps": 3}).converged, ps.versions()["peristat"])
 """
@@ -92,7 +94,7 @@ class Types(unittest.TestCase):
         for name, module in ps.NAMES.items():
             found = next(
                 one
-                for file in (f"{module}.py", "_core.pyi")  # of C++: Step
+                for file in (f"{module.replace('.', '/')}.py", "_core.pyi")  # of C++: Step
                 for one in ast.parse((PACKAGE / file).read_text("utf-8")).body
                 if isinstance(one, (ast.ClassDef, ast.FunctionDef)) and one.name == name
             )

@@ -55,12 +55,13 @@ class Launcher(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name).resolve()
         root = self.folder / "house"
-        for part in ["src", "assembly", "solvers", "python/core", "python/peristat/pictures", "cases/runner/sweep", "cases/runner/trust", "cmake", "build/release"]:
+        for part in ["src", "assembly", "solvers", "python/core", "python/peristat/pictures", "cases/runner/sweep", "cases/runner/fit", "cases/runner/trust", "cmake", "build/release"]:
             (root / part).mkdir(parents=True)
         for name in ["peristat", "CMakeLists.txt", "CMakePresets.json"]:
             shutil.copy(ROOT / name, root)
         (root / "python/peristat/pictures/__main__.py").write_text(PLOT)
         (root / "cases/runner/sweep/sweep.py").write_text(SWEEP)
+        (root / "cases/runner/fit/fit.py").write_text(SWEEP.replace('"sweep"', '"fit"'))
         (root / "cases/runner/trust/trust.py").write_text(SWEEP.replace('"sweep"', '"trust"'))
         (root / "build/release/peristat").write_text(PROGRAM)
         (root / "build/release/peristat").chmod(0o755)
@@ -203,6 +204,12 @@ class Launcher(unittest.TestCase):
         self.assertEqual(result.stdout, f"sweep ['a case.toml', '--vary', 'x=1,2'] {program}\n")
         self.assertIn("sweep ['--help']", self.launch("help", "sweep").stdout)
 
+    def test_a_fit_knows_the_program_and_its_packages(self):
+        result = self.launch("fit", "a case.toml", "--over", "x")
+        program = self.root / "build/release/peristat"
+        self.assertEqual((result.stdout, result.returncode), (f"fit ['a case.toml', '--over', 'x'] {program}\n", 3), result.stderr)
+        self.assertIn("fit ['--help']", self.launch("help", "fit").stdout)
+
     def test_help_of_a_command_is_the_commands(self):
         self.assertIn("[run][--help]", self.launch("help", "run").stdout)
         self.assertIn("pictures of --help", self.launch("help", "plot").stdout)
@@ -338,7 +345,7 @@ class Launcher(unittest.TestCase):
         log.write_text("[1/1] Building\n")
         complete = self.run_ci('echo "$@"')
         self.assertEqual(complete.returncode, 0, complete.stderr)
-        self.assertEqual(complete.stdout.splitlines(), ["test -N", "test --all -E printed_(cases|tutorial)"])
+        self.assertEqual(complete.stdout.splitlines(), ["test -N", "test --all -E printed_(cases|tutorial|fit)"])
         self.assertRegex(complete.stderr.splitlines()[-1], "no part of this run: numbers printed in long cases .* sanitizers")
         slow = self.run_ci('[[ $2 == -N ]] || exec sleep 20', PERISTAT_CI_SECONDS="1")
         self.assertEqual(slow.returncode, 75)
@@ -371,7 +378,7 @@ class Launcher(unittest.TestCase):
         shutil.rmtree(self.root / "build")
         self.assertRegex(self.launch("version").stdout, r"^peristat \d+\.\d+\.\d+\n$")
         self.assertIn("check-tangent", self.launch("help").stdout)
-        for command in ("sweep", "trust"):
+        for command in ("sweep", "fit", "trust"):
             self.assertIn(f"{command} ['--help']", self.launch(command, "--help").stdout)
         self.assertEqual(self.launch().returncode, 2)
         self.assertFalse((self.root / "build").exists())

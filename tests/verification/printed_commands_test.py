@@ -1,7 +1,7 @@
 """Commands in README and pages are accepted, and do what the text says.
 
 A `run` makes one step, since whole runs take up to minutes; `printed_numbers_test.py` and tests/slow make whole ones. `sweep`
-is checked with its first values. Commands of the gallery are `run`s of shipped cases, which `command_line_test.py` checks.
+is checked with its first values, `fit` with its starting values. Commands of the gallery are `run`s of shipped cases, which `command_line_test.py` checks.
 """
 
 import re
@@ -36,7 +36,7 @@ ELSEWHERE = {
     "PERISTAT_PROGRAM=build/release/peristat nice /usr/bin/python3 -B docs/gallery/make.py": "runs all cases; gallery_test.py",
     "PERISTAT_PROGRAM=build/sanitize/peristat": "the same under the sanitizers",
 }
-PROGRAM = "run", "resume", "check", "check-tangent", "calibrate", "sweep", "keys", "schema", "points", "plot", "help"
+PROGRAM = "run", "resume", "check", "check-tangent", "calibrate", "sweep", "fit", "keys", "schema", "points", "plot", "help"
 GALLERY = ROOT / "docs/gallery.md"
 
 
@@ -56,7 +56,7 @@ class Commands(Folder):
 
     def assert_does(self, words):
         command, *rest = words
-        if command == "sweep":
+        if command in ("sweep", "fit"):
             sets = [rest[k + 1] for k, word in enumerate(rest) if word == "--set"]
             sets += [re.split(r",(?![^\[]*\])", rest[k + 1])[0] for k, word in enumerate(rest) if word == "--vary"]
             words = ["check", rest[0], *settings(*sets)]

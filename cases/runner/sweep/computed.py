@@ -34,10 +34,12 @@ class Keys:
     def __init__(self, case_text: bytes, settings: list[str], later: set[str] = frozenset()):
         """later: keys that will be computed later, so that their values in the case file must not be used"""
         self._later = later
+        self.fault = ""  # why the case file can't be read
         try:
             self._case = tomllib.loads(case_text.decode())
-        except (UnicodeDecodeError, tomllib.TOMLDecodeError):
-            self._case = {}  # the program reports the error
+        except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+            self._case = {}  # the program reports the error, too
+            self.fault = str(error)
         for setting in settings:
             key, _, value = setting.partition("=")
             self._put(_parts(key), _toml_value(value))
@@ -46,14 +48,21 @@ class Keys:
         """@raises WrongInput if there is none"""
         if key in self._later:
             raise WrongInput(f"{key} is computed later, or from itself: give the keys that it needs before it")
+        value = self.given(key)
+        if value is None:
+            raise WrongInput(f"{key} is neither in the case file nor on the command line")
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise WrongInput(f"{key} is not a number; a number with a unit in quotes can't be used in an expression")
+        return value
+
+    def given(self, key: str):
+        """The value of a key as it was given, of any type; None without one."""
         value = self._case
         for part in _parts(key):
             try:
                 value = value[part]
             except (KeyError, IndexError, TypeError):
-                raise WrongInput(f"{key} is neither in the case file nor on the command line") from None
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise WrongInput(f"{key} is not a number; a number with a unit in quotes can't be used in an expression")
+                return None
         return value
 
     def length_unit(self) -> float:

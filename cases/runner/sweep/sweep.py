@@ -20,6 +20,8 @@ places = (folder / name for folder in Path(__file__).resolve().parents for name 
 sys.path[1:1] = [str(place) for place in places if (place / "peristat").is_dir()]
 
 from computed import Keys, compute, split_computed
+from ensemble import SIGN as ENSEMBLE
+from ensemble import Sample, sample, seeds, size_effect, write_ensemble
 from jobs import FolderLock, Jobs, bounded, estimated_memory
 from own_files import PICTURE, TABLE, ForeignFile, picture, remove_own, require_own, write_own
 from program import Ending, Program
@@ -33,7 +35,8 @@ STATUS = {DONE: "completed", NOT_CONVERGED: "not_converged", OUT_OF_MEMORY: "out
           INTERRUPTED: "interrupted"}  # fmt: skip
 WORDS = {NOT_CONVERGED: "did not converge", OUT_OF_MEMORY: "out of memory", INTERRUPTED: "interrupted",
          WRONG_INPUT: "refused", MACHINE_FAILED: "the machine failed"}  # fmt: skip
-MADE_OF_THE_TABLE = {"sweep.png": PICTURE, "refinement.csv": SIGN, "refinement.png": PICTURE}  # and signatures
+MADE_OF_THE_TABLE = {"sweep.png": PICTURE, "refinement.csv": SIGN, "refinement.png": PICTURE, "ensemble.csv": ENSEMBLE,
+                     "ensemble.png": PICTURE}  # and signatures
 REFINED = "lattice.spacing"
 REGIONS = "lattice.refine"  # whose spacings are refined with it
 # Errors of writing: the disk is full or failing, or a limit of the shell is reached.
@@ -62,6 +65,8 @@ class Sweep:
     refined: int | None = None  # number of the key that --refine varies
     length_unit: float = 1.0  # of the spacings that --refine varies [m]
     linked: frozenset[int] = frozenset()  # numbers of that key, of the keys that vary with it, and of computed ones
+    seeds: frozenset[int] = frozenset()  # numbers of the keys that --seeds varies
+    per: str = ""  # expression by which peaks of an ensemble are divided
 
 
 # ----------------------------------------------------------------------------------------- running
@@ -80,6 +85,8 @@ def run_all(sweep: Sweep, program: Program) -> int:
     say(f"sweep: {sweep.directory / 'sweep.csv'}")
     if sweep.refined is not None:
         all_runs.codes.add(_tell_refinements(sweep, rows))
+    if sweep.seeds:
+        all_runs.codes.add(_tell_ensemble(sweep, rows))
     all_runs.codes.add(_draw(sweep.directory / "sweep.png", lambda: _sweep_figure(sweep, [row["status"] for row in rows])))
     return _worst(all_runs.codes)
 
@@ -272,6 +279,58 @@ def _tell_refinements(sweep: Sweep, rows: list[dict]) -> int:
     return _draw(sweep.directory / "refinement.png", lambda: _refinement_figure(sweep, found))
 
 
+def _tell_ensemble(sweep: Sweep, rows: list[dict]) -> int:
+    """@return as `_draw`"""
+    peaks = {column: max(row.get(column) or 0.0 for row in rows) for row in rows for column in row if column.startswith("peak_reaction:")}
+    if not peaks:
+        say("sweep: no ensemble: no run has a reaction")
+        return DONE
+    column = next(column for column, peak in peaks.items() if peak >= (1 - 1e-6) * max(peaks.values()))
+    own = [place for place in range(len(sweep.keys)) if place not in sweep.seeds]
+    groups: dict[tuple[str, ...], list[int]] = {}
+    for number, combination in enumerate(sweep.combinations):
+        groups.setdefault(tuple(combination.values[place] for place in own), []).append(number)
+    samples = []
+    for values, numbers in groups.items():
+        done = [number for number in numbers if rows[number]["status"] == "completed"]
+        if len(done) < len(numbers):
+            say(f"sweep: {', '.join(values)}: {len(numbers) - len(done)} of {len(numbers)} runs are left out: they did not complete")
+        if done:
+            folders = [sweep.combinations[number].folder for number in done]
+            samples.append(sample(values, folders, column.partition(":")[2], _divisor(sweep, sweep.combinations[done[0]].settings)))
+    quantity = f"{column} [N]" if not sweep.per else f"{column} / ({sweep.per})"
+    return _write_ensemble(sweep, [sweep.keys[place] for place in own], quantity, samples) if samples else DONE
+
+
+def _write_ensemble(sweep: Sweep, keys: list[str], quantity: str, samples: list[Sample]) -> int:
+    write_ensemble(sweep.directory / "ensemble.csv", keys, quantity, samples)
+    effect = size_effect(samples)
+    for each in samples:
+        say("  " + ", ".join([*each.values, f"{quantity}: {each.told()}"]))
+    if effect:
+        say(f"  {effect.told()}")
+    say(f"sweep: {sweep.directory / 'ensemble.csv'}")
+    return _draw(sweep.directory / "ensemble.png", lambda: _ensemble_figure(sweep, keys, quantity, samples, effect))
+
+
+def _ensemble_figure(sweep: Sweep, keys: list[str], quantity: str, samples: list[Sample], effect):
+    from ensemble_picture import draw_ensemble
+
+    return draw_ensemble(f"Ensemble of {sweep.case.stem}", keys, quantity, samples, effect)
+
+
+def _divisor(sweep: Sweep, settings: list[str]) -> float:
+    if not sweep.per:
+        return 1.0
+    try:
+        value = float(compute(sweep.per, Keys(sweep.case_text, settings)))
+    except WrongInput as error:
+        raise WrongInput(f"--per {sweep.per}: {error}") from None
+    if value <= 0.0:
+        raise WrongInput(f"--per {sweep.per}: is {value:g}; must be positive")
+    return value
+
+
 def _refinement_figure(sweep: Sweep, found: list[tuple[tuple[str, ...], Refinement]]):
     from refinement_picture import draw_refinements
 
@@ -338,6 +397,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--refine", metavar="N", action=_Varied,
                         help=f"refine {REFINED} of the case, or of --set, on N lattices, and report observed orders, "
                         "extrapolated values and grid convergence indices of all quantities")  # fmt: skip
+    parser.add_argument("--seeds", metavar="N", help="an ensemble: N seeds of all random fields ([[material.scatter]]); reports the "
+                        "distribution of the peaks, with their Weibull modulus, and the size effect if a --vary changes the "
+                        "volume")  # fmt: skip
+    parser.add_argument("--per", metavar="EXPRESSION", default="", help="divides the peaks of --seeds, such as by an area of keys in "
+                        "plain numbers")  # fmt: skip
     parser.add_argument("--ratio", metavar="R", type=float, default=2.0, help="ratio of the spacings of --refine (default: 2)")
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], dest="settings",
                         help="override a key of the case file in all runs, also by KEY:=EXPRESSION; may be "
@@ -390,6 +454,8 @@ def _find_combinations(sweep: Sweep, arguments: argparse.Namespace) -> None:
     axes, computed = _read_axes(sweep, arguments)
     keys = [key for axis in axes for key in axis.keys]
     given = arguments.settings
+    if arguments.per and not sweep.seeds:
+        raise WrongInput(f"--per {arguments.per}: divides the peaks of an ensemble; give --seeds, too")
     if sweep.refined is not None:  # settings are the spacings of the coarsest lattice
         scaled = {key for axis in axes if REFINED in axis.keys for key in axis.keys}
         given = [setting for setting in given if setting.partition("=")[0].strip() not in scaled]
@@ -410,6 +476,7 @@ def _find_combinations(sweep: Sweep, arguments: argparse.Namespace) -> None:
             settings.append(f"{key}={value}")
             if (key, expression) in computed:
                 values = (*values, value)
+        _divisor(sweep, settings)  # refuses a wrong one
         folder = sweep.directory / folder_name(varied)
         sweep.combinations.append(Combination(values, settings, folder))
 
@@ -431,8 +498,14 @@ def _read_axes(sweep: Sweep, arguments: argparse.Namespace) -> tuple[list[Axis],
             computed.append(found)
         else:
             vary_with(axes, text)
+    if arguments.seeds is not None:
+        if refined:
+            raise WrongInput("--seeds and --refine can't be given together: vary lattice.spacing by --vary")
+        axes.append(seeds(arguments.seeds, Keys(sweep.case_text, [text for text in arguments.settings if not split_computed(text)])))
+        count = sum(len(axis.keys) for axis in axes)
+        sweep.seeds, sweep.per = frozenset(range(count - len(axes[-1].keys), count)), arguments.per
     if not axes:
-        raise WrongInput("nothing is varied: give --vary key=value1,value2,... or --refine N")
+        raise WrongInput("nothing is varied: give --vary key=value1,value2,..., --refine N or --seeds N")
     if refined:
         count = sum(len(axis.keys) for axis in axes)
         sweep.refined = sum(len(axis.keys) for axis in axes[: axes.index(refined)])

@@ -1,0 +1,1 @@
+"""Fits keys of cases to measured curves by least squares (docs/fit.md)."""
