@@ -27,7 +27,7 @@ Advance FatigueStepping::next() {
   const State& accepted = path_.state().accepted;
   if (path_.setting().conditions.programme().has_rest(accepted.stage)) return implicit_.advance();
   if (path_.state().fatigue.lives.life.empty()) begin_cycles();
-  return is_complete() ? Advance::ended : take_block();
+  return has_made_cycles() || has_made_blocks() ? Advance::ended : take_block();
 }
 
 void FatigueStepping::begin_cycles() {
@@ -46,10 +46,12 @@ void FatigueStepping::note_cracks(const History& history) {
                         broken_bonds(body.model(), history), path_.state().fatigue.lives);
 }
 
-bool FatigueStepping::is_complete() const {
-  const PathState::Fatigue& reached = path_.state().fatigue;
-  return (fatigue().cycles > 0.0 && reached.cycles >= fatigue().cycles) ||
-         (fatigue().blocks > 0 && reached.blocks >= fatigue().blocks);
+bool FatigueStepping::has_made_cycles() const {
+  return fatigue().cycles > 0.0 && path_.state().fatigue.cycles >= fatigue().cycles;
+}
+
+bool FatigueStepping::has_made_blocks() const {
+  return fatigue().blocks > 0 && path_.state().fatigue.blocks >= fatigue().blocks;
 }
 
 std::vector<double> FatigueStepping::life_rates() const {
@@ -203,9 +205,8 @@ Advance FatigueStepping::accept(Block block) {
   const Advance advance =
       peristat::accept(path_, std::move(block.attempt), std::move(block.found), 0.0);
   if (has_pinned && advance == Advance::goes_on) tell_of_fragments(path_, 0.0);
-  if (advance == Advance::goes_on && is_complete() &&
-      path_.state().fatigue.cycles < fatigue().cycles) {
-    return end(fmt::format("{} blocks, after {}", path_.state().fatigue.blocks,
+  if (advance == Advance::goes_on && has_made_blocks() && !has_made_cycles()) {
+    return end(fmt::format("the run ends with block {}, after {}", path_.state().fatigue.blocks,
                            cycles_text(path_.state().fatigue.cycles)));
   }
   return advance;

@@ -47,8 +47,8 @@ class FatigueStepping : public Driver {
   void begin_cycles();
   /// Marks bonds that a crack has come near to.
   void note_cracks(const History& history);
-  /// True if the run has made all its cycles or blocks.
-  [[nodiscard]] bool is_complete() const;
+  [[nodiscard]] bool has_made_cycles() const;
+  [[nodiscard]] bool has_made_blocks() const;
   /// Loss of life per cycle of each bond in the accepted state; 0 for those that do not age.
   [[nodiscard]] std::vector<double> life_rates() const;
   /// Lets lives pass.
