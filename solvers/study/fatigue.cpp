@@ -105,9 +105,6 @@ void require_proportional_cycles(const Body& body) {
 }  // namespace
 
 void check_fatigue(const Body& body, const StudyOptions& options) {
-  if (!body.index_map->is_whole()) {
-    throw InputError("loading.mode", "fatigue", "is not for more than one rank");
-  }
   const FatigueOptions& fatigue = options.loading.fatigue;
   if (!fatigue.nucleation.acts() && !fatigue.growth.acts()) {
     throw InputError("fatigue", "",

@@ -179,7 +179,7 @@ void refuse_modes_without_ranks(const Body& body, const StudyOptions& options) {
                      "is not for more than one rank together with rollers and linear constraints; "
                      "take \"dynamic\"");
   }
-  if (mode != Mode::path && mode != Mode::arc_length) return;
+  if (mode != Mode::path && mode != Mode::arc_length && mode != Mode::fatigue) return;
   throw InputError("loading.mode", std::string(mode.name),
                    "is not for more than one rank; take newton, adaptive, relaxation or dynamics");
 }
