@@ -189,7 +189,7 @@ class SameLife(Fatigue):
     def test_size(self):
         text = PLATE
         for small, large in (("1e-3", "1e-1"), ("0.01,", "1.0,"), ("0.008", "0.8"), ("2e-6", "2e-4"), ("2e-5", "2e-3"),
-                             ("4e-3", "0.4"), ("3.1e-3", "0.31")):  # fmt: skip
+                             ("4e-3", "0.4")):  # fmt: skip
             self.assertIn(small, text)
             text = text.replace(small, large)
         self.assert_same(self.lives(), self.lives(text=text))
@@ -197,7 +197,7 @@ class SameLife(Fatigue):
     def test_units(self):
         millimetres = PLATE
         for metres, other in (("1e-3", "1"), ("0.01,", "10,"), ("0.008", "8"), ("2e-6", "2e-3"), ("2e-5", "2e-2"),
-                              ("4e-3", "4"), ("3.1e-3", "3.1"), ("200e9", "200e3")):  # fmt: skip
+                              ("4e-3", "4"), ("200e9", "200e3")):  # fmt: skip
             millimetres = millimetres.replace(metres, other)
         self.assert_same(self.lives(), self.lives(text=millimetres + '[units]\nlength = "mm"\nstress = "MPa"\n'))
 
