@@ -111,6 +111,12 @@ void check_fatigue(const Body& body, const StudyOptions& options) {
                      "needs a law by which bonds age: nucleation, growth or both, each with "
                      "coefficient and exponent");
   }
+  if (!fatigue.nucleation.acts() && body.cut_bonds.empty()) {
+    throw InputError(
+        "fatigue.growth", "",
+        "is the law of bonds near a crack, but the body has none; give a [[crack]], or "
+        "a law of nucleation by which one begins");
+  }
   require_brittle_bonds(body.specification);
   require_one_material(body.specification);
   require_proportional_cycles(body);

@@ -239,6 +239,13 @@ class Fields(Fatigue):
         self.assertIn("bonds near a crack lose 3e+09 (range - 0)^3", told)
         self.assertIn("bonds without a crack near lose 1e+09 (range - 0.0001)^4", told)
 
+    def test_a_threshold_without_a_law_of_growth_is_told(self):
+        told = self.assert_completed(self.command("check", CHAIN, "fatigue.crack_damage=0.4")).said
+        self.assertRegex(told, r"warning: fatigue\.crack_damage.*fatigue\.growth")
+
+    def test_growth_needs_a_crack(self):
+        self.assertIn("the body has none", self.refusal(CHAIN, "fatigue={growth={coefficient=1, exponent=3}}"))
+
     def test_tangent_at_fixed_life(self):
         told = json.loads(self.assert_completed(self.command("check-tangent", PLATE)).output)
         self.assertLess(told["tangent_error"], 1e-6)
