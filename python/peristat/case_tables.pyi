@@ -762,6 +762,10 @@ class CrackTip(Table):
     cut: Quantity
     """length of a cut ahead of the tip, from which energy release rates follow. Every step then solves one more system of equations [m]. Default: none. Allowed: positive; at least a horizon"""
 
+class Sensitivity(Table):
+    over: List
+    """numbers of the case, by their keys, with respect to which the columns of the history are differentiated (sensitivities). Default: none. Allowed: list of keys such as 'material.youngs_modulus'"""
+
 class CaseTable(Table):
     title: str
     """one line that describes the case. Default: name of the file without its ending. Allowed: any text"""
@@ -851,3 +855,5 @@ class CaseTable(Table):
     def add_crack_tip(self, *, name: str = ..., at: List = ..., direction: List = ..., front: List = ..., inner: Quantity = ..., outer: Quantity = ..., cut: Quantity = ...) -> CrackTip: ...
     crack_tip: Array[CrackTip]
     """tables: J, stress intensity factors and T-stress in the history. Default: none"""
+    sensitivity: Inner[Sensitivity]
+    """table: derivatives of the history with respect to numbers of the case. Default: all defaults"""

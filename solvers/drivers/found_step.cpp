@@ -109,6 +109,7 @@ void commit(Path& path, Attempt& attempt, FoundStep& found,
   const bool is_by_release = model.fails_by_release();
   const int most = is_by_release ? most_commits_by_release : most_commits;
   for (int pass = 0; pass < most; ++pass) {
+    path.tell_commit(attempt);
     const Evaluation committed = assembler.commit(attempt.state.displacement, attempt.state.history,
                                                   {}, attempt.state.environment);
     found.growth += committed.growth;

@@ -24,10 +24,19 @@ struct AcceptedState {
   std::span<const double> life{};
 };
 
+/// An equilibrium whose damage is not committed yet.
+struct UncommittedState {
+  const Trial& trial;
+  const std::vector<double>& external_force;
+  const LoadPoint& at;
+};
+
 /// Callbacks for what happens on a path; all members may be empty.
 struct LoadSteppingObserver {
   std::function<void(const IterationRecord&)> iteration;
   std::function<void(const DecisionRecord&)> decision;
+  /// Called before each commit of an implicit step, which may yet be given up.
+  std::function<void(const UncommittedState&)> commits;
   /// Called for an accepted state. The record's energies, damage and reactions are set.
   std::function<void(const StepRecord&, const AcceptedState&)> accepted;
   /// Called with the state from which the path can be resumed: after an accepted step, once its

@@ -235,6 +235,11 @@ void Path::count_pivots(Attempt& attempt) const {
   attempt.inertia = solver.inertia();
 }
 
+void Path::tell_commit(const Attempt& attempt) const {
+  const auto& tell = setting_.observer.commits;
+  if (tell) tell({attempt.state, attempt.external_force, attempt.at});
+}
+
 Advance Path::stop(Attempt attempt, double attempted, const std::string& reason) {
   if (!attempt.inertia && attempt.has_negative_pivots) count_pivots(attempt);
   tell(attempt.at, {.increment = attempted,

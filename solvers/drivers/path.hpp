@@ -99,6 +99,8 @@ class Path {
   /// Reports a decision about the next step.
   /// @param at load point that was attempted
   void tell(const LoadPoint& at, DecisionRecord decision) const;
+  /// Reports an equilibrium that is about to be committed.
+  void tell_commit(const Attempt& attempt) const;
   /// Ends the path with an attempt that failed.
   [[nodiscard]] Advance stop(Attempt attempt, double attempted, const std::string& reason);
 

@@ -21,6 +21,7 @@
 #include "cases/runner/results/dossier.hpp"
 #include "cases/runner/results/recorder.hpp"
 #include "cases/runner/results/results.hpp"
+#include "cases/runner/results/sensitivities.hpp"
 #include "cases/runner/results/tables/constraint_columns.hpp"
 #include "cases/runner/results/tables/crack_tip_columns.hpp"
 #include "cases/runner/results/tables/driven_sets.hpp"
@@ -175,13 +176,15 @@ class CaseRun {
                                  : make_body(from_, options_.threads);
     }
     gathering_.emplace(*body_->index_map);
-    further_ = {from_.output.stress, lines_of(from_), !from_.controls.empty()};
+    further_ = {from_.output.stress, lines_of(from_), !from_.controls.empty(),
+                !from_.sensitivity.over.empty()};
     study_.emplace(*body_, study_options(from_, options_.threads),
                    [this](const std::string& reason) { recorder_->changed_solver(reason); });
     if (!gathering_->is_whole()) {
       recorded_.emplace(body_->points, *body_->index_map);
       numbering_.emplace(*recorded_, *gathering_, body_->model, body_->conditions->prescribed());
     }
+    make_sensitivities();
     if (earlier_) {
       earlier_results_ = earlier_->results(support_sets_, probes_, further_.lines);
       earlier_->load(numbering());
@@ -205,6 +208,16 @@ class CaseRun {
     progress_.follow_to(body_->conditions->programme().end());
     crack_tips_ = located_errors(
         from_, [&] { return make_crack_tips(*body_, from_.crack_tips, study_->options()); });
+  }
+
+  void make_sensitivities() {
+    if (from_.sensitivity.over.empty()) return;
+    if (earlier_) {
+      throw InputError("sensitivity.over", "",
+                       "can't be resumed: the bodies beside the run are not in its checkpoint; run "
+                       "the case anew with --overwrite");
+    }
+    sensitivities_ = std::make_unique<Sensitivities>(from_, *study_, support_sets_, probes_);
   }
 
   void tell_size() {
@@ -291,6 +304,7 @@ class CaseRun {
                        *gathering_);
       recorder_.emplace(from_, *body_, assembler, *results_, progress_, crack_tips_);
     }
+    if (sensitivities_) sensitivities_->open(from_.output.directory);
     if (ranks_.rank() == 0) leave_note(from_.output.directory);
   }
 
@@ -330,8 +344,12 @@ class CaseRun {
     LoadSteppingObserver told;
     told.iteration = [this](const IterationRecord& record) { recorder_->iteration(record); };
     told.decision = [this](const DecisionRecord& record) { recorder_->decided(record); };
+    if (sensitivities_) {
+      told.commits = [this](const UncommittedState& state) { sensitivities_->follow(state); };
+    }
     told.accepted = [this](const StepRecord& record, const AcceptedState& state) {
       recorder_->accepted(record, state);
+      if (sensitivities_) warn(sensitivities_->add(*recorder_->last(), state));
       overload_ = std::max(overload_, record.overload);
       if (may_lock_) note_tips(*recorder_->last());
       summary_.max_displacement = largest_of_all(state.trial.displacement);
@@ -407,6 +425,13 @@ class CaseRun {
     results_->add_dossier(dossier.text, dossier.residual, dossier.displacement);
   }
 
+  /// @param of empty: nothing
+  void warn(const std::string& of) {
+    if (of.empty()) return;
+    summary_.warnings.push_back(of);
+    progress_.say("warning: " + of);
+  }
+
   /// Warns of steps so large that relaxation itself has supplied most of the energy: forces between
   /// them, and so a peak, have not been seen. In steps that follow the damage it supplies some per
   /// cent.
@@ -414,13 +439,12 @@ class CaseRun {
     constexpr double most = 2.0;  // times the external work
     const std::optional<StepRecord>& last = recorder_->last();
     if (!last || !(last->numerical_work > most * std::abs(last->external_work))) return;
-    summary_.warnings.push_back(fmt::format(
+    warn(fmt::format(
         "the iterations of relaxation have done {:.3g} times the work of loads and supports: steps "
         "went far beyond the onset of damage, and the largest force is not a peak of the body; "
         "give "
         "more steps (loading.steps, relaxation.steps) or a smaller load",
         last->numerical_work / std::max(std::abs(last->external_work), 1e-300)));
-    progress_.say("warning: " + summary_.warnings.back());
   }
 
   /// Warns of steps that have driven bonds far past what they bear before any was damaged: their
@@ -429,11 +453,10 @@ class CaseRun {
     // Bonds that soften are beyond their onset in every step; brittle ones need not be.
     const double most = fails_by_steps(body_->model) ? 1.05 : 1.3;
     if (!(overload_ > most)) return;
-    summary_.warnings.push_back(fmt::format(
+    warn(fmt::format(
         "a step has driven bonds to {:.3g} times what they bear before it damaged any: the largest "
         "force and the drained energy depend on the steps; give more steps (loading.steps)",
         overload_));
-    progress_.say("warning: " + summary_.warnings.back());
   }
 
   /// Keeps the lowest T* of each tip in mixed mode, while the integrals about it mean something.
@@ -456,24 +479,22 @@ class CaseRun {
   void warn_of_idle_obstacles() {
     for (const ObstacleSpecification& obstacle : from_.obstacles) {
       if (!recorder_->last() || recorder_->has_pressed(obstacle.name)) continue;
-      summary_.warnings.push_back(
+      warn(
           fmt::format("the obstacle {} has touched nothing in the whole run, so it has had no "
                       "effect; check its place, its displacement and its set",
                       obstacle.name));
-      progress_.say("warning: " + summary_.warnings.back());
     }
   }
 
   void warn_of_locking() {
     for (const auto& [name, lowest] : lowest_t_star_) {
       const auto& [t_star, k1, k2, load] = lowest;
-      summary_.warnings.push_back(fmt::format(
+      warn(fmt::format(
           "crack tip {}: T* = {:.2g} in mixed mode, K_I = {:.3g} and K_II = {:.3g} Pa m^0.5, at "
           "load factor {:.4g}: below {:g} a crack locks to a row of a lattice and turns too "
           "little; points without rows are lattice.points = \"blue_noise\", or those "
           "of a file, and T* falls with the root of the horizon, which lattice.refine makes short",
           name, t_star, k1, k2, load, locking_t_star));
-      progress_.say("warning: " + summary_.warnings.back());
     }
   }
 
@@ -536,6 +557,7 @@ class CaseRun {
   std::unique_ptr<SolvedModel> standing_in_;
   std::vector<CrackTip> crack_tips_;
   std::optional<Recorder> recorder_;
+  std::unique_ptr<Sensitivities> sensitivities_;  // null: not asked for
 };
 
 }  // namespace

@@ -133,6 +133,11 @@ struct OutputSpecification {
   bool stress = false;        ///< strain and stress are among the fields
 };
 
+/// Table [sensitivity]: derivatives of the history.
+struct SensitivitySpecification {
+  std::vector<std::string> over{};  ///< keys of numbers of the case file; empty: none
+};
+
 /// A case, read and checked once and constant from then on: the specification of the body, which
 /// knows no file, and all the rest.
 struct Case : BodySpecification {
@@ -152,6 +157,7 @@ struct Case : BodySpecification {
   OutputSpecification output;
   std::vector<ProbeSpecification> probes;
   std::vector<CrackTipSpecification> crack_tips;
+  SensitivitySpecification sensitivity;
 
   /// What a program gives beside the text; never null.
   std::shared_ptr<const Givens> givens = std::make_shared<const Givens>();

@@ -142,7 +142,10 @@ Table<Case> all_keys() {
            .on_ranks(),
        K("crack_tip", &Case::crack_tips, crack_tip_keys(),
          "tables: J, stress intensity factors and T-stress in the history")
-           .on_ranks()},
+           .on_ranks(),
+       K("sensitivity", &Case::sensitivity, sensitivity_keys(),
+         "table: derivatives of the history with respect to numbers of the case")
+           .written_if([](auto& result, auto&) { return !result.sensitivity.over.empty(); })},
       [](auto& at, auto& result) {
         ask_for_dynamics(at, result);
         check_dynamics(at, result);

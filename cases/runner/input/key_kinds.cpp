@@ -259,6 +259,14 @@ Kind<std::vector<std::string>> known_sets() {
           list_schema(text_schema(), 1), "list of names of sets and layers"};
 }
 
+Kind<std::vector<std::string>> keys_of_case() {
+  return {[](const Entry& at) { return at.from.strings(at.key); },
+          [](const auto& keys, const Case&) {
+            return keys.empty() ? std::string() : array_text(keys, toml_string);
+          },
+          list_schema(text_schema(), 1), "list of keys such as \"material.youngs_modulus\""};
+}
+
 Kind<Coordinates> coordinates(std::string unit) {
   const auto read = [](const Entry& at) {
     Coordinates place{};

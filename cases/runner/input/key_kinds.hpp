@@ -64,6 +64,8 @@ template <class Value>
 /// Name of an existing set or layer.
 [[nodiscard]] Kind<std::string> known_set();
 [[nodiscard]] Kind<std::vector<std::string>> known_sets();
+/// Dotted keys of the case file, as `--set` takes them.
+[[nodiscard]] Kind<std::vector<std::string>> keys_of_case();
 
 /// A component per dimension.
 [[nodiscard]] Kind<Coordinates> coordinates(std::string unit = "m");

@@ -269,4 +269,22 @@ Table<ProbeSpecification> probe_keys() {
            .required("required with `opening`")}};
 }
 
+Table<SensitivitySpecification> sensitivity_keys() {
+  using Spec = SensitivitySpecification;
+  using K = Key<Spec>;
+  return {"sensitivity",
+          {K("over", &Spec::over, keys_of_case(),
+             "numbers of the case, by their keys, with respect to which the columns of the history "
+             "are differentiated ([sensitivities](sensitivities.md))")
+               .default_words("none")
+               .then([](auto& at, auto& sensitivity) {
+                 if (!sensitivity.over.empty() && at.so_far.solver.mode != Mode::newton)
+                   at.refuse("needs solver.mode = \"newton\", not \"" +
+                             std::string(at.so_far.solver.mode.name) + "\"");
+                 for (std::size_t k = 0; k < sensitivity.over.size(); ++k)
+                   if (std::ranges::count(sensitivity.over, sensitivity.over[k]) > 1)
+                     at.from.refuse(at.key, k, "is there twice");
+               })}};
+}
+
 }  // namespace peristat

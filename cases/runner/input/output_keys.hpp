@@ -8,5 +8,6 @@ namespace peristat {
 [[nodiscard]] Table<OutputSpecification> output_keys();
 [[nodiscard]] Table<ProbeSpecification> probe_keys();
 [[nodiscard]] Table<CrackTipSpecification> crack_tip_keys();
+[[nodiscard]] Table<SensitivitySpecification> sensitivity_keys();
 
 }  // namespace peristat

@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "assembly/terms/damage.hpp"
-#include "cases/runner/results/tables/constraint_columns.hpp"
-#include "cases/runner/results/tables/crack_tip_columns.hpp"
+#include "cases/runner/results/state_values.hpp"
 #include "cases/runner/results/tables/fatigue_columns.hpp"
 #include "cases/runner/results/tables/motion_columns.hpp"
 #include "cases/runner/results/tables/record_tables.hpp"
@@ -66,26 +65,17 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   record.max_stretch = made.max_stretch;
   record.max_damage = made.max_damage;
   record_broken_bonds(record, at.history);
-  const LoadingProgramme& programme = body_.conditions->programme();
-  LoadValues loads{programme.names(), programme.at(record.stage)};
-  if (body_.conditions->control()) loads.values.front() = record.load_factor;
-  for (const ProbeSpecification& probe : case_.probes) {
-    if (probe.from) continue;
-    record.probes[probe.name] =
-        probe_values(probe, recorded_, made.values, crack_state(record, probe.name), loads);
-  }
-  driven_.add_values(at.displacement, state.external_force, loads, record.probes);
+  const std::string without_release = add_state_values(
+      {case_, body_, assembler_, recorded_, driven_, crack_tips_}, state.trial,
+      state.external_force, made.values,
+      [&](const std::string& probe) { return crack_state(record, probe); }, record);
   note_growth(record);
   note_pressed(record);
-  const std::string without_release = add_crack_tip_values(
-      case_, crack_tips_, assembler_, state.trial, record.stage, record.probes);
   if (!without_release.empty()) {
     progress_.problem("step " + std::to_string(record.step) +
                       ": the body has no equilibrium with the cut ahead of " + without_release +
                       "; its energy release rates are reported as 0");
   }
-  add_constraint_values(*body_.conditions, state.trial, state.external_force, recorded_.ranks(),
-                        record.probes);
   add_motion_values(record, points_.dimension, record.probes);
   add_fatigue_values(record, case_, record.probes);
   const bool is_at_rest =

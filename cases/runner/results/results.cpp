@@ -22,6 +22,7 @@
 #include "cases/runner/results/parts/point_cells.hpp"
 #include "cases/runner/results/parts/step_part.hpp"
 #include "cases/runner/results/parts/vtk_hdf.hpp"
+#include "cases/runner/results/sensitivities.hpp"
 #include "cases/runner/results/tables/convergence_table.hpp"
 #include "cases/runner/results/tables/load_displacement.hpp"
 #include "cases/runner/results/tables/record_tables.hpp"
@@ -67,6 +68,7 @@ std::string version_of(const CaseText& text) {
 RunIdentity identity(const CaseText& text, const FurtherOutput& further) {
   RunIdentity run{version_of(text), text.title, text.file, {}};
   for (const LineTable& line : further.lines) run.files.push_back(file_of_line(line.name));
+  if (further.has_sensitivities) run.files.emplace_back(Sensitivities::file_name);
   return run;
 }
 

@@ -34,7 +34,8 @@ struct CaseText {
 struct FurtherOutput {
   bool has_stress = false;  ///< tensors are among the fields
   std::vector<LineTable> lines{};
-  bool has_control = false;  ///< the load is found for a controlled displacement
+  bool has_control = false;        ///< the load is found for a controlled displacement
+  bool has_sensitivities = false;  ///< a file of Sensitivities belongs to the run
 };
 
 /// Writer of a results folder (docs/results.md): results.h5, results.xdmf, results.vtkhdf,

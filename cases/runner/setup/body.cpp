@@ -42,6 +42,16 @@ auto errors_in_table(const std::string& table, const Make& make) {
   }
 }
 
+/// Memory per point of the bodies beside one that is differentiated (Sensitivities), two for each
+/// number: bonds, their histories and a copy of these, vectors, and the workspace of sums [byte].
+double sensitivity_bytes_per_point(const Case& from) {
+  const bool has_damage = from.material.damage.law != DamageLaw::none;
+  const double per_bond = has_damage ? 22.0 : 6.0, d = from.dimension;
+  const double bonds = bonds_per_point(from.dimension, from.horizon_ratio);
+  return 2.0 * double(from.sensitivity.over.size()) *
+         (per_bond * bonds + 8.0 * (6.0 * d + (from.dimension == 3 ? 18.0 : 12.0)));
+}
+
 const Lattice* lattice_of(const Case& from) { return std::get_if<Lattice>(&from.body); }
 
 /// Refuses a lattice that can't fit before any of its points is made.
@@ -145,6 +155,7 @@ std::unique_ptr<const Body> make_body(const Case& from, int threads) {
           bytes_per_bond * bonds_per_point(from.dimension, from.horizon_ratio);
     }
   }
+  of.evaluation_bytes_per_point += sensitivity_bytes_per_point(from);
   return located_errors(from, [&] { return make_body(std::move(points), of, threads); });
 }
 
