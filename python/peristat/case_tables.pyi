@@ -611,8 +611,8 @@ class Loading(Table):
     """mode `path`: largest number of teeth of the saw-tooth law that replaces a law of damage with smooth softening. Default: 10. Allowed: 1 to 1000"""
 
 class Solver(Table):
-    mode: Literal["newton", "relaxation", "adaptive", "arc_length", "path", "dynamics"]
-    """`'newton'`: all steps implicit; `'relaxation'`: all steps by dynamic relaxation; `'adaptive'`: implicit steps while no damage grows, relaxation while it does; `'arc_length'`: steps along the equilibrium path, through limit points and bifurcations, without damage; `'path'`: sequentially linear analysis, from one breaking bond to the next; `'dynamics'`: the motion in time, by explicit or implicit steps. Default: `'newton'`. Allowed: `'newton'`, `'relaxation'`, `'adaptive'`, `'arc_length'`, `'path'`, `'dynamics'`"""
+    mode: Literal["newton", "relaxation", "adaptive", "arc_length", "path", "dynamics", "fatigue"]
+    """`'newton'`: all steps implicit; `'relaxation'`: all steps by dynamic relaxation; `'adaptive'`: implicit steps while no damage grows, relaxation while it does; `'arc_length'`: steps along the equilibrium path, through limit points and bifurcations, without damage; `'path'`: sequentially linear analysis, from one breaking bond to the next; `'dynamics'`: the motion in time, by explicit or implicit steps; `'fatigue'`: cycles of the load, from one bond at the end of its life to the next. Default: `'newton'`. Allowed: `'newton'`, `'relaxation'`, `'adaptive'`, `'arc_length'`, `'path'`, `'dynamics'`, `'fatigue'`"""
     linear: Literal["auto", "cholesky", "pcg", "minres", "gmres", "lu", "bicgstab"]
     """solver of the linear systems (linear-solvers.md). `'auto'`: chooses one, reports why, and takes another one if it fails; `'cholesky'`: direct, for symmetric tangents; `'pcg'`: conjugate gradients, for symmetric tangents; `'minres'`: minimal residuals, for symmetric tangents; `'gmres'`: iterative, for all models; `'lu'`: direct, for tangents that are not symmetric; `'bicgstab'`: iterative, for tangents that are not symmetric. Default: `'auto'`. Allowed: `'auto'`, `'cholesky'`, `'pcg'`, `'minres'`, `'gmres'`, `'lu'`, `'bicgstab'`"""
     preconditioner: Literal["auto", "jacobi", "block_jacobi", "rigid_pieces", "surrogate", "sines", "riluk", "chebyshev", "multigrid", "local_operator"]
@@ -688,6 +688,30 @@ class Dynamics(Table):
     history_every: int
     """number of steps from one row of the history to the next [time steps]. Default: `output.every`. Allowed: whole number from 1"""
 
+class FatigueNucleation(Table):
+    coefficient: float
+    """A: a bond loses A (ε - limit)^m of its life in a cycle, ε the range of its stretch. required. Allowed: 1e-300 to 1e300"""
+    exponent: float
+    """m. required. Allowed: 0.1 to 100"""
+    limit: float
+    """range of the stretch up to which a bond does not age. Default: 0. Allowed: 0 to 1"""
+
+class Fatigue(Table):
+    load_ratio: float
+    """R: supports and loads at the least load of a cycle over those at the largest, which is that at the end of `[loading]`. Default: 0. Allowed: -1 to 0.999"""
+    cycles: float
+    """number of cycles after which the run ends. 0: it ends when the body fails, or when no bond ages any more. Default: 0. Allowed: 0 to 1e18"""
+    blocks: int
+    """number of blocks of cycles after which the run ends; each block ends with the next bond that breaks. 0: no limit [blocks]. Default: 0. Allowed: whole number from 0"""
+    life_tolerance: float
+    """bonds with no more life left than this at the end of a block break in it, too. 0: only bonds with equal lives break together. Default: 0. Allowed: 0 to 0.5"""
+    crack_damage: float
+    """damage from which a point belongs to a crack. Bonds with an end within a horizon of such a point age by `growth`. Bonds that a `[[crack]]` has cut count. Default: 0.3. Allowed: 0.01 to 1"""
+    nucleation: Inner[FatigueNucleation]
+    """table: law of the bonds that no crack is near. Default: these bonds do not age"""
+    growth: Inner[FatigueNucleation]
+    """table: law of the bonds near a crack, whose life then begins anew. Default: all bonds age by `nucleation`"""
+
 class Output(Table):
     directory: str
     """results folder, relative to the current folder; `--output` on the command line sets it, too. Default: `results/FOLDER_NAME` of the case file: `results/bar_tension` for `cases/bar/tension.toml`"""
@@ -707,8 +731,8 @@ class Probe(Table):
     """position; the nearest point gives the value [m]. exactly one of `set`, `at`, `from`. Allowed: a number per dimension"""
     from_: List
     """start of a line. The points within half a spacing of the line are written to `line_NAME.csv` [m]. exactly one of `set`, `at`, `from`. Allowed: a number per dimension"""
-    field: Literal["displacement", "force", "damage", "energy_density", "stretch", "contact_force", "contact_pressure", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"]
-    """field. Units: displacement, opening, length and position in m, area in m², force in N, energy densities in J/m³, velocity in m/s, stress in Pa, angles in degrees, work of fracture and crack resistance in J/m²; `stress` is the Cauchy stress, `strain` the Green–Lagrange strain. Default: `'displacement'`. Allowed: `'displacement'`, `'force'`, `'damage'`, `'energy_density'`, `'stretch'`, `'contact_force'`, `'contact_pressure'`, `'deformation_gradient'`, `'divergence'`, `'first_piola_stress'`, `'strain'`, `'stress'`, `'von_mises'`, `'principal_stress'`, `'missing_neighbourhood'`, `'velocity'`, `'kinetic_energy_density'`, `'poisson_ratio'`, `'opening'`, `'crack_length'`, `'crack_begin'`, `'crack_end'`, `'crack_angle'`, `'crack_area'`, `'work_of_fracture'`, `'crack_resistance'`"""
+    field: Literal["displacement", "force", "damage", "energy_density", "stretch", "contact_force", "contact_pressure", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "life", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"]
+    """field. Units: displacement, opening, length and position in m, area in m², force in N, energy densities in J/m³, velocity in m/s, stress in Pa, angles in degrees, work of fracture and crack resistance in J/m²; `stress` is the Cauchy stress, `strain` the Green–Lagrange strain. Default: `'displacement'`. Allowed: `'displacement'`, `'force'`, `'damage'`, `'energy_density'`, `'stretch'`, `'contact_force'`, `'contact_pressure'`, `'deformation_gradient'`, `'divergence'`, `'first_piola_stress'`, `'strain'`, `'stress'`, `'von_mises'`, `'principal_stress'`, `'missing_neighbourhood'`, `'velocity'`, `'kinetic_energy_density'`, `'life'`, `'poisson_ratio'`, `'opening'`, `'crack_length'`, `'crack_begin'`, `'crack_end'`, `'crack_angle'`, `'crack_area'`, `'work_of_fracture'`, `'crack_resistance'`"""
     to: List
     """end of the line [m]. required with `from`. Allowed: a number per dimension"""
     component: Literal["x", "y", "z", "1", "2", "3", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"]
@@ -821,9 +845,11 @@ class CaseTable(Table):
     """table: steps in mode `arc_length`. Default: all defaults"""
     dynamics: Inner[Dynamics]
     """table: the motion in time. required in mode `dynamics`"""
+    fatigue: Inner[Fatigue]
+    """table: cycles of the load. required in mode `fatigue`"""
     output: Inner[Output]
     """table: results folder. Default: all defaults"""
-    def add_probe(self, *, name: str = ..., set: str = ..., at: List = ..., from_: List = ..., field: Literal["displacement", "force", "damage", "energy_density", "stretch", "contact_force", "contact_pressure", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"] = ..., to: List = ..., component: Literal["x", "y", "z", "1", "2", "3", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"] = ..., statistic: Literal["mean", "max", "min", "rms_error", "max_error"] = ..., expected: List = ..., axis: Literal["x", "y", "z"] = ..., other: str = ...) -> Probe: ...
+    def add_probe(self, *, name: str = ..., set: str = ..., at: List = ..., from_: List = ..., field: Literal["displacement", "force", "damage", "energy_density", "stretch", "contact_force", "contact_pressure", "deformation_gradient", "divergence", "first_piola_stress", "strain", "stress", "von_mises", "principal_stress", "missing_neighbourhood", "velocity", "kinetic_energy_density", "life", "poisson_ratio", "opening", "crack_length", "crack_begin", "crack_end", "crack_angle", "crack_area", "work_of_fracture", "crack_resistance"] = ..., to: List = ..., component: Literal["x", "y", "z", "1", "2", "3", "xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"] = ..., statistic: Literal["mean", "max", "min", "rms_error", "max_error"] = ..., expected: List = ..., axis: Literal["x", "y", "z"] = ..., other: str = ...) -> Probe: ...
     probe: Array[Probe]
     """tables: values that are recorded in the history. Default: none"""
     def add_crack_tip(self, *, name: str = ..., at: List = ..., direction: List = ..., front: List = ..., inner: Quantity = ..., outer: Quantity = ..., cut: Quantity = ...) -> CrackTip: ...

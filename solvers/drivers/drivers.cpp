@@ -7,6 +7,7 @@
 #include "solvers/drivers/arc_length_stepping.hpp"
 #include "solvers/drivers/dynamics.hpp"
 #include "solvers/drivers/event_stepping.hpp"
+#include "solvers/drivers/fatigue_stepping.hpp"
 #include "solvers/drivers/hand_over.hpp"
 #include "solvers/drivers/implicit_stepping.hpp"
 #include "solvers/drivers/relaxed_stepping.hpp"
@@ -27,6 +28,7 @@ constexpr std::array drivers{
     DriverEntry{Mode::arc_length, make<ArcLengthStepping>},
     DriverEntry{Mode::path, make<EventStepping>},
     DriverEntry{Mode::dynamics, make<Dynamics>},
+    DriverEntry{Mode::fatigue, make<FatigueStepping>},
 };
 
 }  // namespace

@@ -58,7 +58,10 @@ void report(Path& path, const Attempt& attempt, FoundStep& found) {
   }
   note_force(path, found.record);
   if (const auto& tell = path.setting().observer.accepted) {
-    tell(found.record, {attempt.state, attempt.external_force, path.state().pins.found.piece});
+    tell(found.record, {.trial = attempt.state,
+                        .external_force = attempt.external_force,
+                        .piece = path.state().pins.found.piece,
+                        .life = path.state().fatigue.lives.life});
   }
 }
 
@@ -73,6 +76,7 @@ void complete_record(const Path& path, const Attempt& attempt, FoundStep& found)
     record.control = control->value(attempt.state.displacement) - path.state().control_at_load_zero;
     if (attempt.inertia) record.negative_pivots = attempt.inertia->negative;
   }
+  record.cycles = path.state().fatigue.cycles;
   record.stored_energy = found.ledger.stored;
   record.dissipated_energy = found.ledger.dissipated;
   record.drained_energy = found.ledger.drained;

@@ -2,6 +2,7 @@
 
 #include "solvers/drivers/fragment_pins.hpp"
 #include "solvers/drivers/mode.hpp"
+#include "solvers/fracture/remaining_life.hpp"
 #include "solvers/search/dynamic_relaxation.hpp"
 
 namespace peristat {
@@ -73,6 +74,7 @@ struct LoadSteppingOptions {
   ArcLengthOptions arc_length{};
   EventOptions events{};
   DynamicsOptions dynamics{};
+  FatigueOptions fatigue{};
   FragmentRemedy fragments = FragmentRemedy::hold;
 };
 

@@ -17,6 +17,7 @@ struct Mode {
   static const Mode arc_length;  ///< implicitly along the path itself, with fixed integrities
   static const Mode path;        ///< from one failure event to the next
   static const Mode dynamics;    ///< the motion in time
+  static const Mode fatigue;     ///< cycles of the load, from one worn bond to the next
 };
 
 inline constexpr Mode Mode::newton{"newton"};
@@ -25,5 +26,6 @@ inline constexpr Mode Mode::adaptive{"adaptive"};
 inline constexpr Mode Mode::arc_length{"arc_length"};
 inline constexpr Mode Mode::path{"path"};
 inline constexpr Mode Mode::dynamics{"dynamics"};
+inline constexpr Mode Mode::fatigue{"fatigue"};
 
 }  // namespace peristat

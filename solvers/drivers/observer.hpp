@@ -20,6 +20,8 @@ struct AcceptedState {
   const std::vector<double>& external_force;
   std::span<const std::int32_t> piece;  ///< per point, see Fragments; empty: none
   std::span<const double> velocity{};   ///< of a body in motion, per degree of freedom [m/s]
+  /// Remaining lives of the bonds in cycles of the load, see RemainingLives; empty: none.
+  std::span<const double> life{};
 };
 
 /// An equilibrium whose damage is not committed yet.

@@ -30,6 +30,7 @@ struct PathSetting {
   const LoadSteppingObserver& observer;
   const SolvedBody* stand_in = nullptr;   ///< see follow_loading
   const MotionSetting* motion = nullptr;  ///< of mode dynamics
+  InitialCuts cuts{};                     ///< of mode fatigue
 };
 
 /// Does a driver go on?

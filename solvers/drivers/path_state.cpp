@@ -67,9 +67,13 @@ bool is_of_body(const PathState& state, const Assembler& body,
     return point >= 0 && std::size_t(point) < points;
   });
   const FreeDofs free = state.pins.free_dofs(prescribed, body.points().dimension);
-  return are_points && state.accepted.displacement.size() == dofs &&
-         state.ledger.force.size() == dofs && are_sizes_of(state.accepted.history, body) &&
-         is_empty_or(state.arc.direction, dofs) && is_empty_or(state.dynamics.velocity, dofs) &&
+  const auto bonds = std::size_t(body.model().bonds().count());
+  const RemainingLives& lives = state.fatigue.lives;
+  return are_points && is_empty_or(lives.life, bonds) &&
+         lives.near_crack.size() == lives.life.size() &&
+         state.accepted.displacement.size() == dofs && state.ledger.force.size() == dofs &&
+         are_sizes_of(state.accepted.history, body) && is_empty_or(state.arc.direction, dofs) &&
+         is_empty_or(state.dynamics.velocity, dofs) &&
          is_empty_or(state.dynamics.acceleration, dofs) &&
          is_empty_or(state.relaxed.motion.velocity, std::size_t(free.count()));
 }

@@ -7,6 +7,7 @@
 #include "assembly/energy/state.hpp"
 #include "solvers/drivers/fragment_pins.hpp"
 #include "solvers/drivers/path_ledger.hpp"
+#include "solvers/fracture/remaining_life.hpp"
 #include "solvers/motion/stable_step.hpp"
 #include "solvers/search/dynamic_relaxation.hpp"
 #include "solvers/search/updated_tangent.hpp"
@@ -91,6 +92,12 @@ struct PathState {
     double last_bound = 0.0;               ///< of the stiffness [1/s2]
     int look_interval = 0, next_look = 0;  ///< checks of the stiffness, in time steps
   } dynamics;
+  /// State of mode fatigue, once the load has reached its largest value.
+  struct Fatigue {
+    double cycles = 0.0;  ///< so far
+    int blocks = 0;       ///< of cycles, so far
+    RemainingLives lives;
+  } fatigue;
 };
 
 /// Returns a history without the entries of terms that follow others, which are recomputed from the

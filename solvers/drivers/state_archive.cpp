@@ -139,7 +139,8 @@ void transfer_tangent(StateArchive& archive, TangentReference& tangent) {
 // The bindings name every member, so that none can be forgotten.
 void transfer(StateArchive& archive, PathState& state) {
   auto& [accepted, steps, ledger, pins, force, stands_in, rungs, relaxation_seconds, implicit,
-         relaxed, control_sign, control_at_load_zero, arc, hand_over, events, dynamics] = state;
+         relaxed, control_sign, control_at_load_zero, arc, hand_over, events, dynamics, fatigue] =
+      state;
   // The environment is recomputed from the load point, see Path.
   [[maybe_unused]] auto& [displacement, stage, history, load, environment, preload] = accepted;
   archive.transfer("accepted/displacement", displacement, Rows::dofs);
@@ -209,6 +210,12 @@ void transfer(StateArchive& archive, PathState& state) {
   archive.transfer("dynamics/next_look", next_look);
   archive.transfer("dynamics/stiffness/bound", bound);
   archive.transfer("dynamics/stiffness/eigenvalue", eigenvalue);
+  auto& [cycles, blocks, lives] = fatigue;
+  auto& [life, near_crack] = lives;
+  archive.transfer("fatigue/cycles", cycles);
+  archive.transfer("fatigue/blocks", blocks);
+  archive.transfer("fatigue/life", life, Rows::bonds);
+  archive.transfer("fatigue/near_crack", near_crack, Rows::bonds);
 }
 
 }  // namespace peristat

@@ -22,6 +22,7 @@ struct ObservedExtras {
   std::vector<double> force{};            ///< see internal_force; may have more points [N]
   std::span<const std::int32_t> piece{};  ///< per point, see Fragments; empty: none floats
   std::span<const double> velocity{};     ///< of a body in motion, per degree of freedom [m/s]
+  std::span<const double> life{};         ///< of each bond, see RemainingLives; empty: 1
   bool count_cracks = false;              ///< bonds that a pre-crack has cut count as damage
 };
 

@@ -85,6 +85,30 @@ std::vector<double> energy_density(Observation& in) {
   return energy;
 }
 
+/// Least of the unbroken bonds; 0 where all have broken, 1 where there are none.
+std::vector<double> life(Observation& in) {
+  const Bonds& bonds = in.body().model.bonds();
+  const std::vector<char> broken = broken_bonds(in.body().model, in.at().history);
+  std::vector<double> least(in.body().points.volume.size(), 1.0);
+  std::vector<char> is_whole(least.size(), 0), is_broken(least.size(), 0);
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      const auto b = std::size_t(bond);
+      const bool breaks = !broken.empty() && broken[b];
+      const double left = in.extras().life.empty() ? 1.0 : in.extras().life[b];
+      for (const Index point : {i, bonds.partner[bond]}) {
+        (breaks ? is_broken : is_whole)[std::size_t(point)] = 1;
+        if (!breaks) least[std::size_t(point)] = std::min(least[std::size_t(point)], left);
+      }
+    }
+  }
+  least.resize(std::size_t(in.points().count()));
+  for (std::size_t i = 0; i < least.size(); ++i) {
+    if (is_broken[i] && !is_whole[i]) least[i] = 0.0;
+  }
+  return least;
+}
+
 std::vector<double> stretch(Observation& in) { return std::move(in.stretches().of_points); }
 
 std::vector<double> fragment(Observation& in) {
@@ -188,7 +212,11 @@ const std::vector<PointField>& point_fields() {
       {"velocity", "m/s", "velocity of each point", vector,
        [](Observation& in) { return recorded(in, in.extras().velocity); }, motion, both},
       {"kinetic_energy_density", "J/m3", "kinetic energy per volume of each point", scalar,
-       kinetic_energy_density, motion, both}};
+       kinetic_energy_density, motion, both},
+      {"life", "1",
+       "smallest remaining life of the unbroken bonds of each point, 1 at first; 0 where all have "
+       "broken",
+       scalar, life, fatigue, both}};
   return fields;
 }
 

@@ -16,7 +16,7 @@ class Observation;
 enum class FieldRank { scalar, vector, principal, tensor, symmetric };
 
 /// What a field needs besides a state.
-enum class FieldNeeds { nothing, stress, motion, contacts };
+enum class FieldNeeds { nothing, stress, motion, contacts, fatigue };
 
 /// Who shows a field: steps of results.h5, probes, or both.
 enum class ShownBy { steps, probes, both };

@@ -86,6 +86,7 @@ struct StepRecord {
   Stability stability = Stability::not_judged;  ///< mode path judges it
   /// Mode path: load factor at which the last bonds broke; nothing: they broke in this step.
   std::optional<double> broke_at;
+  double cycles = 0.0;                   ///< mode fatigue: of the load so far
   bool settled = false;                  ///< accepted without equilibrium: see RelaxationResult
   std::optional<MotionRecord> motion{};  ///< mode dynamics
   std::map<std::string, Coordinates> reactions;       ///< by support set [N]

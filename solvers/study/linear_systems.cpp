@@ -82,6 +82,9 @@ constexpr double vectors_of_flow = 9.0;
 /// states, resistances in two.
 constexpr double vectors_of_events = 12.0, numbers_of_events_per_bond = 5.0;
 
+/// Mode fatigue: lives before and after a block, kinds of laws, rates, borne and present stretches.
+constexpr double bytes_of_lives_per_bond = 2.0 * 9.0 + 3.0 * 8.0 + sizeof(BondDrive);
+
 /// Mode dynamics: vectors of mass, its inverse, velocities before and after, and Lanczos' method.
 constexpr double vectors_of_motion = 9.0;
 
@@ -296,7 +299,8 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   problem.factor_bytes = estimate.direct_bytes(linear.method);
   problem.available_bytes = available_memory() - estimate.body_bytes - estimate.tangent_bytes;
   // In other modes damage grows in relaxation, which finds stable states only.
-  problem.may_soften = model.has_history() && options.loading.mode == Mode::newton;
+  const bool is_fatigue = options.loading.mode == Mode::fatigue;
+  problem.may_soften = model.has_history() && (options.loading.mode == Mode::newton || is_fatigue);
   const bool goes_by_events = options.loading.mode == Mode::path;
   problem.solves_often = flows(options, model) || goes_by_events;
   problem.box = std::move(box);
@@ -322,6 +326,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   } else if (problem.solves_often) {
     systems.bytes += vectors_of_flow * bytes_of_vector;
   }
+  if (is_fatigue) systems.bytes += bytes_of_lives_per_bond * estimate.size.bonds;
   return systems;
 }
 

@@ -9,6 +9,7 @@
 #include "solvers/body/without_equation.hpp"
 #include "solvers/formulations/specification/for_each_material.hpp"
 #include "solvers/motion/stable_step.hpp"
+#include "solvers/study/fatigue.hpp"
 #include "solvers/study/found_loads.hpp"
 #include "solvers/study/motion.hpp"
 #include "solvers/study/rest_stability.hpp"
@@ -178,7 +179,7 @@ void refuse_modes_without_ranks(const Body& body, const StudyOptions& options) {
                      "is not for more than one rank together with rollers and linear constraints; "
                      "take \"dynamic\"");
   }
-  if (mode != Mode::path && mode != Mode::arc_length) return;
+  if (mode != Mode::path && mode != Mode::arc_length && mode != Mode::fatigue) return;
   throw InputError("loading.mode", std::string(mode.name),
                    "is not for more than one rank; take newton, adaptive, relaxation or dynamics");
 }
@@ -200,6 +201,7 @@ void check_study(const Body& body, const StudyOptions& options) {
   refuse_modes_with_contacts(body, options);
   refuse_events_of_closing_bonds(body, options);
   refuse_modes_of_failing_points(body, options);
+  if (options.loading.mode == Mode::fatigue) check_fatigue(body, options);
   const bool is_implicit = moves && options.loading.dynamics.scheme == MotionScheme::newmark;
   if (is_implicit != body.specification.has_inertia) {
     throw InputError("has_inertia", "",
@@ -295,7 +297,7 @@ LoadSteppingResult Study::follow(const LoadSteppingObserver& observer, const Sol
   }
   if (motion_ && !from) find_initial_stiffness();
   return follow_loading({equations_->solved(), *body_.conditions, options_.loading, options_.newton,
-                         observer, stand_in, motion_ ? &*motion_ : nullptr},
+                         observer, stand_in, motion_ ? &*motion_ : nullptr, initial_cuts(body_)},
                         from);
 }
 

@@ -16,6 +16,22 @@ void require_within(double value, double least, double most, const std::string& 
                    "must be from " + number_text(least) + " to " + number_text(most));
 }
 
+void check_life_law(const LifeLaw& law, const std::string& key) {
+  require_within(law.coefficient, 0.0, 1e300, key + ".coefficient");
+  require_within(law.exponent, 0.1, 100.0, key + ".exponent");
+  require_within(law.limit, 0.0, 1.0, key + ".limit");
+}
+
+void check_fatigue_options(const FatigueOptions& options) {
+  check_life_law(options.nucleation, "fatigue.nucleation");
+  check_life_law(options.growth, "fatigue.growth");
+  require_within(options.load_ratio, -1.0, 0.999, "fatigue.load_ratio");
+  require_within(options.cycles, 0.0, 1e18, "fatigue.cycles");
+  require_within(options.blocks, 0, 1e9, "fatigue.blocks");
+  require_within(options.life_tolerance, 0.0, 0.5, "fatigue.life_tolerance");
+  require_within(options.crack_damage, 0.01, 1.0, "fatigue.crack_damage");
+}
+
 }  // namespace
 
 void check_options(const StudyOptions& options) {
@@ -52,6 +68,7 @@ void check_options(const StudyOptions& options) {
                      "is missing: implicit steps are stable at any length, so there is no stable "
                      "step to take a share of");
   }
+  check_fatigue_options(loading.fatigue);
   const LinearSolverOptions& linear = options.linear;
   if ((linear.method == LinearMethod::cholesky || linear.method == LinearMethod::lu) &&
       linear.preconditioner != PreconditionerKind::automatic)

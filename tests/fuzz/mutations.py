@@ -31,14 +31,14 @@ WORDS = """dimension title lattice points ratio spacing horizon_ratio thickness 
     directory every count_cracks probe field other threshold control weights table table2 arc_length bifurcation region interface between
     rule fibre angle direction transverse_modulus shear_modulus transverse_critical scatter of factor distribution weibull_modulus
     correlation_length rigid roller at normal constraint term symmetry period gradient rotation gravity traction pressure depth eigenstrain
-    strain temperature change thermal_expansion volumes neighbours at cut_bonds dynamics end_time time_step step_share history_every initial velocity scheme
+    strain temperature change thermal_expansion volumes neighbours at cut_bonds dynamics fatigue load_ratio cycles blocks life_tolerance crack_damage nucleation growth coefficient exponent limit end_time time_step step_share history_every initial velocity scheme
     spectral_radius absorbing degree traction_form boundary statistic expected
     kinematics operator stabilisation foundation obstacle inside softness point units force time mass stress energy length_unit""".split()
 CHOICES = """rms_error max_error divergence blue_noise none linear exact exact_centroids volume energy mean bulk bond cpd lps collocation full paper surface stress strain lattice continuum critical_stretch tanh tanh_continuous linear exponential blended bilinear cornelissen table piecewise_constant cubic quintic septic gaussian inverse newton
     relaxation adaptive flow dynamic auto cholesky pcg minres gmres lu bicgstab local_operator jacobi block_jacobi rigid_pieces surrogate riluk chebyshev multigrid stored
     matrix_free consistent never always hold remove stop fixed moving at_equilibrium transient kinetic cell_centres nodes box disk ellipse image stl polygon
     cylinder sphere x- x+ y- y+ z- z+ displacement force damage stretch energy_density poisson_ratio opening crack_length crack_angle
-    arc_length dynamics verlet newmark branch straight cells fractional harmonic arithmetic weaker stiffness strength weibull row horizon x y z
+    arc_length dynamics fatigue life verlet newmark branch straight cells fractional harmonic arithmetic weaker stiffness strength weibull row horizon x y z
     fft bonds finite release green_bond correspondence printed sines""".split()
 KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness lattice.area lattice.origin lattice.points lattice.lloyd_steps lattice.perturbation lattice.cell_perturbation lattice.seed
     lattice.shape[0].min lattice.shape[0].max lattice.shape[0].add lattice.shape[1].radius lattice.shape[9].add lattice.layer[0].thickness
@@ -59,7 +59,8 @@ KEYS = """dimension lattice.spacing lattice.horizon_ratio lattice.thickness latt
     constraint[0].term[0].weights constraint[0].term[1].set symmetry[0].axis symmetry[0].at symmetry[1].at symmetry[1].axis period[0].from
     period[0].to period[0].gradient period[1].gradient period[1].axis load[0].gravity load[0].traction load[0].depth load[0].side
     load[0].pressure load[1].pressure load[1].total_force eigenstrain[0].strain eigenstrain[0].set temperature.change
-    dynamics.end_time dynamics.time_step dynamics.step_share dynamics.history_every initial[0].set initial[0].displacement initial[0].velocity
+    dynamics.end_time dynamics.time_step dynamics.step_share dynamics.history_every fatigue.cycles fatigue.blocks fatigue.load_ratio fatigue.life_tolerance
+    fatigue.crack_damage fatigue.growth.coefficient fatigue.growth.exponent fatigue.nucleation.coefficient fatigue.nucleation.limit initial[0].set initial[0].displacement initial[0].velocity
     dynamics.scheme dynamics.spectral_radius absorbing[0].rate absorbing[0].set material.kinematics solver.operator material.stabilisation
     material.damage.fracture_energy material.damage.drive
     relaxation.quiet_iterations relaxation.displacement_tolerance relaxation.method relaxation.flow_tolerance relaxation.peak_tolerance output.every output.count_cracks probe[0].field probe[0].set probe[0]

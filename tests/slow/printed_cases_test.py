@@ -3,6 +3,7 @@
 import math
 import unittest
 
+from benchmarks import fatigue
 from tests.acceptance.folder import Folder
 from tests.printed.comparison import PrintedTest
 from tests.printed.kink import kink_angle
@@ -60,6 +61,21 @@ class Fracture(PrintedTest, Folder):
         self.prints("a peak of {} N where fracture mechanics has {} N", peak, known, within=2e-3)
         self.prints("{} % less, as 40", 100 * (1 - peak / known), within=0.05)
         self.assertLess(beam.history[-1]["reaction_y:load"] / -peak, 0.5)
+
+    def test_fatigue(self):
+        self.page = "cases/fatigue/compact_tension.toml"
+        specimen = run("fatigue/compact_tension")
+        ratio, ranges, growth = fatigue.rates(fatigue.with_broken_bonds(specimen.folder), 4e3, 1e-3)
+        ranges_used, growth_used = fatigue.used(ratio, ranges, growth)
+        exponent, _ = fatigue.fit(ranges_used, growth_used)
+        _, constant = fatigue.fit(ranges_used, growth_used, 3)
+        self.prints("has the exponent {} and", exponent)
+        self.prints("the constant {}. It", constant)
+        self.prints("by a factor of {}.", growth_used.max() / growth_used.min())
+        self.prints("fails after {} cycles", specimen.history[-1]["cycles"], within=PEAK)
+        self.assertIn("final failure", specimen.summary["reason"])
+        self.prints("a crack of {} mm", 1e3 * fatigue.WIDTH * ratio[-1], within=0.04)  # a spacing
+        self.prints("where K is {} MPa", ranges[-1] / (1 - fatigue.RATIO), within=0.05)
 
     def test_half_disk(self):
         self.page = "cases/three_point_bending/half_disk.toml"

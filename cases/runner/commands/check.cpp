@@ -318,6 +318,27 @@ void print_motion(std::FILE* out, const Case& from, const Body& body, const Stud
              from.dynamics.is_implicit() ? "" : " on one thread");
 }
 
+/// Prints the cycles of mode fatigue and the laws by which bonds age.
+void print_fatigue(std::FILE* out, const Case& from) {
+  const FatigueOptions& of = from.fatigue;
+  const std::string until =
+      of.cycles > 0.0 ? fmt::format("{:g} cycles", of.cycles) : std::string("failure");
+  fmt::print(out,
+             "fatigue     load ratio {:g}: ranges of stretches are {:g} of the largest ones; "
+             "until {}\n",
+             of.load_ratio, 1.0 - of.load_ratio, until);
+  const auto print_law = [&](const LifeLaw& law, const char* where) {
+    if (!law.acts()) return;
+    constexpr double range = 1e-3;
+    fmt::print(out,
+               "fatigue     bonds {} lose {:g} (range - {:g})^{:g} of their life in a cycle: "
+               "{:.4g} cycles at a range of {:g}\n",
+               where, law.coefficient, law.limit, law.exponent, 1.0 / law.rate(range), range);
+  };
+  print_law(of.nucleation, of.growth.acts() ? "without a crack near" : "everywhere");
+  print_law(of.growth, "near a crack");
+}
+
 Offset count_of_bonds(const Body& body) {
   return convolved(body) ? body.model.failure().count_of_bonds()
                          : weighted_bonds(body.model.bonds());
@@ -408,6 +429,12 @@ Exit check(const Case& from, int threads, std::FILE* out) {
              bytes_text(available_memory()));
   if (from.solver.mode == Mode::dynamics) {
     located_errors(from, [&] { print_motion(out, from, body, options, chosen.seconds / threads); });
+  } else if (from.solver.mode == Mode::fatigue) {
+    print_fatigue(out, from);
+    fmt::print(out,
+               "time        {} per block of cycles; the number of blocks is not known before the "
+               "run\n",
+               seconds_text(chosen.seconds / threads));
   } else if (from.solver.mode == Mode::path) {
     fmt::print(out, "time        {} per event; the number of events is not known before the run\n",
                seconds_text(chosen.seconds / threads));

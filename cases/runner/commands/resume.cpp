@@ -136,8 +136,19 @@ void require_stand_in(const PathState& path, const Case& from) {
       "adaptive replaces by the body; resume in that mode until damage has begun");
 }
 
-bool is_finished(const EarlierRun& earlier, const LoadingProgramme& way) {
-  return earlier.is_concluded() && !way.has_rest(earlier.checkpoint().path.accepted.stage);
+/// True if the run has made all cycles or blocks that are asked for. Whether another bond breaks
+/// only the run itself finds out.
+bool has_made_cycles(const PathState::Fatigue& reached, const FatigueOptions& asked) {
+  return (asked.cycles > 0.0 && reached.cycles >= asked.cycles) ||
+         (asked.blocks > 0 && reached.blocks >= asked.blocks);
+}
+
+bool is_finished(const EarlierRun& earlier, const Case& from) {
+  const PathState& path = earlier.checkpoint().path;
+  if (from.solver.mode == Mode::fatigue && !has_made_cycles(path.fatigue, from.fatigue)) {
+    return false;
+  }
+  return earlier.is_concluded() && !programme_of(from).has_rest(path.accepted.stage);
 }
 
 }  // namespace
@@ -165,7 +176,7 @@ Exit resume(const std::filesystem::path& directory, const Settings& settings,
                   [](const auto& setting) { return setting.first.starts_with("solver."); })) {
     earlier.forget_solvers();
   }
-  if (is_finished(earlier, programme_of(from))) {
+  if (is_finished(earlier, from)) {
     keep_inputs_and_log_apart(from, options.log_file);
     Progress(options.quiet, options.log_file, ranks.rank() == 0)
         .say(fmt::format("the run in {} has reached its end: {} steps, load factor {:.6g}",

@@ -25,6 +25,7 @@
 #include "cases/runner/results/tables/constraint_columns.hpp"
 #include "cases/runner/results/tables/crack_tip_columns.hpp"
 #include "cases/runner/results/tables/driven_sets.hpp"
+#include "cases/runner/results/tables/fatigue_columns.hpp"
 #include "cases/runner/results/tables/motion_columns.hpp"
 #include "cases/runner/setup/body.hpp"
 #include "cases/runner/setup/lattice_rows.hpp"
@@ -147,6 +148,7 @@ class CaseRun {
     for (ProbeColumns& columns : crack_tip_columns(from)) probes_.push_back(std::move(columns));
     for (ProbeColumns& columns : constraint_columns(from)) probes_.push_back(std::move(columns));
     for (ProbeColumns& columns : motion_columns(from)) probes_.push_back(std::move(columns));
+    for (ProbeColumns& columns : fatigue_columns(from)) probes_.push_back(std::move(columns));
   }
 
   Exit run() {

@@ -153,6 +153,7 @@ struct Case : BodySpecification {
   SolverSpecification solver;
   RelaxationSpecification relaxation;
   DynamicsSpecification dynamics;
+  FatigueOptions fatigue;  ///< table [fatigue], of mode fatigue
   OutputSpecification output;
   std::vector<ProbeSpecification> probes;
   std::vector<CrackTipSpecification> crack_tips;

@@ -6,6 +6,7 @@
 #include "cases/runner/input/body_keys.hpp"
 #include "cases/runner/input/constraint_keys.hpp"
 #include "cases/runner/input/contact_keys.hpp"
+#include "cases/runner/input/fatigue_keys.hpp"
 #include "cases/runner/input/key_kinds.hpp"
 #include "cases/runner/input/load_keys.hpp"
 #include "cases/runner/input/loading_keys.hpp"
@@ -132,6 +133,10 @@ Table<Case> all_keys() {
            .unless([](auto& result, auto&) { return !result.dynamics.is_asked_for; }, "")
            .default_words("required in mode `dynamics`")
            .on_ranks(),
+       K("fatigue", &Case::fatigue, fatigue_keys(), "table: cycles of the load")
+           .written_if([](auto& result, auto&) { return result.solver.mode == Mode::fatigue; })
+           .then(check_fatigue_table)
+           .default_words("required in mode `fatigue`"),
        K("output", &Case::output, output_keys(), "table: results folder"),
        K("probe", &Case::probes, probe_keys(), "tables: values that are recorded in the history")
            .on_ranks(),

@@ -206,6 +206,9 @@ Table<ProbeSpecification> probe_keys() {
              if (field != nullptr && field->needs == FieldNeeds::motion &&
                  !at.so_far.dynamics.is_asked_for)
                at.refuse("is for solver.mode = \"dynamics\"");
+             if (field != nullptr && field->needs == FieldNeeds::fatigue &&
+                 at.so_far.solver.mode != Mode::fatigue)
+               at.refuse("is for solver.mode = \"fatigue\"");
            })
            .early(),
        K("to", &Spec::to, coordinates(), "end of the line")

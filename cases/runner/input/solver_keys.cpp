@@ -113,7 +113,8 @@ Table<SolverSpecification> solver_keys() {
          "`\"arc_length\"`: steps along the equilibrium path, through limit points and "
          "bifurcations, without damage; `\"path\"`: sequentially linear analysis, from one "
          "breaking bond to the next; `\"dynamics\"`: the motion in time, by explicit or implicit "
-         "steps")
+         "steps; `\"fatigue\"`: [cycles of the load](fatigue.md), from one bond at the end of its "
+         "life to the next")
            .extends()
            .on_ranks(),
        K("linear", &Spec::linear,

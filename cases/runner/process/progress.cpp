@@ -176,7 +176,8 @@ void Progress::accepted(const StepRecord& record, double relative_residual) {
   const bool relaxed_or_damaged =
       !record.motion && (record.relaxation_iterations > 0 || record.max_damage > 0.0);
   // The length of these paths is not known in advance.
-  if (record.mode != Mode::arc_length.name && record.mode != Mode::path.name)
+  if (record.mode != Mode::arc_length.name && record.mode != Mode::path.name &&
+      record.mode != Mode::fatigue.name)
     time_left_.accepted(elapsed.count(), record.stage / last_stage_, relaxed_or_damaged);
   if (record.motion) return moved(record);
   const std::string relaxed =
@@ -186,11 +187,13 @@ void Progress::accepted(const StepRecord& record, double relative_residual) {
   const std::string broken = record.broken_bonds > 0
                                  ? fmt::format(", {} bonds broken", record.broken_bonds)
                                  : std::string();
+  const std::string cycles =
+      record.mode == Mode::fatigue.name ? fmt::format("  cycles {:<9.6g}", record.cycles) : "";
   const std::string unstable =
       record.negative_pivots > 0 ? fmt::format(", {} negative pivots", record.negative_pivots) : "";
   say(fmt::format(
-      "step {:4}  load {:<8.6g}  {:2} iterations{}  residual {:.1e}  damage {:.3g}{}{}{}",
-      record.step, record.load_factor, record.newton_iterations, relaxed, relative_residual,
+      "step {:4}  load {:<8.6g}{}  {:2} iterations{}  residual {:.1e}  damage {:.3g}{}{}{}",
+      record.step, record.load_factor, cycles, record.newton_iterations, relaxed, relative_residual,
       record.max_damage, broken, unstable, time_left()));
 }
 

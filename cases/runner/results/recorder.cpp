@@ -7,6 +7,7 @@
 
 #include "assembly/terms/damage.hpp"
 #include "cases/runner/results/state_values.hpp"
+#include "cases/runner/results/tables/fatigue_columns.hpp"
 #include "cases/runner/results/tables/motion_columns.hpp"
 #include "cases/runner/results/tables/record_tables.hpp"
 #include "solvers/observe/internal_force.hpp"
@@ -22,6 +23,7 @@ bool is_recorded(const PointField& field, const Case& from, bool has_contacts) {
   if (is_probed || field.shown_by == ShownBy::probes) return is_probed;
   if (field.needs == FieldNeeds::stress) return from.output.stress;
   if (field.needs == FieldNeeds::contacts) return has_contacts;
+  if (field.needs == FieldNeeds::fatigue) return from.solver.mode == Mode::fatigue;
   return field.needs == FieldNeeds::nothing || from.dynamics.is_asked_for;
 }
 
@@ -58,8 +60,8 @@ Recorder::Fields Recorder::fields(const StateView& at, ObservedExtras extras) co
 void Recorder::accepted(StepRecord record, const AcceptedState& state) {
   unwritten_.reset();  // freed before new fields are made
   const StateView at = state.trial.at();
-  Fields made = fields(
-      at, {internal_force(body_, state.trial, state.external_force), state.piece, state.velocity});
+  Fields made = fields(at, {internal_force(body_, state.trial, state.external_force), state.piece,
+                            state.velocity, state.life});
   record.max_stretch = made.max_stretch;
   record.max_damage = made.max_damage;
   record_broken_bonds(record, at.history);
@@ -75,6 +77,7 @@ void Recorder::accepted(StepRecord record, const AcceptedState& state) {
                       "; its energy release rates are reported as 0");
   }
   add_motion_values(record, points_.dimension, record.probes);
+  add_fatigue_values(record, case_, record.probes);
   const bool is_at_rest =
       record.step == 0 && !record.motion && !moves(made.values.at("displacement"));
   for (const ProbeSpecification& probe : case_.probes) {
@@ -142,7 +145,7 @@ void Recorder::go_on(const Checkpoint& checkpoint, const EarlierResults& earlier
     State accepted = path.accepted;
     accepted.environment = body_.conditions->environment({accepted.stage, accepted.load});
     unwritten_ = fields(StateView(accepted), {checkpoint.unwritten.force, path.pins.found.piece,
-                                              path.dynamics.velocity});
+                                              path.dynamics.velocity, path.fatigue.lives.life});
   }
 }
 

@@ -89,7 +89,7 @@ void refuse_values_without_ranks(const Case& from) {
         "models other than \"bond\" need a lattice, and volume_correction \"none\" or \"linear\"");
   }
   const Mode mode = from.solver.mode;
-  if (mode == Mode::path || mode == Mode::arc_length) {
+  if (mode == Mode::path || mode == Mode::arc_length || mode == Mode::fatigue) {
     refuse("solver.mode", std::string(mode.name),
            "take \"newton\", \"adaptive\", \"relaxation\" or \"dynamics\"");
   }

@@ -304,6 +304,8 @@ std::vector<Preflight::Idle> idle_keys(const Case& from) {
       "solver.elastic_horizon_ratio", "solver.mode = \"adaptive\"");
   add(from.loading.max_broken_bonds > 0 && mode == Mode::relaxation, "loading.max_broken_bonds",
       "implicit steps, as in solver.mode = \"newton\"");
+  add(from.fatigue.crack_damage != FatigueOptions().crack_damage && !from.fatigue.growth.acts(),
+      "fatigue.crack_damage", "fatigue.growth");
   const auto* const source = std::get_if<PointSource>(&from.body);
   const bool has_boundary = source != nullptr && source->is_mesh() && source->cut_bonds;
   add(from.output.count_cracks && from.cracks.empty() && cracks_of_shapes(from).empty() &&

@@ -24,6 +24,7 @@ LoadSteppingOptions load_stepping_options(const Case& from) {
   options.stop_below = from.loading.stop_below;
   options.arc_length = from.solver.arc_length;
   options.events = from.loading.events;
+  options.fatigue = from.fatigue;
   options.fragments = from.solver.fragments;
   options.relaxation_steps = from.relaxation.steps;
   options.relaxation = from.relaxation.options;

@@ -8,11 +8,13 @@ from .units import LENGTHS, number, time_unit, unit_for
 
 
 def progress(results, step: int, load: float) -> tuple[str, str, str]:
-    """How far the run is at a step: name, value and unit of its time, of the controlled displacement, or else of the
-    load factor."""
+    """How far the run is at a step: name, value and unit of its time, of the cycles of its load, of the controlled
+    displacement, or else of the load factor."""
     if results.is_of_motion:
         unit, size = time_unit(results.numbers("load_factor").max())
         return "time", number(load / size), unit
+    if (cycles := results.in_history(step, "cycles")) is not None:  # of mode fatigue
+        return "cycles", number(cycles), ""
     controlled = control(results)
     if controlled is not None and (value := results.in_history(step, "control")) is not None:
         unit, size = unit_for(np.abs(controlled.values).max(), LENGTHS)

@@ -213,7 +213,7 @@ TEST(DimensionOfExpression, RefusesUnitsThatDoNotFit) {
 
 /// Keys whose unit counts something; every other unit must be one that is converted.
 TEST(UnitsOfKeys, AreUnitsOfMeasureOrCounts) {
-  const std::vector<std::string> counts{"spacings", "bonds", "steps", "time steps"};
+  const std::vector<std::string> counts{"spacings", "bonds", "steps", "time steps", "blocks"};
   int measures = 0;
   for (const TableDescription& table : table_descriptions()) {
     for (const KeyDescription& key : table.keys) {
