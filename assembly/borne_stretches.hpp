@@ -26,12 +26,13 @@ struct UtilisedBond {
   double utilisation = 0.0, stretch = 0.0;
 };
 
-/// Stiffness that a bond has lost along its direction.
+/// Stiffness and force that a bond has lost along its direction.
 struct LostStiffness {
   Offset bond = 0;
   Index first = 0, second = 0;  ///< its points
   Coordinates direction{};      ///< from first to second, current unit vector
   double stiffness = 0.0;       ///< [N/m]
+  double force = 0.0;           ///< tension [N]
 };
 
 /// Irreversible drops of stiffness of some bonds at a state.

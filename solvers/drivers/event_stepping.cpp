@@ -189,6 +189,7 @@ bool EventStepping::pin(Settled& settled) {
                                            .reason = state.pins.described(path_.problem().sums())});
   }
   tangent_.reset();  // the equations have changed
+  known_.clear();
   path_.state().events.tangent = {};
   if (path_.pin() == Advance::goes_on) return true;
   settled.outcome = Outcome::out_of_memory;
@@ -214,6 +215,7 @@ Attempt EventStepping::settle_nearby(const State& at, std::span<const double> bo
   step.preloads = at.preload < 1.0;
   step.borne = borne;
   step.settles = true;
+  step.known = &known_;
   step.least_scale = share_of_scale * path_.state().events.largest_scale;
   NewtonOptions options = held();
   options.relative_tolerance = relative_tolerance;
@@ -239,6 +241,7 @@ Attempt EventStepping::settle_downhill(const State& at, double relative_toleranc
 
 EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& ledger) {
   Assembler& body = path_.damaged();
+  known_.clear();  // those of the body as it was
   const std::vector<UtilisedBond> batch = batch_of(at);
   BondDrops dropped = drop(body, StateView(at, Damage::held), borne_, batch);
   Settled settled;
@@ -368,7 +371,8 @@ StrengthStep EventStepping::strength_step() const {
 
 EventStepping::Step EventStepping::search() {
   const State& from = path_.state().accepted;
-  const StrengthStep asked = strength_step();
+  StrengthStep asked = strength_step();
+  asked.known = &known_;
   Step step;
   const LoadPoint stop = asked.point(asked.stop);
   if (const auto refusal = path_.refusal_of_conditions(stop)) {
@@ -526,6 +530,7 @@ Advance EventStepping::accept(Step step, PathState before) {
   const bool needs_tangent = tangent().touches() || touches(reached);
   const bool is_known = !needs_tangent || tangent().refresh(reached) == LinearOutcome::solved;
   events.tangent = tangent().reference();
+  known_.clear();  // a path that goes on from here does not have them
   const double most = utilisation(reached, borne_);
   events.at_strength = most >= 1.0 - tie;
   std::string how =
@@ -564,6 +569,7 @@ Advance EventStepping::fail(Step step, PathState before) {
   ahead_.reset();
   borne_.clear();
   tangent_.reset();
+  known_.clear();
   PathState::Events& events = path_.state().events;
   const double longest = path_.options().cut * std::abs(step.attempted);
   const bool may_cut = path_.options().adaptive && longest >= path_.options().smallest_step &&

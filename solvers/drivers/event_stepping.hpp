@@ -133,6 +133,7 @@ class EventStepping : public Driver {
   std::optional<Settled> ahead_;  // next event of the accepted state
   std::vector<double> borne_;     // resistances in the accepted state; empty: not known
   std::unique_ptr<UpdatedTangent> tangent_;
+  KnownCorrections known_;  // of the body since the last event or accepted state
   bool tells_ = true;
 };
 

@@ -43,6 +43,7 @@ class StrengthSearch {
         observer_(observer),
         from_(from),
         has_contacts_(problem.assembler.has_contacts()),
+        known_(step.known ? *step.known : own_known_),
         start_(step.preloads ? from.preload : from.stage),
         longest_(step.longest),
         external_force_(from.displacement.size()) {
@@ -82,9 +83,12 @@ class StrengthSearch {
     row.iteration = iteration;
     row.step_length = 1.0;
     if (Outcome found = linearise(iteration); found != Outcome::converged) return found;
-    const double earlier = std::exchange(last_residual_, current_.residual_norm);
+    last_residual_ = current_.residual_norm;
     const std::vector<double> before = current_.displacement;
-    if (Outcome found = correct(earlier); found != Outcome::converged) return found;
+    // What a settled state lacks of equilibrium is far less than what the predictor adds.
+    const bool is_settled = iteration == 1 && !step_.settles && is_nearly_balanced();
+    const Outcome corrected = is_settled ? Outcome::converged : correct();
+    if (corrected != Outcome::converged) return corrected;
     double change = 0.0;
     if (!step_.settles) {
       if (Outcome found = find_rate(); found != Outcome::converged) return found;
@@ -99,6 +103,7 @@ class StrengthSearch {
       if (result_.end == StrengthEnd::inadmissible) return Outcome::converged;
       if (iteration == 1 && ends_at_corner(change)) change = choose(true);
       for (const Index dof : problem_.free.dof) current_.displacement[dof] += change * rate_[dof];
+      if (iteration == 1) predicted_ = change;
     }
     // The predictor foresees what closes; if not, its state is judged as it is.
     row.step_length = foreseen_.empty() ? shorten(before) : 1.0;
@@ -236,18 +241,44 @@ class StrengthSearch {
   }
 
   /// Moves to u + a.
-  Outcome correct(double earlier) {
-    const double target = options_.relative_tolerance * scale();
-    if (current_.residual_norm <= target) return Outcome::converged;
-    std::vector<double> residual = external_force_, correction;
-    add_scaled(residual, -1.0, current_.gradient);
-    const double tolerance =
-        std::min(options_.linear_tolerance, forcing_term(current_.residual_norm, earlier, target));
-    const LinearOutcome linear = tangent_.solve(residual, {}, tolerance, correction);
+  Outcome correct() {
+    if (current_.residual_norm <= options_.relative_tolerance * scale()) {
+      correction_.clear();
+      return Outcome::converged;
+    }
+    std::vector<double> residual = learn(), of_tangent;
+    std::vector<double> of_known = known_.take_off(residual);
+    // A tangent of another state leaves more than this, however accurate its solutions are.
+    const double tolerance = options_.linear_tolerance;
+    const LinearOutcome linear = tangent_.solve(residual, {}, tolerance, of_tangent);
     if (linear != LinearOutcome::solved) return outcome_of(linear);
-    add_scaled(current_.displacement, 1.0, correction);
+    correction_ = std::move(of_known);
+    add_scaled(correction_, 1.0, of_tangent);
+    correct_rate();
+    add_scaled(current_.displacement, 1.0, correction_);
     move_followers(problem_, current_);
     return Outcome::converged;
+  }
+
+  /// Learns from the last correction. Returns the residual.
+  std::vector<double> learn() {
+    std::vector<double> residual(external_force_.size());
+    for (const Index dof : problem_.free.dof) {
+      residual[dof] = external_force_[dof] - current_.gradient[dof];
+    }
+    if (!correction_.empty() && !has_contacts_) {  // whose stiffness changes
+      std::vector<double> change = residual;
+      add_scaled(change, -1.0, corrected_);
+      known_.add(std::move(correction_), std::move(change));
+    }
+    corrected_ = residual;
+    return residual;
+  }
+
+  /// The step along b was wrong by the first correction after it.
+  void correct_rate() {
+    if (predicted_ == 0.0 || has_contacts_) return;
+    add_scaled(rate_, 1.0 / std::exchange(predicted_, 0.0), correction_);
   }
 
   /// Finds b and the rates of the eigenstretches, anew if the tangent is or if there is an
@@ -280,8 +311,7 @@ class StrengthSearch {
       result_.goes_up = range.high >= 0.0;
       meets_upper_ = range.low <= 0.0 || range.high < 0.0;
     }
-    const bool is_nearly_balanced = last_residual_ <= nearly * scale();
-    if (!is_first && is_nearly_balanced && range.low > range.high) return refuse();
+    if (!is_first && is_nearly_balanced() && range.low > range.high) return refuse();
     double change = meets_upper_ ? range.high : range.low;
     result_.end = StrengthEnd::at_strength;
     // If the present stage is not admissible, the one to stop at need not be.
@@ -301,6 +331,8 @@ class StrengthSearch {
     }
     return change;
   }
+
+  [[nodiscard]] bool is_nearly_balanced() const { return last_residual_ <= nearly * scale(); }
 
   double refuse() {
     result_.end = StrengthEnd::inadmissible;
@@ -373,6 +405,8 @@ class StrengthSearch {
   const IterationObserver& observer_;
   const State& from_;
   bool has_contacts_;
+  KnownCorrections own_known_;
+  KnownCorrections& known_;
   double start_, longest_;
   std::vector<double> external_force_;
   Trial current_;
@@ -381,7 +415,9 @@ class StrengthSearch {
   double foreseen_at_ = 0.0;          // its stage
   bool is_whole_ = true;              // the last step was not shortened
   std::vector<double> rate_, eigenstretch_rate_;
-  int rate_of_ = 0, refreshed_at_ = 0;  // number of refreshes of the tangent
+  std::vector<double> correction_, corrected_;  // the last one, and the residual before it
+  double predicted_ = 0.0;                      // change along b, until b is corrected
+  int rate_of_ = 0, refreshed_at_ = 0;          // number of refreshes of the tangent
   bool meets_upper_ = true;
   double last_residual_ = 0.0, old_scale_ = 0.0;
   StrengthResult result_;

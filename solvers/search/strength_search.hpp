@@ -4,6 +4,7 @@
 #include <span>
 
 #include "solvers/search/condition_rates.hpp"
+#include "solvers/search/known_corrections.hpp"
 #include "solvers/search/newton.hpp"
 #include "solvers/search/updated_tangent.hpp"
 
@@ -26,6 +27,8 @@ struct StrengthStep {
   double longest = std::numeric_limits<double>::infinity();
   /// Change of the stage within which contacts that close and open are one corner of the path.
   double corner = 0.0;
+  /// Of the same elastic body, to which this search adds its own; null: starts with none.
+  KnownCorrections* known = nullptr;
 
   [[nodiscard]] LoadPoint point(double stage) const {
     return preloads ? LoadPoint::of_preload(stage) : LoadPoint(stage);
@@ -60,7 +63,8 @@ struct StrengthResult {
 /// b it finds the range of dl in which no bond is overloaded. If the present stage is within it,
 /// the next strength is at its upper end; otherwise the strength that is met first is at the nearer
 /// end, up or down. The stretches are those of the state itself: the strength is exact at finite
-/// strain.
+/// strain. What the tangent lacks shows in the residuals: a is corrected by what earlier ones have
+/// changed (KnownCorrections), and b by the first a after the step along it.
 ///
 /// Where contacts close and open the path has corners, beyond which b means nothing. So a search
 /// ends just behind the first one that b predicts. While contacts press, every iteration has a
