@@ -136,6 +136,9 @@ class StrengthSearch {
 
   Outcome refresh_at(double stage) {
     refreshed_at_ = tangent_.refreshed() + 1;
+    known_.clear();  // where the body turns sharply, they may be what misleads
+    correction_.clear();
+    predicted_ = 0.0;
     const LoadPoint at = step_.point(stage);
     const SharedEnvironment environment =
         foreseen_.empty() ? current_.environment : foreseen_under_;
