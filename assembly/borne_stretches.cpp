@@ -104,18 +104,23 @@ std::vector<BondDrive> drives(Assembler& body, const StateView& at, const StateL
 
 /// Calls visit(thread, point, bond, drive) for every bond with a finite borne stretch, drive a
 /// BondStretch or a BondDrive.
+/// @param among these bonds; empty for all
 template <class Visit>
 void for_each_driven(Assembler& body, const StateView& at, std::span<const double> borne,
-                     const StateLine& line, const Visit& visit) {
+                     const StateLine& line, const Visit& visit,
+                     std::span<const UtilisedBond> among = {}) {
+  const auto for_each = [&](const auto& visit_bond) {
+    if (among.empty()) return for_each_bearing(body, borne, visit_bond);
+    for (const UtilisedBond& one : among) visit_bond(0, one.first_point, one.bond);
+  };
   if (body.model().fails_by_release()) {
     const std::vector<BondDrive> all = drives(body, at, line);
-    for_each_bearing(body, borne, [&](int thread, Index i, Offset bond) {
-      visit(thread, i, bond, all[std::size_t(bond)]);
-    });
+    for_each(
+        [&](int thread, Index i, Offset bond) { visit(thread, i, bond, all[std::size_t(bond)]); });
     return;
   }
   look_at_bonds(body, at, [&](const auto& look) {
-    for_each_bearing(body, borne, [&](int thread, Index i, Offset bond) {
+    for_each([&](int thread, Index i, Offset bond) {
       visit(thread, i, bond, look.along(i, bond, line));
     });
   });
@@ -246,15 +251,18 @@ std::vector<UtilisedBond> utilised_bonds(Assembler& body, const StateView& at,
 
 AdmissibleRange admissible_range(Assembler& body, const StateView& at,
                                  std::span<const double> borne, std::span<const double> rate,
-                                 std::span<const double> eigenstretch_rate, double share) {
+                                 std::span<const double> eigenstretch_rate, double share,
+                                 std::span<const UtilisedBond> among) {
   std::vector<AdmissibleRange> parts(static_cast<std::size_t>(body.threads()));
-  for_each_driven(body, at, borne, {rate, eigenstretch_rate},
-                  [&](int thread, Index, Offset bond, const auto& drive) {
-                    const double strength = borne[std::size_t(bond)];
-                    AdmissibleRange& part = parts[std::size_t(thread)];
-                    narrow(part, drive, share * strength);
-                    raise(part.utilisation, driving(drive), strength);
-                  });
+  for_each_driven(
+      body, at, borne, {rate, eigenstretch_rate},
+      [&](int thread, Index, Offset bond, const auto& drive) {
+        const double strength = borne[std::size_t(bond)];
+        AdmissibleRange& part = parts[std::size_t(thread)];
+        narrow(part, drive, share * strength);
+        raise(part.utilisation, driving(drive), strength);
+      },
+      among);
   AdmissibleRange range;
   for (const AdmissibleRange& part : parts) narrow(range, part);
   return range;

@@ -72,11 +72,13 @@ struct AdmissibleRange {
 /// @param rate of the displacement, per unit of the step
 /// @param eigenstretch_rate per point, or empty
 /// @param share of the borne stretches
+/// @param among these bonds; empty for all
 [[nodiscard]] AdmissibleRange admissible_range(Assembler& body, const StateView& at,
                                                std::span<const double> borne,
                                                std::span<const double> rate,
                                                std::span<const double> eigenstretch_rate,
-                                               double share);
+                                               double share,
+                                               std::span<const UtilisedBond> among = {});
 
 /// Largest utilisation of any bond.
 [[nodiscard]] double largest_utilisation(Assembler& body, const StateView& at,

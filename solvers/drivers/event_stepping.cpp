@@ -36,9 +36,10 @@ constexpr double share_from_nothing = 1e-6;
 /// bond that is loaded up to the corner may be overloaded for as long.
 constexpr double share_of_corner = 0.01;
 
-/// Relative residual at which a body counts as settled: the error of its energy is the square of
-/// it.
-constexpr double settled_tolerance = 1e-7;
+/// Relative residual of a settled state from which is judged whether bonds are at their strength,
+/// or which ones: the state is closer to that than this share of their strength, or an avalanche
+/// runs through it.
+constexpr double judged_tolerance = 1e-7, share_to_judge = 0.01;
 constexpr int most_settling_iterations = 10;
 
 /// Newton iterations within which a body that buckles as bonds break may come to rest.
@@ -104,8 +105,9 @@ Advance EventStepping::next() {
   }
   if (events.at_strength) {
     tells_ = false;  // reported before the state was accepted
-    Settled settled =
-        ahead_ ? std::move(*ahead_) : settle(path_.state().accepted, path_.state().ledger);
+    Settled settled = ahead_
+                          ? std::move(*ahead_)
+                          : settle(path_.state().accepted, path_.state().ledger, settled_tolerance);
     tells_ = true;
     ahead_.reset();
     if (!settled.has_converged()) {
@@ -189,7 +191,6 @@ bool EventStepping::pin(Settled& settled) {
                                            .reason = state.pins.described(path_.problem().sums())});
   }
   tangent_.reset();  // the equations have changed
-  known_.clear();
   path_.state().events.tangent = {};
   if (path_.pin() == Advance::goes_on) return true;
   settled.outcome = Outcome::out_of_memory;
@@ -215,10 +216,9 @@ Attempt EventStepping::settle_nearby(const State& at, std::span<const double> bo
   step.preloads = at.preload < 1.0;
   step.borne = borne;
   step.settles = true;
-  step.known = &known_;
   step.least_scale = share_of_scale * path_.state().events.largest_scale;
   NewtonOptions options = held();
-  options.relative_tolerance = relative_tolerance;
+  options.relative_tolerance = std::max(relative_tolerance, options.relative_tolerance);
   options.max_iterations = most_settling_iterations;
   // Its iterations are not reported: it only precedes the search for the next state.
   StrengthResult found =
@@ -230,7 +230,7 @@ Attempt EventStepping::settle_nearby(const State& at, std::span<const double> bo
 Attempt EventStepping::settle_downhill(const State& at, double relative_tolerance) {
   tangent().forget();
   NewtonOptions options = held();
-  options.relative_tolerance = relative_tolerance;
+  options.relative_tolerance = std::max(relative_tolerance, options.relative_tolerance);
   options.max_iterations = std::max(options.max_iterations, most_iterations_of_a_fall);
   const SolvedBody& body = path_.body();
   NewtonResult found =
@@ -239,9 +239,9 @@ Attempt EventStepping::settle_downhill(const State& at, double relative_toleranc
   return to_attempt(std::move(found), load_point(at));
 }
 
-EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& ledger) {
+EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& ledger,
+                                             double tolerance) {
   Assembler& body = path_.damaged();
-  known_.clear();  // those of the body as it was
   const std::vector<UtilisedBond> batch = batch_of(at);
   BondDrops dropped = drop(body, StateView(at, Damage::held), borne_, batch);
   Settled settled;
@@ -268,7 +268,6 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   settled.attempt = undefined_attempt(at, load_point(at));
   if (!may_go_on) return settled;
 
-  const double tolerance = std::max(held().relative_tolerance, settled_tolerance);
   const auto settles = [&](Attempt attempt) {
     settled.attempt = std::move(attempt);
     settled.outcome = settled.attempt.outcome;
@@ -279,12 +278,18 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   // A stable body comes to rest in a stable state, however far that is.
   const bool is_lost = has_settled && !was_bifurcated && is_unstable(settled.attempt);
   if ((!has_settled || is_lost) && settled.outcome != Outcome::interrupted &&
-      !settles(settle_downhill(from, tolerance))) {
+      !settles(settle_downhill(from, judged_tolerance))) {
     return settled;
   }
   if (!settled.has_converged()) return settled;
   settled.state = state_of(settled.attempt);
   settled.utilisation = utilisation(settled.state, settled.borne);
+  const bool is_close = std::abs(settled.utilisation - 1.0) < share_to_judge;
+  if (is_close && tolerance > judged_tolerance && !touches(settled.state)) {
+    if (!settles(settle_nearby(settled.state, settled.borne, judged_tolerance))) return settled;
+    settled.state = state_of(settled.attempt);
+    settled.utilisation = utilisation(settled.state, settled.borne);
+  }
   return settled;
 }
 
@@ -371,8 +376,7 @@ StrengthStep EventStepping::strength_step() const {
 
 EventStepping::Step EventStepping::search() {
   const State& from = path_.state().accepted;
-  StrengthStep asked = strength_step();
-  asked.known = &known_;
+  const StrengthStep asked = strength_step();
   Step step;
   const LoadPoint stop = asked.point(asked.stop);
   if (const auto refusal = path_.refusal_of_conditions(stop)) {
@@ -403,8 +407,11 @@ EventStepping::Step EventStepping::run_avalanche() {
     step.fault = "no load is admissible, although no bond is at its strength";
     return step;
   }
+  step.attempt = settle_anywhere(state.accepted, borne_, judged_tolerance);
+  if (!step.attempt.has_converged()) return step;
+  state.accepted = state_of(step.attempt);
   for (;; ++passes) {
-    Settled settled = settle(state.accepted, state.ledger);
+    Settled settled = settle(state.accepted, state.ledger, judged_tolerance);
     step.attempt = settled.attempt;
     step.attempt.outcome = settled.outcome;
     step.fault = settled.fault;
@@ -530,7 +537,6 @@ Advance EventStepping::accept(Step step, PathState before) {
   const bool needs_tangent = tangent().touches() || touches(reached);
   const bool is_known = !needs_tangent || tangent().refresh(reached) == LinearOutcome::solved;
   events.tangent = tangent().reference();
-  known_.clear();  // a path that goes on from here does not have them
   const double most = utilisation(reached, borne_);
   events.at_strength = most >= 1.0 - tie;
   std::string how =
@@ -541,7 +547,7 @@ Advance EventStepping::accept(Step step, PathState before) {
     with_step.accept(step.found.ledger,
                      path_.working_force(step.attempt.state, step.attempt.external_force),
                      step.found.energies);
-    ahead_ = settle(reached, with_step);
+    ahead_ = settle(reached, with_step, settled_tolerance);
     if (ahead_->outcome == Outcome::interrupted) {  // the state's stability is not known
       step.attempt.outcome = Outcome::interrupted;
       return fail(std::move(step), std::move(before));
@@ -569,7 +575,6 @@ Advance EventStepping::fail(Step step, PathState before) {
   ahead_.reset();
   borne_.clear();
   tangent_.reset();
-  known_.clear();
   PathState::Events& events = path_.state().events;
   const double longest = path_.options().cut * std::abs(step.attempted);
   const bool may_cut = path_.options().adaptive && longest >= path_.options().smallest_step &&

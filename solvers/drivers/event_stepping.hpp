@@ -77,7 +77,8 @@ class EventStepping : public Driver {
   };
 
   /// Carries out the next event: bonds drop at a state, and the body settles.
-  [[nodiscard]] Settled settle(const State& at, const PathLedger& ledger);
+  /// @param tolerance relative residual; it is settled more closely if that matters
+  [[nodiscard]] Settled settle(const State& at, const PathLedger& ledger, double tolerance);
   /// True if contacts press or touch.
   [[nodiscard]] bool touches(const State& at) const;
   /// Searches the equilibrium at the present load, if it is not far.
@@ -133,7 +134,6 @@ class EventStepping : public Driver {
   std::optional<Settled> ahead_;  // next event of the accepted state
   std::vector<double> borne_;     // resistances in the accepted state; empty: not known
   std::unique_ptr<UpdatedTangent> tangent_;
-  KnownCorrections known_;  // of the body since the last event or accepted state
   bool tells_ = true;
 };
 

@@ -104,8 +104,26 @@ void transfer_pins(StateArchive& archive, FragmentPins& pins) {
   archive.transfer("pins/pinned", pinned, Rows::dofs);
 }
 
+void transfer_floats(StateArchive& archive, const std::string& name, std::vector<float>& values) {
+  std::vector<double> numbers(values.begin(), values.end());
+  archive.transfer(name, numbers, Rows::whole);
+  values.assign(numbers.begin(), numbers.end());
+}
+
+void transfer_known(StateArchive& archive, const std::string& name, KnownCorrections& known) {
+  std::vector<KnownCorrections::Known> all = known.latest_first();
+  int count = int(all.size());
+  archive.transfer(name + "/count", count);
+  all.resize(std::size_t(count));
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    transfer_floats(archive, name + "/correction_" + std::to_string(k), all[k].correction);
+    transfer_floats(archive, name + "/change_" + std::to_string(k), all[k].change);
+  }
+  known.restore(std::move(all));
+}
+
 void transfer_tangent(StateArchive& archive, TangentReference& tangent) {
-  auto& [at, lost] = tangent;
+  auto& [at, lost, known] = tangent;
   [[maybe_unused]] auto& [displacement, stage, history, load, environment, preload] = at;
   const std::string name = "events/tangent";
   archive.transfer(name + "/displacement", displacement, Rows::dofs);
@@ -132,6 +150,7 @@ void transfer_tangent(StateArchive& archive, TangentReference& tangent) {
     lost.push_back(
         {Offset(bond[k]), first[k], second[k], {along[0], along[1], along[2]}, stiffness[k]});
   }
+  transfer_known(archive, name + "/known", known);
 }
 
 }  // namespace

@@ -1,29 +1,50 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
+
+#include "src/core/types.hpp"
 
 namespace peristat {
 
-/// What earlier corrections of an elastic body's displacement have changed of its residual (force).
-/// A tangent of another state errs in much the same way again and again: what a residual has in
-/// common with these changes is corrected by their own corrections, the rest by the tangent.
+/// What the last corrections of an elastic body's displacement have changed of its residual
+/// (force). A tangent of another state errs in much the same way again and again: what a residual
+/// has in common with these changes is corrected by their own corrections, the rest by the tangent.
 class KnownCorrections {
  public:
-  /// Takes what is known off a residual.
-  /// @return its correction
-  [[nodiscard]] std::vector<double> take_off(std::span<double> residual) const;
+  /// A correction [m/N] and its change of the residual, of norm 1, per equation. In half the
+  /// memory: what the body has moved since matters more than the last digits.
+  struct Known {
+    std::vector<float> correction, change;
+  };
 
+  /// Takes what is known off a residual, and adds its correction.
+  void take_off(std::span<double> residual, std::span<double> correction) const;
+
+  /// The latest counts: earlier ones keep what is not in it.
   /// @param change that a correction has made of the residual
-  void add(std::vector<double> correction, std::vector<double> change);
+  void add(std::span<const double> correction, std::span<const double> change);
 
-  void clear() { known_.clear(); }
+  /// Subtracts the stiffness k g g^T from the tangent that the corrections belong to; `settle` ends
+  /// a series of these.
+  /// @param g shares by equation
+  void lose(double stiffness, std::span<const std::pair<Index, double>> g);
+  void settle();
+
+  void clear() { latest_first_.clear(); }
+
+  [[nodiscard]] const std::vector<Known>& latest_first() const { return latest_first_; }
+  void restore(std::vector<Known> latest_first) { latest_first_ = std::move(latest_first); }
+
+  /// Largest number of corrections: those of some two events.
+  static constexpr std::size_t most = 10;
 
  private:
-  struct Known {
-    std::vector<double> correction, change;  ///< changes are orthonormal
-  };
-  std::vector<Known> known_;
+  template <class Numbers>
+  void put_first(const Numbers& correction, const Numbers& change);
+
+  std::vector<Known> latest_first_;  // changes are orthonormal
 };
 
 }  // namespace peristat

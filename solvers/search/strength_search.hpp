@@ -4,7 +4,6 @@
 #include <span>
 
 #include "solvers/search/condition_rates.hpp"
-#include "solvers/search/known_corrections.hpp"
 #include "solvers/search/newton.hpp"
 #include "solvers/search/updated_tangent.hpp"
 
@@ -13,6 +12,10 @@ namespace peristat {
 /// Utilisation of the most utilised bond in a state at its strength: near enough to 1 for every
 /// digit that is printed, and on the side on which no bond is overloaded.
 inline constexpr double share_at_strength = 1.0 - 1e-9;
+
+/// Relative residual at which a body counts as settled after an event: the error of its energy is
+/// the square of it, and the predictor of the next search adds more than that.
+inline constexpr double settled_tolerance = 1e-5;
 
 /// Search along an elastic path for the next strength. The path's parameter is the stage or, before
 /// step 0, the share of the preload, which acts at load 0.
@@ -27,8 +30,6 @@ struct StrengthStep {
   double longest = std::numeric_limits<double>::infinity();
   /// Change of the stage within which contacts that close and open are one corner of the path.
   double corner = 0.0;
-  /// Of the same elastic body, to which this search adds its own; null: starts with none.
-  KnownCorrections* known = nullptr;
 
   [[nodiscard]] LoadPoint point(double stage) const {
     return preloads ? LoadPoint::of_preload(stage) : LoadPoint(stage);
@@ -63,8 +64,8 @@ struct StrengthResult {
 /// b it finds the range of dl in which no bond is overloaded. If the present stage is within it,
 /// the next strength is at its upper end; otherwise the strength that is met first is at the nearer
 /// end, up or down. The stretches are those of the state itself: the strength is exact at finite
-/// strain. What the tangent lacks shows in the residuals: a is corrected by what earlier ones have
-/// changed (KnownCorrections), and b by the first a after the step along it.
+/// strain. What the tangent lacks shows in the residuals: the tangent learns from each a, and b is
+/// corrected by the first a after the step along it.
 ///
 /// Where contacts close and open the path has corners, beyond which b means nothing. So a search
 /// ends just behind the first one that b predicts. While contacts press, every iteration has a

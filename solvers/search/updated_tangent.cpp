@@ -104,6 +104,7 @@ void UpdatedTangent::become(const TangentReference& reference) {
   if (kept.at.displacement.empty() || refresh(kept.at) != LinearOutcome::solved) return forget();
   is_direct_ = tells_pivots();
   lose(kept.lost);
+  if (is_there_) reference_.known = kept.known;
 }
 
 LinearOutcome UpdatedTangent::refresh(State at, std::span<const double> foreseen) {
@@ -169,17 +170,29 @@ std::vector<double> UpdatedTangent::right_hand_side(std::span<const double> forc
   return side;
 }
 
-LinearOutcome UpdatedTangent::solve(std::span<const double> force, std::span<const double> jump,
-                                    double tolerance, std::vector<double>& direction) {
-  const std::vector<double> side = right_hand_side(force, jump);
-  const bool is_known = correction_->is_freed(side, tolerance);
-  std::vector<double> solution = is_known ? correction_->freed_solution : std::vector<double>();
-  const LinearOutcome outcome =
-      is_known ? LinearOutcome::solved : solve_for(side, tolerance, solution);
+LinearOutcome UpdatedTangent::solve(std::span<const double> force, double tolerance,
+                                    std::vector<double>& direction) {
+  std::vector<double> side = right_hand_side(force, {}), of_known(side.size()), solution;
+  LinearOutcome outcome = LinearOutcome::solved;
+  if (correction_->is_freed(side, tolerance)) {
+    solution = correction_->freed_solution;
+  } else {
+    reference_.known.take_off(side, of_known);
+    outcome = solve_for(side, tolerance, solution);
+  }
   if (outcome == LinearOutcome::solved) correction_->apply(solution);
+  add_scaled(solution, 1.0, of_known);
   direction.resize(problem_.free.equation.size());
   problem_.free.extend_by_zero(solution, direction);
   return outcome;
+}
+
+void UpdatedTangent::learn(std::span<const double> solution, std::span<const double> change) {
+  std::vector<double> correction(std::size_t(problem_.free.count())),
+      of_residual(correction.size());
+  problem_.free.restrict_to_free(solution, correction);
+  problem_.free.restrict_to_free(change, of_residual);
+  reference_.known.add(correction, of_residual);
 }
 
 LinearOutcome UpdatedTangent::solve_again(std::span<const double> force,
@@ -257,7 +270,9 @@ void UpdatedTangent::lose(std::span<const LostStiffness> lost) {
   for (const LostStiffness& bond : lost) {
     if (!is_worth_updating() || add_column(bond) != LinearOutcome::solved) return forget();
     reference_.lost.push_back(bond);
+    reference_.known.lose(bond.stiffness, direction_of(bond).free);
   }
+  reference_.known.settle();
   if (!correction_->columns.empty() && !correction_->factorize()) return forget();
   correction_->set_free(lost);
 }
