@@ -33,6 +33,10 @@ constexpr Index smallest_for_metis = 5000;
 /// Largest relative residual of a direct solve; backward-stable factorisations stay far below.
 constexpr double accepted_residual = 1e-6;
 
+/// Relative residual that needs no check if the first solution with a factor in single precision
+/// has met it: whoever asks for no more evaluates the residual of the state itself.
+constexpr double coarse = 1e-4;
+
 /// Largest number of corrections of a solution in single precision: where more are needed the
 /// system is too ill-conditioned for it.
 constexpr int most_refinements = 3;
@@ -53,6 +57,7 @@ struct Cholesky::Cholmod {
   LinearStatistics statistics;
   std::optional<Inertia> inertia;
   std::optional<SingleFactor> single;  // of the present tangent, if many solves follow
+  bool single_is_checked = false;      // its first solution has been coarse or better
   std::vector<double> full_in, full_out;
   int last_iterations = 0;
   bool counts_pivots = true;
@@ -188,6 +193,7 @@ struct Cholesky::Cholmod {
     factor_valid = factor_current = false;
     inertia.reset();
     single.reset();
+    single_is_checked = false;
     if (!tangent_is_finite()) return LinearOutcome::singular;
     fill_matrix();
     ++statistics.factorisations;
@@ -294,7 +300,9 @@ struct Cholesky::Cholmod {
   bool solve_in_single(std::span<const double> b, std::span<double> x, double tolerance) {
     std::vector<double> residual(b.size()), correction(b.size());
     single->solve(b, x);
+    if (single_is_checked && tolerance >= coarse) return true;
     find_residual(b, x, residual);
+    single_is_checked = norm(residual) <= coarse * norm(b);
     const double target = tolerance * norm(b);
     for (int k = 0; k < most_refinements && norm(residual) > target; ++k) {
       single->solve(residual, correction);
