@@ -1,5 +1,6 @@
 #include "solvers/drivers/state_archive.hpp"
 
+#include <bit>
 #include <optional>
 #include <utility>
 
@@ -104,10 +105,14 @@ void transfer_pins(StateArchive& archive, FragmentPins& pins) {
   archive.transfer("pins/pinned", pinned, Rows::dofs);
 }
 
+/// Transfers their bits, in half the memory of numbers in double precision.
 void transfer_floats(StateArchive& archive, const std::string& name, std::vector<float>& values) {
-  std::vector<double> numbers(values.begin(), values.end());
-  archive.transfer(name, numbers, Rows::whole);
-  values.assign(numbers.begin(), numbers.end());
+  static_assert(sizeof(Index) == sizeof(float));
+  std::vector<Index> bits(values.size());
+  for (std::size_t k = 0; k < bits.size(); ++k) bits[k] = std::bit_cast<Index>(values[k]);
+  archive.transfer(name, bits, Rows::whole);
+  values.resize(bits.size());
+  for (std::size_t k = 0; k < bits.size(); ++k) values[k] = std::bit_cast<float>(bits[k]);
 }
 
 void transfer_known(StateArchive& archive, const std::string& name, KnownCorrections& known) {

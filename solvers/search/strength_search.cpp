@@ -32,8 +32,9 @@ constexpr double nearly = 1e-6;
 /// Accuracy with which a corner is predicted, relative to the stage that it may take.
 constexpr double corner_accuracy = 0.01;
 
-/// An iteration that leaves more than this fraction of the residual needs a new tangent.
-constexpr double slow = 0.1;
+/// An iteration that leaves more than this fraction of the residual needs a new tangent: with what
+/// is known of earlier corrections a good one leaves a hundredth.
+constexpr double slow = 0.03;
 
 class StrengthSearch {
  public:
