@@ -1,12 +1,13 @@
 #include "solvers/search/known_corrections.hpp"
 
+#include <array>
 #include <cmath>
 #include <type_traits>
 
 namespace peristat {
 namespace {
 
-/// A change of which less than this is new tells nothing.
+/// A change of which less than this is not in later ones tells nothing.
 constexpr double least_news = 0.1;
 
 template <class One, class Other>
@@ -24,44 +25,56 @@ void add_share(To& to, double share, const std::vector<float>& of) {
   for (std::size_t k = 0; k < of.size(); ++k) to[k] += Number(share) * Number(of[k]);
 }
 
-template <class Numbers>
-std::vector<float> scaled(const Numbers& values, double factor) {
+std::vector<float> scaled(std::span<const double> values, double factor) {
   std::vector<float> result(values.size());
-  for (std::size_t k = 0; k < values.size(); ++k) result[k] = float(factor * double(values[k]));
+  for (std::size_t k = 0; k < values.size(); ++k) result[k] = float(factor * values[k]);
   return result;
 }
 
 }  // namespace
 
 void KnownCorrections::take_off(std::span<double> residual, std::span<double> correction) const {
-  for (const Known& one : latest_first_) {
-    const double share = dot_of(residual, one.change);
-    add_share(residual, -share, one.change);
-    add_share(correction, -share, one.correction);
+  const std::vector<double> shares = shares_of(residual);
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    add_share(residual, -shares[k], latest_first_[k].change);
+    add_share(correction, -shares[k], latest_first_[k].correction);
   }
 }
 
 void KnownCorrections::add(std::span<const double> correction, std::span<const double> change) {
-  put_first(correction, change);
-}
-
-template <class Numbers>
-void KnownCorrections::put_first(const Numbers& correction, const Numbers& change) {
   const double size = std::sqrt(dot_of(change, change));
   if (!(size > 0.0) || !std::isfinite(size)) return;
-  const Known latest{scaled(correction, 1.0 / size), scaled(change, 1.0 / size)};
-  std::vector<Known> all{latest};
-  for (Known& one : latest_first_) {
-    const double share = dot_of(one.change, latest.change);
-    add_share(one.change, -share, latest.change);
-    const double rest = std::sqrt(dot_of(one.change, one.change));
-    if (!(rest > least_news) || all.size() == most) continue;
-    add_share(one.correction, -share, latest.correction);
-    for (float& entry : one.change) entry = float(entry / rest);
-    for (float& entry : one.correction) entry = float(entry / rest);
-    all.push_back(std::move(one));
+  if (latest_first_.size() == most) latest_first_.pop_back();
+  latest_first_.insert(latest_first_.begin(),
+                       {scaled(correction, 1.0 / size), scaled(change, 1.0 / size)});
+}
+
+std::vector<double> KnownCorrections::shares_of(std::span<const double> residual) const {
+  const std::size_t size = latest_first_.size();
+  std::array<std::array<double, most>, most> factor{};  // of the changes' products, row by row
+  std::vector<double> shares(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::vector<float>& change = latest_first_[i].change;
+    double share = dot_of(residual, change), rest = dot_of(change, change);
+    const double whole = rest;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (factor[j][j] == 0.0) continue;
+      double product = dot_of(change, latest_first_[j].change);
+      for (std::size_t k = 0; k < j; ++k) product -= factor[i][k] * factor[j][k];
+      factor[i][j] = product / factor[j][j];
+      share -= factor[i][j] * shares[j];
+      rest -= factor[i][j] * factor[i][j];
+    }
+    if (!(rest > least_news * least_news * whole)) continue;
+    factor[i][i] = std::sqrt(rest);
+    shares[i] = share / factor[i][i];
   }
-  latest_first_ = std::move(all);
+  for (std::size_t i = size; i-- > 0;) {
+    if (factor[i][i] == 0.0) continue;
+    for (std::size_t j = i + 1; j < size; ++j) shares[i] -= factor[j][i] * shares[j];
+    shares[i] /= factor[i][i];
+  }
+  return shares;
 }
 
 void KnownCorrections::lose(double stiffness, std::span<const std::pair<Index, double>> g) {
@@ -72,12 +85,6 @@ void KnownCorrections::lose(double stiffness, std::span<const std::pair<Index, d
       one.change[std::size_t(equation)] += float(stiffness * along * share);
     }
   }
-}
-
-void KnownCorrections::settle() {
-  std::vector<Known> all;
-  all.swap(latest_first_);
-  for (auto one = all.rbegin(); one != all.rend(); ++one) put_first(one->correction, one->change);
 }
 
 }  // namespace peristat

@@ -13,8 +13,8 @@ namespace peristat {
 /// has in common with these changes is corrected by their own corrections, the rest by the tangent.
 class KnownCorrections {
  public:
-  /// A correction [m/N] and its change of the residual, of norm 1, per equation. In half the
-  /// memory: what the body has moved since matters more than the last digits.
+  /// A correction [m/N] and its change of the residual, at first of norm 1, per equation. In half
+  /// the memory: what the body has moved since matters more than the last digits.
   struct Known {
     std::vector<float> correction, change;
   };
@@ -22,15 +22,13 @@ class KnownCorrections {
   /// Takes what is known off a residual, and adds its correction.
   void take_off(std::span<double> residual, std::span<double> correction) const;
 
-  /// The latest counts: earlier ones keep what is not in it.
+  /// What is in the latest changes is not taken from earlier ones.
   /// @param change that a correction has made of the residual
   void add(std::span<const double> correction, std::span<const double> change);
 
-  /// Subtracts the stiffness k g g^T from the tangent that the corrections belong to; `settle` ends
-  /// a series of these.
+  /// Subtracts the stiffness k g g^T from the tangent that the corrections belong to.
   /// @param g shares by equation
   void lose(double stiffness, std::span<const std::pair<Index, double>> g);
-  void settle();
 
   void clear() { latest_first_.clear(); }
 
@@ -41,10 +39,10 @@ class KnownCorrections {
   static constexpr std::size_t most = 10;
 
  private:
-  template <class Numbers>
-  void put_first(const Numbers& correction, const Numbers& change);
+  /// Shares of the changes that fit the residual best (least squares).
+  [[nodiscard]] std::vector<double> shares_of(std::span<const double> residual) const;
 
-  std::vector<Known> latest_first_;  // changes are orthonormal
+  std::vector<Known> latest_first_;
 };
 
 }  // namespace peristat

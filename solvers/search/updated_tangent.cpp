@@ -272,7 +272,6 @@ void UpdatedTangent::lose(std::span<const LostStiffness> lost) {
     reference_.lost.push_back(bond);
     reference_.known.lose(bond.stiffness, direction_of(bond).free);
   }
-  reference_.known.settle();
   if (!correction_->columns.empty() && !correction_->factorize()) return forget();
   correction_->set_free(lost);
 }

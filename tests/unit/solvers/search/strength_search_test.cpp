@@ -185,10 +185,8 @@ TEST(StrengthSearch, SavesTheSubstitutionsThatTellNothingNew) {
   settling.settles = true;
   // The answer to the force that the bond no longer bears follows from its column.
   drawn.solver.solves = 0;
-  const int refreshed = drawn.updated.refreshed();
   const StrengthResult settled = drawn.search(settling);
   ASSERT_EQ(settled.newton.outcome, Outcome::converged);
-  ASSERT_EQ(drawn.updated.refreshed(), refreshed);
   EXPECT_EQ(drawn.solver.solves, settled.newton.iterations - 1);
 }
 
@@ -208,7 +206,8 @@ TEST(StrengthSearch, LearnsFromTheSearchBefore) {
   Drawn drawn;
   const StrengthResult first = drawn.search(drawn.step());
   drawn.state = {first.newton.state.displacement, first.stage, drawn.state.history};
-  drawn.break_bonds(3);
+  ASSERT_EQ(drawn.updated.refresh(drawn.state), LinearOutcome::solved);
+  for (double& component : drawn.state.displacement) component *= 1.02;
   StrengthStep step = drawn.step();
   step.settles = true;
   const TangentReference before = drawn.updated.reference();
@@ -256,7 +255,6 @@ TEST(KnownCorrections, SolveWhatIsKnown) {
   // The matrix loses k g g^T.
   const double k = 2.0, g[3] = {0.0, 0.6, -0.8};
   known.lose(k, std::vector<std::pair<Index, double>>{{1, g[1]}, {2, g[2]}});
-  known.settle();
   const double along = g[1] * solution[1] + g[2] * solution[2];
   for (int i = 0; i < 3; ++i) residual[std::size_t(i)] -= k * along * g[i];
   found.assign(3, 0.0);
