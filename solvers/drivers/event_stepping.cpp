@@ -36,10 +36,9 @@ constexpr double share_from_nothing = 1e-6;
 /// bond that is loaded up to the corner may be overloaded for as long.
 constexpr double share_of_corner = 0.01;
 
-/// Relative residual of a settled state from which is judged whether bonds are at their strength,
-/// or which ones: the state is closer to that than this share of their strength, or an avalanche
-/// runs through it.
-constexpr double judged_tolerance = 1e-7, share_to_judge = 0.01;
+/// Relative residual at which a body counts as settled: the error of its energy is the square of
+/// it.
+constexpr double settled_tolerance = 1e-7;
 constexpr int most_settling_iterations = 10;
 
 /// Newton iterations within which a body that buckles as bonds break may come to rest.
@@ -105,9 +104,8 @@ Advance EventStepping::next() {
   }
   if (events.at_strength) {
     tells_ = false;  // reported before the state was accepted
-    Settled settled = ahead_
-                          ? std::move(*ahead_)
-                          : settle(path_.state().accepted, path_.state().ledger, settled_tolerance);
+    Settled settled =
+        ahead_ ? std::move(*ahead_) : settle(path_.state().accepted, path_.state().ledger);
     tells_ = true;
     ahead_.reset();
     if (!settled.has_converged()) {
@@ -219,7 +217,7 @@ Attempt EventStepping::settle_nearby(const State& at, std::span<const double> bo
   step.settles = true;
   step.least_scale = share_of_scale * path_.state().events.largest_scale;
   NewtonOptions options = held();
-  options.relative_tolerance = std::max(relative_tolerance, options.relative_tolerance);
+  options.relative_tolerance = relative_tolerance;
   options.max_iterations = most_settling_iterations;
   // Its iterations are not reported: it only precedes the search for the next state.
   StrengthResult found =
@@ -231,7 +229,7 @@ Attempt EventStepping::settle_nearby(const State& at, std::span<const double> bo
 Attempt EventStepping::settle_downhill(const State& at, double relative_tolerance) {
   tangent().forget();
   NewtonOptions options = held();
-  options.relative_tolerance = std::max(relative_tolerance, options.relative_tolerance);
+  options.relative_tolerance = relative_tolerance;
   options.max_iterations = std::max(options.max_iterations, most_iterations_of_a_fall);
   const SolvedBody& body = path_.body();
   NewtonResult found =
@@ -240,8 +238,7 @@ Attempt EventStepping::settle_downhill(const State& at, double relative_toleranc
   return to_attempt(std::move(found), load_point(at));
 }
 
-EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& ledger,
-                                             double tolerance) {
+EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& ledger) {
   Assembler& body = path_.damaged();
   const std::vector<UtilisedBond> batch = batch_of(at);
   BondDrops dropped = drop(body, StateView(at, Damage::held), borne_, batch);
@@ -269,6 +266,7 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   settled.attempt = undefined_attempt(at, load_point(at));
   if (!may_go_on) return settled;
 
+  const double tolerance = std::max(held().relative_tolerance, settled_tolerance);
   const auto settles = [&](Attempt attempt) {
     settled.attempt = std::move(attempt);
     settled.outcome = settled.attempt.outcome;
@@ -279,18 +277,12 @@ EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& 
   // A stable body comes to rest in a stable state, however far that is.
   const bool is_lost = has_settled && !was_bifurcated && is_unstable(settled.attempt);
   if ((!has_settled || is_lost) && settled.outcome != Outcome::interrupted &&
-      !settles(settle_downhill(from, judged_tolerance))) {
+      !settles(settle_downhill(from, tolerance))) {
     return settled;
   }
   if (!settled.has_converged()) return settled;
   settled.state = state_of(settled.attempt);
   settled.utilisation = utilisation(settled.state, settled.borne);
-  const bool is_close = std::abs(settled.utilisation - 1.0) < share_to_judge;
-  if (is_close && tolerance > judged_tolerance && !touches(settled.state)) {
-    if (!settles(settle_nearby(settled.state, settled.borne, judged_tolerance))) return settled;
-    settled.state = state_of(settled.attempt);
-    settled.utilisation = utilisation(settled.state, settled.borne);
-  }
   return settled;
 }
 
@@ -408,11 +400,8 @@ EventStepping::Step EventStepping::run_avalanche() {
     step.fault = "no load is admissible, although no bond is at its strength";
     return step;
   }
-  step.attempt = settle_anywhere(state.accepted, borne_, judged_tolerance);
-  if (!step.attempt.has_converged()) return step;
-  state.accepted = state_of(step.attempt);
   for (;; ++passes) {
-    Settled settled = settle(state.accepted, state.ledger, judged_tolerance);
+    Settled settled = settle(state.accepted, state.ledger);
     step.attempt = settled.attempt;
     step.attempt.outcome = settled.outcome;
     step.fault = settled.fault;
@@ -548,7 +537,7 @@ Advance EventStepping::accept(Step step, PathState before) {
     with_step.accept(step.found.ledger,
                      path_.working_force(step.attempt.state, step.attempt.external_force),
                      step.found.energies);
-    ahead_ = settle(reached, with_step, settled_tolerance);
+    ahead_ = settle(reached, with_step);
     if (ahead_->outcome == Outcome::interrupted) {  // the state's stability is not known
       step.attempt.outcome = Outcome::interrupted;
       return fail(std::move(step), std::move(before));

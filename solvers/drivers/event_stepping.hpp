@@ -77,8 +77,7 @@ class EventStepping : public Driver {
   };
 
   /// Carries out the next event: bonds drop at a state, and the body settles.
-  /// @param tolerance relative residual; it is settled more closely if that matters
-  [[nodiscard]] Settled settle(const State& at, const PathLedger& ledger, double tolerance);
+  [[nodiscard]] Settled settle(const State& at, const PathLedger& ledger);
   /// True if contacts press or touch.
   [[nodiscard]] bool touches(const State& at) const;
   /// Searches the equilibrium at the present load, if it is not far.

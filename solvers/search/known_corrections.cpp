@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <type_traits>
 
 namespace peristat {
 namespace {
@@ -18,11 +17,9 @@ double dot_of(const One& one, const Other& other) {
   return sum;
 }
 
-template <class To>
-void add_share(To& to, double share, const std::vector<float>& of) {
-  using Number = std::remove_reference_t<decltype(to[0])>;
+void add_share(std::span<double> to, double share, const std::vector<float>& of) {
 #pragma omp simd
-  for (std::size_t k = 0; k < of.size(); ++k) to[k] += Number(share) * Number(of[k]);
+  for (std::size_t k = 0; k < of.size(); ++k) to[k] += share * double(of[k]);
 }
 
 std::vector<float> scaled(std::span<const double> values, double factor) {

@@ -90,8 +90,7 @@ class StrengthSearch {
     last_residual_ = current_.residual_norm;
     const std::vector<double> before = current_.displacement;
     // What a settled state lacks of equilibrium is far less than what the predictor adds.
-    const bool is_settled =
-        iteration == 1 && !step_.settles && last_residual_ <= settled_tolerance * scale();
+    const bool is_settled = iteration == 1 && !step_.settles && is_nearly_balanced();
     const Outcome corrected = is_settled ? Outcome::converged : correct();
     if (corrected != Outcome::converged) return corrected;
     double change = 0.0;
@@ -316,8 +315,7 @@ class StrengthSearch {
       result_.goes_up = range.high >= 0.0;
       meets_upper_ = range.low <= 0.0 || range.high < 0.0;
     }
-    const bool is_nearly_balanced = last_residual_ <= nearly * scale();
-    if (!is_first && is_nearly_balanced && range.low > range.high) return refuse();
+    if (!is_first && is_nearly_balanced() && range.low > range.high) return refuse();
     double change = meets_upper_ ? range.high : range.low;
     result_.end = StrengthEnd::at_strength;
     // If the present stage is not admissible, the one to stop at need not be.
@@ -337,6 +335,8 @@ class StrengthSearch {
     }
     return change;
   }
+
+  [[nodiscard]] bool is_nearly_balanced() const { return last_residual_ <= nearly * scale(); }
 
   double refuse() {
     result_.end = StrengthEnd::inadmissible;

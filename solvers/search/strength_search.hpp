@@ -13,10 +13,6 @@ namespace peristat {
 /// digit that is printed, and on the side on which no bond is overloaded.
 inline constexpr double share_at_strength = 1.0 - 1e-9;
 
-/// Relative residual at which a body counts as settled after an event: the error of its energy is
-/// the square of it, and the predictor of the next search adds more than that.
-inline constexpr double settled_tolerance = 1e-5;
-
 /// Search along an elastic path for the next strength. The path's parameter is the stage or, before
 /// step 0, the share of the preload, which acts at load 0.
 struct StrengthStep {
