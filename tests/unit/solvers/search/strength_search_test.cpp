@@ -270,7 +270,6 @@ TEST(KnownCorrections, TheLatestCounts) {
   std::vector<double> residual{1.0, 0.0}, found(2);
   known.take_off(residual, found);
   EXPECT_NEAR(found[0], 2.0, 1e-6);
-  EXPECT_EQ(known.latest_first().size(), 1U);
 }
 
 TEST(UpdatedTangent, IsThatOfTheBodyWithoutWhatItHasLost) {
