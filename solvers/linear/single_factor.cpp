@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <suitesparse/cholmod.h>
+
 namespace peristat {
 namespace {
 
@@ -51,7 +53,7 @@ std::array<float, group> products(const float* entries, const float* below, std:
 
 }  // namespace
 
-SingleFactor::SingleFactor(const cholmod_factor& factor) : x_(factor.n) {
+SingleFactor::SingleFactor(const cholmod_factor_struct& factor) : x_(factor.n) {
   const auto* const first = static_cast<const Long*>(factor.super);
   const auto* const rows = static_cast<const Long*>(factor.pi);
   const auto* const entries = static_cast<const Long*>(factor.px);

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include <suitesparse/cholmod.h>
-
 #include "src/core/types.hpp"
+
+struct cholmod_factor_struct;  // of CHOLMOD
 
 namespace peristat {
 
@@ -14,7 +14,7 @@ namespace peristat {
 class SingleFactor {
  public:
   /// @param factor supernodal L L^T with 64-bit indices; may be freed afterwards
-  explicit SingleFactor(const cholmod_factor& factor);
+  explicit SingleFactor(const cholmod_factor_struct& factor);
 
   void solve(std::span<const double> b, std::span<double> x);
 
