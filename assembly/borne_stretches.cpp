@@ -41,12 +41,27 @@ Coordinates direction(const Points& points, const StateView& at, Index i, Index 
 double driving(const BondStretch& stretch) { return stretch.value; }
 double driving(const BondDrive& drive) { return drive.driving(); }
 
-AdmissibleRange admissible_range(const BondStretch& stretch, double limit) {
-  AdmissibleRange range;
-  const double way = (limit - stretch.value) / stretch.rate;
-  if (stretch.rate > 0.0) range.high = way;
-  if (stretch.rate < 0.0) range.low = way;
-  return range;
+/// Narrows a range to the steps in which a bond keeps to a limit. Divides only where it does: of
+/// the many bonds few are the first to meet theirs.
+void narrow(AdmissibleRange& range, const BondStretch& stretch, double limit) {
+  const double left = limit - stretch.value;
+  if (stretch.rate > 0.0 && left < range.high * stretch.rate) range.high = left / stretch.rate;
+  if (stretch.rate < 0.0 && left < range.low * stretch.rate) range.low = left / stretch.rate;
+}
+
+void narrow(AdmissibleRange& range, const AdmissibleRange& by) {
+  range.low = std::max(range.low, by.low);
+  range.high = std::min(range.high, by.high);
+  range.utilisation = std::max(range.utilisation, by.utilisation);
+}
+
+void narrow(AdmissibleRange& range, const BondDrive& drive, double limit) {
+  narrow(range, admissible_range(drive, limit));
+}
+
+/// Raises the utilisation to that of a bond, if it has a larger one.
+void raise(double& utilisation, double stretch, double borne) {
+  if (stretch > utilisation * borne) utilisation = stretch / borne;
 }
 
 /// Calls visit(thread, point, bond) for every bond with a finite borne stretch, on several threads;
@@ -89,18 +104,23 @@ std::vector<BondDrive> drives(Assembler& body, const StateView& at, const StateL
 
 /// Calls visit(thread, point, bond, drive) for every bond with a finite borne stretch, drive a
 /// BondStretch or a BondDrive.
+/// @param among these bonds; empty for all
 template <class Visit>
 void for_each_driven(Assembler& body, const StateView& at, std::span<const double> borne,
-                     const StateLine& line, const Visit& visit) {
+                     const StateLine& line, const Visit& visit,
+                     std::span<const UtilisedBond> among = {}) {
+  const auto for_each = [&](const auto& visit_bond) {
+    if (among.empty()) return for_each_bearing(body, borne, visit_bond);
+    for (const UtilisedBond& one : among) visit_bond(0, one.first_point, one.bond);
+  };
   if (body.model().fails_by_release()) {
     const std::vector<BondDrive> all = drives(body, at, line);
-    for_each_bearing(body, borne, [&](int thread, Index i, Offset bond) {
-      visit(thread, i, bond, all[std::size_t(bond)]);
-    });
+    for_each(
+        [&](int thread, Index i, Offset bond) { visit(thread, i, bond, all[std::size_t(bond)]); });
     return;
   }
   look_at_bonds(body, at, [&](const auto& look) {
-    for_each_bearing(body, borne, [&](int thread, Index i, Offset bond) {
+    for_each([&](int thread, Index i, Offset bond) {
       visit(thread, i, bond, look.along(i, bond, line));
     });
   });
@@ -195,7 +215,8 @@ BondDrops drop(Assembler& body, const StateView& at, std::span<const double> bor
         result.stiffness.push_back(
             {bond, one.first_point, network.partner[bond],
              direction(body.points(), at, one.first_point, network.partner[bond]),
-             (stored.second - left.second) * network.weight(bond) * network.inverse_length(bond)});
+             (stored.second - left.second) * network.weight(bond) * network.inverse_length(bond),
+             (stored.first - left.first) * network.weight(bond)});
       }
       largest = after;
       result.borne[std::size_t(bond)] = law.borne(after);
@@ -230,20 +251,18 @@ std::vector<UtilisedBond> utilised_bonds(Assembler& body, const StateView& at,
 
 AdmissibleRange admissible_range(Assembler& body, const StateView& at,
                                  std::span<const double> borne, std::span<const double> rate,
-                                 std::span<const double> eigenstretch_rate, double share) {
-  const auto narrow = [](AdmissibleRange& range, const AdmissibleRange& by) {
-    range.low = std::max(range.low, by.low);
-    range.high = std::min(range.high, by.high);
-    range.utilisation = std::max(range.utilisation, by.utilisation);
-  };
+                                 std::span<const double> eigenstretch_rate, double share,
+                                 std::span<const UtilisedBond> among) {
   std::vector<AdmissibleRange> parts(static_cast<std::size_t>(body.threads()));
-  for_each_driven(body, at, borne, {rate, eigenstretch_rate},
-                  [&](int thread, Index, Offset bond, const auto& drive) {
-                    const double strength = borne[std::size_t(bond)];
-                    AdmissibleRange of_bond = admissible_range(drive, share * strength);
-                    of_bond.utilisation = driving(drive) / strength;
-                    narrow(parts[std::size_t(thread)], of_bond);
-                  });
+  for_each_driven(
+      body, at, borne, {rate, eigenstretch_rate},
+      [&](int thread, Index, Offset bond, const auto& drive) {
+        const double strength = borne[std::size_t(bond)];
+        AdmissibleRange& part = parts[std::size_t(thread)];
+        narrow(part, drive, share * strength);
+        raise(part.utilisation, driving(drive), strength);
+      },
+      among);
   AdmissibleRange range;
   for (const AdmissibleRange& part : parts) narrow(range, part);
   return range;
@@ -252,8 +271,7 @@ AdmissibleRange admissible_range(Assembler& body, const StateView& at,
 double largest_utilisation(Assembler& body, const StateView& at, std::span<const double> borne) {
   std::vector<double> parts(static_cast<std::size_t>(body.threads()), 0.0);
   for_each_driven(body, at, borne, {}, [&](int thread, Index, Offset bond, const auto& drive) {
-    double& part = parts[std::size_t(thread)];
-    part = std::max(part, driving(drive) / borne[std::size_t(bond)]);
+    raise(parts[std::size_t(thread)], driving(drive), borne[std::size_t(bond)]);
   });
   return *std::ranges::max_element(parts);
 }

@@ -26,12 +26,13 @@ struct UtilisedBond {
   double utilisation = 0.0, stretch = 0.0;
 };
 
-/// Stiffness that a bond has lost along its direction.
+/// Stiffness and force that a bond has lost along its direction.
 struct LostStiffness {
   Offset bond = 0;
   Index first = 0, second = 0;  ///< its points
   Coordinates direction{};      ///< from first to second, current unit vector
   double stiffness = 0.0;       ///< [N/m]
+  double force = 0.0;           ///< tension [N]
 };
 
 /// Irreversible drops of stiffness of some bonds at a state.
@@ -71,11 +72,13 @@ struct AdmissibleRange {
 /// @param rate of the displacement, per unit of the step
 /// @param eigenstretch_rate per point, or empty
 /// @param share of the borne stretches
+/// @param among these bonds; empty for all
 [[nodiscard]] AdmissibleRange admissible_range(Assembler& body, const StateView& at,
                                                std::span<const double> borne,
                                                std::span<const double> rate,
                                                std::span<const double> eigenstretch_rate,
-                                               double share);
+                                               double share,
+                                               std::span<const UtilisedBond> among = {});
 
 /// Largest utilisation of any bond.
 [[nodiscard]] double largest_utilisation(Assembler& body, const StateView& at,

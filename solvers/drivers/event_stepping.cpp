@@ -158,10 +158,11 @@ double EventStepping::utilisation(const State& at, std::span<const double> borne
 
 std::vector<UtilisedBond> EventStepping::batch_of(const State& at) const {
   Assembler& body = path_.damaged();
-  const double most = utilisation(at, borne_), tolerance = path_.options().events.tolerance;
-  // Leaves room for the gap that ends the batch.
-  const double least = most * (1.0 - std::max(1.5 * tolerance, 1e-3));
+  const double tolerance = path_.options().events.tolerance;
+  // Leaves room for the gap that ends the batch. The most utilised bond is at its strength.
+  const double least = (1.0 - tie) * (1.0 - std::max(1.5 * tolerance, 1e-3));
   std::vector<UtilisedBond> all = utilised_bonds(body, StateView(at, Damage::held), borne_, least);
+  const double most = all.empty() ? 0.0 : all.front().utilisation;
   std::size_t count = 1;
   while (count < all.size() && (all[count].utilisation >= (1.0 - tolerance) * most ||
                                 all[count - 1].utilisation - all[count].utilisation <= tie)) {

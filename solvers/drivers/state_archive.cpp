@@ -1,5 +1,6 @@
 #include "solvers/drivers/state_archive.hpp"
 
+#include <bit>
 #include <optional>
 #include <utility>
 
@@ -104,8 +105,30 @@ void transfer_pins(StateArchive& archive, FragmentPins& pins) {
   archive.transfer("pins/pinned", pinned, Rows::dofs);
 }
 
+/// Transfers their bits, in half the memory of numbers in double precision.
+void transfer_floats(StateArchive& archive, const std::string& name, std::vector<float>& values) {
+  static_assert(sizeof(Index) == sizeof(float));
+  std::vector<Index> bits(values.size());
+  for (std::size_t k = 0; k < bits.size(); ++k) bits[k] = std::bit_cast<Index>(values[k]);
+  archive.transfer(name, bits, Rows::whole);
+  values.resize(bits.size());
+  for (std::size_t k = 0; k < bits.size(); ++k) values[k] = std::bit_cast<float>(bits[k]);
+}
+
+void transfer_known(StateArchive& archive, const std::string& name, KnownCorrections& known) {
+  std::vector<KnownCorrections::Known> all = known.latest_first();
+  int count = int(all.size());
+  archive.transfer(name + "/count", count);
+  all.resize(std::size_t(count));
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    transfer_floats(archive, name + "/correction_" + std::to_string(k), all[k].correction);
+    transfer_floats(archive, name + "/change_" + std::to_string(k), all[k].change);
+  }
+  known.restore(std::move(all));
+}
+
 void transfer_tangent(StateArchive& archive, TangentReference& tangent) {
-  auto& [at, lost] = tangent;
+  auto& [at, lost, known] = tangent;
   [[maybe_unused]] auto& [displacement, stage, history, load, environment, preload] = at;
   const std::string name = "events/tangent";
   archive.transfer(name + "/displacement", displacement, Rows::dofs);
@@ -132,6 +155,7 @@ void transfer_tangent(StateArchive& archive, TangentReference& tangent) {
     lost.push_back(
         {Offset(bond[k]), first[k], second[k], {along[0], along[1], along[2]}, stiffness[k]});
   }
+  transfer_known(archive, name + "/known", known);
 }
 
 }  // namespace

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include <suitesparse/cholmod.h>
 
 #include "assembly/operators/tangent.hpp"
 #include "solvers/linear/lower_triangle.hpp"
+#include "solvers/linear/single_factor.hpp"
 #include "solvers/linear/speeds.hpp"
 #include "solvers/linear/trilinos/krylov.hpp"
 #include "solvers/linear/zero_pivot.hpp"
@@ -31,6 +33,14 @@ constexpr Index smallest_for_metis = 5000;
 /// Largest relative residual of a direct solve; backward-stable factorisations stay far below.
 constexpr double accepted_residual = 1e-6;
 
+/// Relative residual that needs no check if the first solution with a factor in single precision
+/// has met it: whoever asks for no more evaluates the residual of the state itself.
+constexpr double coarse = 1e-4;
+
+/// Largest number of corrections of a solution in single precision: where more are needed the
+/// system is too ill-conditioned for it.
+constexpr int most_refinements = 3;
+
 }  // namespace
 
 struct Cholesky::Cholmod {
@@ -46,6 +56,8 @@ struct Cholesky::Cholmod {
   FactorEstimate estimate;
   LinearStatistics statistics;
   std::optional<Inertia> inertia;
+  std::optional<SingleFactor> single;  // of the present tangent, if many solves follow
+  bool single_is_checked = false;      // its first solution has been coarse or better
   std::vector<double> full_in, full_out;
   int last_iterations = 0;
   bool counts_pivots = true;
@@ -68,6 +80,7 @@ struct Cholesky::Cholmod {
   }
 
   void release_symbolic() {
+    single.reset();
     cholmod_l_free_sparse(&matrix, &common);
     cholmod_l_free_factor(&factor, &common);
     cholmod_l_free_dense(&right_hand_side, &common);
@@ -179,6 +192,8 @@ struct Cholesky::Cholmod {
   LinearOutcome factorize() {
     factor_valid = factor_current = false;
     inertia.reset();
+    single.reset();
+    single_is_checked = false;
     if (!tangent_is_finite()) return LinearOutcome::singular;
     fill_matrix();
     ++statistics.factorisations;
@@ -269,10 +284,32 @@ struct Cholesky::Cholmod {
     }
     if (!apply_factor(b, x)) return outcome_of_status();
     std::vector<double> residual(b.size());
-    multiply(x, residual);
-    add_scaled(residual, -1.0, b);
+    find_residual(b, x, residual);
     return norm(residual) <= accepted_residual * norm(b) ? LinearOutcome::solved
                                                          : LinearOutcome::inaccurate;
+  }
+
+  void find_residual(std::span<const double> b, std::span<const double> x,
+                     std::span<double> residual) {
+    multiply(x, residual);
+    for (std::size_t e = 0; e < b.size(); ++e) residual[e] = b[e] - residual[e];
+  }
+
+  /// Solves in single precision, and corrects by the residual down to the tolerance.
+  /// @return false if it is not reached
+  bool solve_in_single(std::span<const double> b, std::span<double> x, double tolerance) {
+    std::vector<double> residual(b.size()), correction(b.size());
+    single->solve(b, x);
+    if (single_is_checked && tolerance >= coarse) return true;
+    find_residual(b, x, residual);
+    single_is_checked = norm(residual) <= coarse * norm(b);
+    const double target = tolerance * norm(b);
+    for (int k = 0; k < most_refinements && norm(residual) > target; ++k) {
+      single->solve(residual, correction);
+      add_scaled(x, 1.0, correction);
+      find_residual(b, x, residual);
+    }
+    return norm(residual) <= target;
   }
 };
 
@@ -338,7 +375,10 @@ LinearOutcome Cholesky::factorize(const TangentOperator& tangent, FactorUse use)
   if (use == FactorUse::may_reuse && c.factor_valid && c.most_iterations() > 0) {
     return c.tangent_is_finite() ? LinearOutcome::solved : LinearOutcome::singular;
   }
-  return c.factorize();
+  const LinearOutcome outcome = c.factorize();
+  const bool is_for_many = use == FactorUse::factorize_for_many;
+  if (outcome == LinearOutcome::solved && is_for_many) c.single.emplace(*c.factor);
+  return outcome;
 }
 
 LinearOutcome Cholesky::solve(std::span<const double> b, std::span<double> x, double tolerance) {
@@ -346,6 +386,9 @@ LinearOutcome Cholesky::solve(std::span<const double> b, std::span<double> x, do
   const Stopwatch watch(c.statistics.seconds);
   c.last_iterations = 0;
   if (b.empty()) return LinearOutcome::solved;
+  if (c.single && c.factor_current && c.solve_in_single(b, x, tolerance)) {
+    return LinearOutcome::solved;
+  }
   if (c.factor_current || !c.factor_valid) return c.solve_directly(b, x);
   const std::size_t size = b.size();
   KrylovOptions options;

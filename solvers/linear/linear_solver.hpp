@@ -33,8 +33,13 @@ struct LinearStatistics {
   double seconds = 0.0;         ///< wall time in all calls [s]
 };
 
-/// May an earlier factorisation serve as preconditioner for a new tangent?
-enum class FactorUse { factorize_now, may_reuse };
+/// What a factorisation is for.
+enum class FactorUse {
+  factorize_now,
+  may_reuse,           ///< an earlier one may serve as preconditioner for the new tangent
+  factorize_for_many,  ///< so many solves that substitution matters more; they may be less accurate
+                       ///< than a direct solver's, down to the tolerance that they are asked for
+};
 
 /// Solves K_ff x = b on the free degrees of freedom. Between tangents, implementations keep what
 /// depends on the pattern alone.

@@ -19,6 +19,10 @@ constexpr double strength_tolerance = 0.5 * (1.0 - share_at_strength);
 /// curved to know which strength is met first.
 constexpr double largest_miss = 0.1;
 
+/// Utilisation after the first step from which a bond may be the most utilised one in the end; the
+/// state that is found is checked with all bonds.
+constexpr double watched = 0.8;
+
 /// Relative residual of the systems for the rate: its error is one of the state.
 constexpr double rate_tolerance = 1e-8;
 
@@ -28,8 +32,9 @@ constexpr double nearly = 1e-6;
 /// Accuracy with which a corner is predicted, relative to the stage that it may take.
 constexpr double corner_accuracy = 0.01;
 
-/// An iteration that leaves more than this fraction of the residual needs a new tangent.
-constexpr double slow = 0.1;
+/// An iteration that leaves more than this fraction of the residual needs a new tangent: with what
+/// is known of earlier corrections a good one leaves a hundredth.
+constexpr double slow = 0.03;
 
 class StrengthSearch {
  public:
@@ -82,9 +87,12 @@ class StrengthSearch {
     row.iteration = iteration;
     row.step_length = 1.0;
     if (Outcome found = linearise(iteration); found != Outcome::converged) return found;
-    const double earlier = std::exchange(last_residual_, current_.residual_norm);
+    last_residual_ = current_.residual_norm;
     const std::vector<double> before = current_.displacement;
-    if (Outcome found = correct(earlier); found != Outcome::converged) return found;
+    // What a settled state lacks of equilibrium is far less than what the predictor adds.
+    const bool is_settled = iteration == 1 && !step_.settles && is_nearly_balanced();
+    const Outcome corrected = is_settled ? Outcome::converged : correct();
+    if (corrected != Outcome::converged) return corrected;
     double change = 0.0;
     if (!step_.settles) {
       if (Outcome found = find_rate(); found != Outcome::converged) return found;
@@ -99,6 +107,7 @@ class StrengthSearch {
       if (result_.end == StrengthEnd::inadmissible) return Outcome::converged;
       if (iteration == 1 && ends_at_corner(change)) change = choose(true);
       for (const Index dof : problem_.free.dof) current_.displacement[dof] += change * rate_[dof];
+      if (iteration == 1) predicted_ = change;
     }
     // The predictor foresees what closes; if not, its state is judged as it is.
     row.step_length = foreseen_.empty() ? shorten(before) : 1.0;
@@ -109,6 +118,8 @@ class StrengthSearch {
       result_.stage = stops ? step_.stop : result_.stage + row.step_length * change;
     }
     stand();
+    const bool predicts = iteration == 1 && !step_.settles;
+    predicts ? correction_.clear() : learn();
     result_.newton.iterations = iteration;
     row.linear_iterations = tangent_.last_iterations();
     if (current_.degenerate) return Outcome::degenerate;
@@ -131,6 +142,8 @@ class StrengthSearch {
 
   Outcome refresh_at(double stage) {
     refreshed_at_ = tangent_.refreshed() + 1;
+    correction_.clear();
+    predicted_ = 0.0;
     const LoadPoint at = step_.point(stage);
     const SharedEnvironment environment =
         foreseen_.empty() ? current_.environment : foreseen_under_;
@@ -236,18 +249,40 @@ class StrengthSearch {
   }
 
   /// Moves to u + a.
-  Outcome correct(double earlier) {
-    const double target = options_.relative_tolerance * scale();
-    if (current_.residual_norm <= target) return Outcome::converged;
-    std::vector<double> residual = external_force_, correction;
-    add_scaled(residual, -1.0, current_.gradient);
-    const double tolerance =
-        std::min(options_.linear_tolerance, forcing_term(current_.residual_norm, earlier, target));
-    const LinearOutcome linear = tangent_.solve(residual, {}, tolerance, correction);
+  Outcome correct() {
+    if (current_.residual_norm <= options_.relative_tolerance * scale()) return Outcome::converged;
+    corrected_ = residual();
+    // A tangent of another state leaves more than this, however accurate its solutions are.
+    const double tolerance = options_.linear_tolerance;
+    const LinearOutcome linear = tangent_.solve(corrected_, tolerance, correction_);
     if (linear != LinearOutcome::solved) return outcome_of(linear);
-    add_scaled(current_.displacement, 1.0, correction);
+    correct_rate();
+    add_scaled(current_.displacement, 1.0, correction_);
     move_followers(problem_, current_);
     return Outcome::converged;
+  }
+
+  [[nodiscard]] std::vector<double> residual() const {
+    std::vector<double> residual(external_force_.size());
+    for (const Index dof : problem_.free.dof) {
+      residual[dof] = external_force_[dof] - current_.gradient[dof];
+    }
+    return residual;
+  }
+
+  /// Learns from the last correction.
+  void learn() {
+    if (correction_.empty() || has_contacts_) return;  // whose stiffness changes
+    std::vector<double> change = residual();
+    add_scaled(change, -1.0, corrected_);
+    tangent_.learn(correction_, change);
+    correction_.clear();
+  }
+
+  /// The step along b was wrong by the first correction after it.
+  void correct_rate() {
+    if (predicted_ == 0.0 || has_contacts_) return;
+    add_scaled(rate_, 1.0 / std::exchange(predicted_, 0.0), correction_);
   }
 
   /// Finds b and the rates of the eigenstretches, anew if the tangent is or if there is an
@@ -274,14 +309,13 @@ class StrengthSearch {
   double choose(bool is_first) {
     const AdmissibleRange range =
         admissible_range(problem_.assembler, current_.at(Damage::held), step_.borne, rate_,
-                         eigenstretch_rate_, share_at_strength);
+                         eigenstretch_rate_, share_at_strength, watched_);
     if (is_first) {
       if (range.low > range.high) return refuse();
       result_.goes_up = range.high >= 0.0;
       meets_upper_ = range.low <= 0.0 || range.high < 0.0;
     }
-    const bool is_nearly_balanced = last_residual_ <= nearly * scale();
-    if (!is_first && is_nearly_balanced && range.low > range.high) return refuse();
+    if (!is_first && is_nearly_balanced() && range.low > range.high) return refuse();
     double change = meets_upper_ ? range.high : range.low;
     result_.end = StrengthEnd::at_strength;
     // If the present stage is not admissible, the one to stop at need not be.
@@ -302,6 +336,8 @@ class StrengthSearch {
     return change;
   }
 
+  [[nodiscard]] bool is_nearly_balanced() const { return last_residual_ <= nearly * scale(); }
+
   double refuse() {
     result_.end = StrengthEnd::inadmissible;
     return 0.0;
@@ -311,10 +347,11 @@ class StrengthSearch {
   bool ends_well() {
     if (step_.settles) return true;
     if (!is_whole_) return false;
-    const double most = utilisation();
+    const double most =
+        largest_utilisation(problem_.assembler, current_.at(Damage::held), step_.borne);
+    watched_.clear();  // if another bond is the most utilised one, all are looked at again
     if (result_.end == StrengthEnd::at_strength) {
-      if (std::abs(most - share_at_strength) <= strength_tolerance) return true;
-      return false;
+      return std::abs(most - share_at_strength) <= strength_tolerance;
     }
     // Bonds that are overloaded are so until the strength is met.
     if (result_.end == StrengthEnd::on_the_way && is_overloaded()) return true;
@@ -322,19 +359,16 @@ class StrengthSearch {
   }
 
   /// True if one step along the tangent ends far from the strength that it aims at.
-  [[nodiscard]] bool misses_by_far() const {
+  [[nodiscard]] bool misses_by_far() {
     if (step_.settles) return false;
-    const double most = utilisation();
+    watched_ = utilised_bonds(problem_.assembler, current_.at(Damage::held), step_.borne, watched);
+    const double most = watched_.empty() ? 0.0 : watched_.front().utilisation;
     if (result_.end == StrengthEnd::at_strength) return std::abs(most - 1.0) > largest_miss;
     return !is_overloaded() && most > 1.0 + largest_miss;
   }
 
   /// True if bonds are overloaded where the search begins.
   [[nodiscard]] bool is_overloaded() const { return !result_.goes_up || !meets_upper_; }
-
-  [[nodiscard]] double utilisation() const {
-    return largest_utilisation(problem_.assembler, current_.at(Damage::held), step_.borne);
-  }
 
   /// Moves supports and loads to the stage, and evaluates the state.
   void stand() {
@@ -381,7 +415,10 @@ class StrengthSearch {
   double foreseen_at_ = 0.0;          // its stage
   bool is_whole_ = true;              // the last step was not shortened
   std::vector<double> rate_, eigenstretch_rate_;
-  int rate_of_ = 0, refreshed_at_ = 0;  // number of refreshes of the tangent
+  std::vector<UtilisedBond> watched_;           // that may be the next; empty: all
+  std::vector<double> correction_, corrected_;  // the last one, and the residual before it
+  double predicted_ = 0.0;                      // change along b, until b is corrected
+  int rate_of_ = 0, refreshed_at_ = 0;          // number of refreshes of the tangent
   bool meets_upper_ = true;
   double last_residual_ = 0.0, old_scale_ = 0.0;
   StrengthResult result_;

@@ -60,7 +60,8 @@ struct StrengthResult {
 /// b it finds the range of dl in which no bond is overloaded. If the present stage is within it,
 /// the next strength is at its upper end; otherwise the strength that is met first is at the nearer
 /// end, up or down. The stretches are those of the state itself: the strength is exact at finite
-/// strain.
+/// strain. What the tangent lacks shows in the residuals: the tangent learns from each a, and b is
+/// corrected by the first a after the step along it.
 ///
 /// Where contacts close and open the path has corners, beyond which b means nothing. So a search
 /// ends just behind the first one that b predicts. While contacts press, every iteration has a

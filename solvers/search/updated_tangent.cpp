@@ -4,13 +4,15 @@
 #include <utility>
 
 #include "solvers/linear/ldlt.hpp"
+#include "src/core/vector_verbs.hpp"
 #include "src/dense/symmetric_system.hpp"
 
 namespace peristat {
 namespace {
 
-/// Relative residual of the columns of Z.
-constexpr double column_tolerance = 1e-10;
+/// Relative residual of the columns of Z: the body's motion since the linearisation, which K
+/// neglects, matters more.
+constexpr double column_tolerance = 1e-4;
 
 /// A pivot of the inner matrix below this fraction of the others is round-off.
 constexpr double least_pivot = 1e-12;
@@ -23,11 +25,12 @@ struct UpdatedTangent::Correction {
   std::map<Offset, std::size_t> column_of;
   std::vector<BondDirection> directions;
   std::vector<double> stiffness;
-  std::vector<std::vector<double>> columns;  // of Z
+  std::vector<std::vector<float>> columns;   // of Z, in half the memory
   std::vector<std::vector<double>> between;  // columns of G^T Z, upper half
   SymmetricFactors inner;                    // factors of C^-1 - G^T Z
   bool is_current = true;
   std::vector<double> known_side, known_solution;
+  std::vector<double> freed_side, freed_solution;  // forces that bonds have just lost; with K_0
 
   static double along(const Direction& g, std::span<const double> v) {
     double sum = 0.0;
@@ -55,10 +58,34 @@ struct UpdatedTangent::Correction {
     std::vector<double> shares(size);
     for (std::size_t k = 0; k < size; ++k) shares[k] = along(directions[k].free, x);
     inner.solve(shares);
-    for (std::size_t k = 0; k < size; ++k) {
-      const std::vector<double>& column = columns[k];
-      for (std::size_t e = 0; e < x.size(); ++e) x[e] += shares[k] * column[e];
+    for (std::size_t k = 0; k < size; ++k) add_column(x, shares[k], k);
+  }
+
+  void add_column(std::vector<double>& to, double share, std::size_t k) const {
+    const std::vector<float>& column = columns[k];
+    for (std::size_t e = 0; e < to.size(); ++e) to[e] += share * double(column[e]);
+  }
+
+  /// Notes what bonds no longer bear: the body's first answer to it follows from their columns.
+  void set_free(std::span<const LostStiffness> lost) {
+    freed_side.clear();
+    if (columns.empty()) return;
+    freed_side.assign(columns.front().size(), 0.0);
+    freed_solution.assign(freed_side.size(), 0.0);
+    for (const LostStiffness& bond : lost) {
+      const auto known = column_of.find(bond.bond);
+      if (known == column_of.end()) continue;
+      for (const auto& [equation, share] : directions[known->second].free) {
+        freed_side[std::size_t(equation)] += share * bond.force;
+      }
+      add_column(freed_solution, bond.force, known->second);
     }
+  }
+
+  [[nodiscard]] bool is_freed(std::span<const double> side, double tolerance) const {
+    if (freed_side.empty()) return false;
+    const auto apart = [&](std::size_t e) { return side[e] - freed_side[e]; };
+    return norm_of(side.size(), apart) <= tolerance * norm(side);
   }
 };
 
@@ -77,6 +104,7 @@ void UpdatedTangent::become(const TangentReference& reference) {
   if (kept.at.displacement.empty() || refresh(kept.at) != LinearOutcome::solved) return forget();
   is_direct_ = tells_pivots();
   lose(kept.lost);
+  if (is_there_) reference_.known = kept.known;
 }
 
 LinearOutcome UpdatedTangent::refresh(State at, std::span<const double> foreseen) {
@@ -96,7 +124,7 @@ LinearOutcome UpdatedTangent::refresh(State at, std::span<const double> foreseen
   reference_.at = std::move(at);
   solver_.count_pivots(false);
   indefinite_in_force_ = false;
-  LinearOutcome outcome = solver_.factorize(tangent_, FactorUse::factorize_now);
+  LinearOutcome outcome = solver_.factorize(tangent_, FactorUse::factorize_for_many);
   if (outcome == LinearOutcome::not_positive_definite) outcome = take_indefinite();
   is_there_ = outcome == LinearOutcome::solved;
   return outcome;
@@ -142,15 +170,29 @@ std::vector<double> UpdatedTangent::right_hand_side(std::span<const double> forc
   return side;
 }
 
-LinearOutcome UpdatedTangent::solve(std::span<const double> force, std::span<const double> jump,
-                                    double tolerance, std::vector<double>& direction) {
-  const std::vector<double> side = right_hand_side(force, jump);
-  std::vector<double> solution;
-  const LinearOutcome outcome = solve_for(side, tolerance, solution);
+LinearOutcome UpdatedTangent::solve(std::span<const double> force, double tolerance,
+                                    std::vector<double>& direction) {
+  std::vector<double> side = right_hand_side(force, {}), of_known(side.size()), solution;
+  LinearOutcome outcome = LinearOutcome::solved;
+  if (correction_->is_freed(side, tolerance)) {
+    solution = correction_->freed_solution;
+  } else {
+    reference_.known.take_off(side, of_known);
+    outcome = solve_for(side, tolerance, solution);
+  }
   if (outcome == LinearOutcome::solved) correction_->apply(solution);
+  add_scaled(solution, 1.0, of_known);
   direction.resize(problem_.free.equation.size());
   problem_.free.extend_by_zero(solution, direction);
   return outcome;
+}
+
+void UpdatedTangent::learn(std::span<const double> solution, std::span<const double> change) {
+  std::vector<double> correction(std::size_t(problem_.free.count())),
+      of_residual(correction.size());
+  problem_.free.restrict_to_free(solution, correction);
+  problem_.free.restrict_to_free(change, of_residual);
+  reference_.known.add(correction, of_residual);
 }
 
 LinearOutcome UpdatedTangent::solve_again(std::span<const double> force,
@@ -220,7 +262,7 @@ LinearOutcome UpdatedTangent::add_column(const LostStiffness& lost) {
   c.column_of[lost.bond] = c.columns.size();
   c.directions.push_back(std::move(g));
   c.stiffness.push_back(lost.stiffness);
-  c.columns.push_back(std::move(column));
+  c.columns.emplace_back(column.begin(), column.end());
   return LinearOutcome::solved;
 }
 
@@ -228,8 +270,10 @@ void UpdatedTangent::lose(std::span<const LostStiffness> lost) {
   for (const LostStiffness& bond : lost) {
     if (!is_worth_updating() || add_column(bond) != LinearOutcome::solved) return forget();
     reference_.lost.push_back(bond);
+    reference_.known.lose(bond.stiffness, direction_of(bond).free);
   }
-  if (!correction_->columns.empty() && !correction_->factorize()) forget();
+  if (!correction_->columns.empty() && !correction_->factorize()) return forget();
+  correction_->set_free(lost);
 }
 
 }  // namespace peristat

@@ -9,6 +9,7 @@
 #include "assembly/borne_stretches.hpp"
 #include "solvers/linear/linear_solver.hpp"
 #include "solvers/problem/equilibrium.hpp"
+#include "solvers/search/known_corrections.hpp"
 
 namespace peristat {
 
@@ -16,6 +17,7 @@ namespace peristat {
 struct TangentReference {
   State at;                           ///< state of linearisation; without displacements: none yet
   std::vector<LostStiffness> lost{};  ///< lost since
+  KnownCorrections known{};           ///< of the present body
 };
 
 /// Solves with the tangent of a body whose bonds drop one after the other. A tangent K_0 is
@@ -25,7 +27,8 @@ struct TangentReference {
 ///
 /// is subtracted by K^-1 = K_0^-1 + Z (C^-1 - G^T Z)^-1 Z^T, Z = K_0^-1 G (Woodbury), if the factor
 /// is direct. K neglects the body's motion since the linearisation: this suffices for iterations
-/// that evaluate the residual itself, and call `refresh` when they become slow. If a stored tangent
+/// that evaluate the residual itself, and call `refresh` when they become slow. What they report of
+/// their corrections is used again (KnownCorrections), until the next refresh. If a stored tangent
 /// is not positive definite, a solver that accepts this is used instead.
 class UpdatedTangent {
  public:
@@ -60,11 +63,14 @@ class UpdatedTangent {
   /// Subtracts the stiffness that bonds have lost, or forgets if that does not pay.
   void lose(std::span<const LostStiffness> lost);
 
-  /// Solves K_ff du_f = force_f - K_fp jump_p with the present tangent.
+  /// Solves K_ff du_f = force_f with the present tangent and what is known.
+  [[nodiscard]] LinearOutcome solve(std::span<const double> force, double tolerance,
+                                    std::vector<double>& direction);
+  /// Notes what a solution has changed of the residual.
+  void learn(std::span<const double> solution, std::span<const double> change);
+  /// Solves K_ff du_f = force_f - K_fp jump_p for a right-hand side that is often repeated: its
+  /// solution is kept.
   /// @param jump of the prescribed displacements, zero elsewhere; empty for none
-  [[nodiscard]] LinearOutcome solve(std::span<const double> force, std::span<const double> jump,
-                                    double tolerance, std::vector<double>& direction);
-  /// The same for a right-hand side that is often repeated: its solution is kept.
   [[nodiscard]] LinearOutcome solve_again(std::span<const double> force,
                                           std::span<const double> jump, double tolerance,
                                           std::vector<double>& direction);

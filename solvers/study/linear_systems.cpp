@@ -79,8 +79,9 @@ LinearSolverOptions options_of_convolutions(const StudyOptions& options, bool ha
 constexpr double vectors_of_flow = 9.0;
 
 /// Mode path: vectors beside those of Newton's search, and numbers per bond: histories of three
-/// states, resistances in two.
-constexpr double vectors_of_events = 12.0, numbers_of_events_per_bond = 5.0;
+/// states, resistances in two. What is known of corrections is in the tangent, in two states of the
+/// path and in its checkpoint.
+constexpr double vectors_of_events = 12.0, numbers_of_events_per_bond = 5.0, copies_of_known = 4.0;
 
 /// Mode fatigue: lives before and after a block, kinds of laws, rates, borne and present stretches.
 constexpr double bytes_of_lives_per_bond = 2.0 * 9.0 + 3.0 * 8.0 + sizeof(BondDrive);
@@ -320,8 +321,11 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
   systems.bytes = estimate.bytes(systems.chosen.is_direct, systems.is_stored, linear);
   const double bytes_of_vector = 8.0 * estimate.size.points * estimate.size.dimension;
   if (goes_by_events) {
-    const double columns = systems.chosen.is_direct ? UpdatedTangent::most_columns : 0.0;
-    systems.bytes += (vectors_of_events + columns) * bytes_of_vector +
+    // In single precision: the columns, what is known, and the factor.
+    const double singles = copies_of_known * 2.0 * KnownCorrections::most +
+                           (systems.chosen.is_direct ? UpdatedTangent::most_columns : 0.0);
+    if (systems.chosen.is_direct) systems.bytes += 4.0 * estimate.factor_entries;
+    systems.bytes += (vectors_of_events + 0.5 * singles) * bytes_of_vector +
                      8.0 * numbers_of_events_per_bond * estimate.size.bonds;
   } else if (problem.solves_often) {
     systems.bytes += vectors_of_flow * bytes_of_vector;

@@ -39,6 +39,27 @@ TEST(Cholesky, AgreesWithADenseSolve) {
   }
 }
 
+TEST(Cholesky, ForManySolvesIsAsAccurateAsAskedFor) {
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    const tests::BoxSetting box = tests::small_box(dimension);
+    const BoxBody body(box);
+    System system(box, some_prescribed(body), std::vector<double>(body.dofs(), 0.0));
+    Cholesky solver;
+    ASSERT_EQ(solver.analyze(system.tangent.pattern, system.free), LinearOutcome::solved);
+    ASSERT_EQ(solver.factorize(system.tangent, FactorUse::factorize_for_many),
+              LinearOutcome::solved);
+    ASSERT_EQ(solver.solve(system.b, system.x, 1e-3), LinearOutcome::solved);
+    EXPECT_LT(solution_error(system), 1e-4) << dimension << "D";
+    EXPECT_GT(solution_error(system), 1e-10) << "not in single precision";
+    ASSERT_EQ(solver.solve(system.b, system.x, 1e-12), LinearOutcome::solved);
+    EXPECT_LT(solution_error(system), 1e-10);
+    // What refinement does not reach the factor in double precision solves.
+    ASSERT_EQ(solver.solve(system.b, system.x, 0.0), LinearOutcome::solved);
+    EXPECT_LT(solution_error(system), 1e-11);
+    EXPECT_EQ(solver.statistics().factorisations, 1);
+  }
+}
+
 TEST(Cholesky, CountsTheSignsOfAnIndefiniteTangent) {
   for (int dimension = 2; dimension <= 3; ++dimension) {
     const tests::BoxSetting box = tests::small_box(dimension);
