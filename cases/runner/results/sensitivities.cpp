@@ -253,11 +253,9 @@ StepRecord Sensitivities::record_of(const Parameter& parameter, std::size_t side
   }
   record.reactions = conditions.reactions(of.state.gradient, of.external_force,
                                           of.state.displacement, of.state.environment);
-  Observation observed(of.body, of.assembler, of.state.at(),
-                       {internal_force(of.body, of.state, of.external_force),
-                        state.piece,
-                        {},
-                        from_.output.count_cracks});
+  ObservedExtras extras{internal_force(of.body, of.state, of.external_force), state.piece};
+  extras.count_cracks = from_.output.count_cracks;
+  Observation observed(of.body, of.assembler, of.state.at(), std::move(extras));
   static_cast<void>(observed.values("displacement"));
   for (const ProbeSpecification& probe : from_.probes) {
     if (!probe.from && point_field(probe.field)) {
