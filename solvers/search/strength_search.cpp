@@ -130,7 +130,7 @@ class StrengthSearch {
   /// Sees to it that the tangent is good enough for an iteration.
   Outcome linearise(int iteration) {
     if (iteration == 1 && !step_.settles && touches_at(0.0)) return foresee();
-    const bool changes = has_contacts_ && (tangent_.touches() || presses());
+    const bool changes = touches();
     const bool is_old = !tangent_.is_there() || is_slow(iteration) || changes;
     return is_old ? refresh() : Outcome::converged;
   }
@@ -151,6 +151,9 @@ class StrengthSearch {
         {current_.displacement, at.stage, current_.history, at.load, environment, at.preload},
         foreseen_));
   }
+
+  /// True if contacts press, now or where the tangent was made: their stiffness changes.
+  [[nodiscard]] bool touches() const { return has_contacts_ && (tangent_.touches() || presses()); }
 
   /// True if contacts press in the present state.
   [[nodiscard]] bool presses() const {
@@ -272,7 +275,7 @@ class StrengthSearch {
 
   /// Learns from the last correction.
   void learn() {
-    if (correction_.empty() || has_contacts_) return;  // whose stiffness changes
+    if (correction_.empty() || touches()) return;
     std::vector<double> change = residual();
     add_scaled(change, -1.0, corrected_);
     tangent_.learn(correction_, change);
@@ -281,7 +284,7 @@ class StrengthSearch {
 
   /// The step along b was wrong by the first correction after it.
   void correct_rate() {
-    if (predicted_ == 0.0 || has_contacts_) return;
+    if (predicted_ == 0.0 || touches()) return;
     add_scaled(rate_, 1.0 / std::exchange(predicted_, 0.0), correction_);
   }
 
