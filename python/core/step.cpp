@@ -48,7 +48,7 @@ py::array_t<double> Step::field(const std::string& name) {
     observed_ = std::make_unique<Observation>(
         step.body, step.assembler, state.trial.at(),
         ObservedExtras{internal_force(step.body, state.trial, state.external_force), state.piece,
-                       state.velocity, step.count_cracks});
+                       state.velocity, state.life, step.count_cracks});
   }
   const std::vector<double>& values = observed_->values(name);
   const Points& points = step.body.points;
