@@ -108,6 +108,9 @@ void SingleFactor::solve(std::span<const double> b, std::span<double> x) {
 }
 
 void SingleFactor::forward(const Supernode& node) {
+  // A side with few entries, as for the column of a bond, leaves most nodes as they are.
+  const auto own = std::span(x_).subspan(node.first_column, node.columns);
+  if (std::ranges::all_of(own, [](float value) { return value == 0.0F; })) return;
   float* const part = part_.data();
   std::copy_n(&x_[node.first_column], node.columns, part);
   std::fill(part + node.columns, part + node.rows, 0.0F);

@@ -80,20 +80,15 @@ class Relaxation {
       const StateView start(start_, at_.history, Damage::held, start_environment_);
       static_cast<void>(assembler.lag_friction(at_.at(), start, at_.history));
     }
-    const Evaluation found =
-        options_.breaking == Breaking::transient
-            ? assembler.commit(at_.displacement, at_.history, at_.gradient, at_.environment)
-            : assembler.gradient(at_.at(), at_.gradient);
+    const Evaluation found = find_forces();
     result_.growth += found.growth;
     result_.released_energy += found.released;
-    at_.stored_energy = found.energy;
     // The work of forces on obstacles is what heating counts, which is of the whole energy, less
     // the change of their potential.
     const double potential = potential_under(at_.environment);
     if (has_potential_) add_work_of_body(potential_ - potential);
     has_potential_ = true;
     potential_ = potential;
-    at_.energy_round_off = found.round_off;
     if (!at_.follower_force.empty()) {
       last_follower_force_.swap(at_.follower_force);
       at_.follower_force.resize(last_follower_force_.size());
@@ -219,6 +214,15 @@ class Relaxation {
     return relative_change_ < options_.displacement_tolerance;
   }
 
+  /// Computes the energy of the present state.
+  void find_energy() {
+    const Evaluation found = problem_.assembler.energy(at_.at());
+    at_.stored_energy = found.energy;
+    at_.energy_round_off = found.round_off;
+    at_.degenerate |= found.degenerate;
+  }
+
+  /// Needs the energy, see find_energy.
   [[nodiscard]] IterationRecord record() const {
     IterationRecord row;
     row.iteration = result_.iterations;
@@ -232,6 +236,22 @@ class Relaxation {
   }
 
  private:
+  /// Computes the forces and, where bonds break on the way, the damage. Iterations read the energy
+  /// only where it changes with the environment.
+  Evaluation find_forces() {
+    Assembler& assembler = problem_.assembler;
+    const bool commits = options_.breaking == Breaking::transient;
+    if (commits && !way_.end_environment()) {
+      return assembler.commit_forces(at_.displacement, at_.history, at_.gradient, at_.environment);
+    }
+    const Evaluation found =
+        commits ? assembler.commit(at_.displacement, at_.history, at_.gradient, at_.environment)
+                : assembler.gradient(at_.at(), at_.gradient);
+    at_.stored_energy = found.energy;
+    at_.energy_round_off = found.round_off;
+    return found;
+  }
+
   [[nodiscard]] double density_of(double row_sum) const {
     return 0.25 * options_.mass_factor * row_sum;
   }
@@ -426,13 +446,17 @@ RelaxationResult relax(const EquilibriumProblem& problem, TangentOperator& tange
       if (balanced) result.largest_residual = options.relative_tolerance * result.scale;
       break;
     }
-    if (n % iterations_per_record == 0 && observer && observer(relaxation.record())) {
-      result.outcome = Outcome::interrupted;
-      break;
+    if (n % iterations_per_record == 0 && observer) {
+      relaxation.find_energy();
+      if (observer(relaxation.record())) {
+        result.outcome = Outcome::interrupted;
+        break;
+      }
     }
     if (n < last) relaxation.accelerate();
   }
   result.external_work = sums.of_all(result.external_work);
+  relaxation.find_energy();
   Trial& state = result.state;
   state.total_energy = state.stored_energy - sums.dot(result.external_force, state.displacement);
   const double moving = relaxation.energy_of_motion();

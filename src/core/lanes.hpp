@@ -31,13 +31,20 @@ struct LaneMask {
   friend LaneMask operator||(const LaneMask& a, const LaneMask& b) { return {a.bits | b.bits}; }
 };
 
-inline bool any_of(const LaneMask& a) {
+/// A bit for each lane, that of lane 0 the lowest.
+inline unsigned bits_of(const LaneMask& a) {
 #ifdef __AVX__
-  return __builtin_ia32_movmskpd256(lanes_detail::Quad(a.bits)) != 0;
+  return unsigned(__builtin_ia32_movmskpd256(lanes_detail::Quad(a.bits)));
 #else
-  return (a.bits[0] | a.bits[1] | a.bits[2] | a.bits[3]) != 0;
+  return unsigned((a.bits[0] & 1) | (a.bits[1] & 2) | (a.bits[2] & 4) | (a.bits[3] & 8));
 #endif
 }
+/// The lanes whose bits are set.
+inline LaneMask mask_of(unsigned bits) {
+  const auto all = static_cast<long long>(bits);
+  return {(lanes_detail::Order{all, all, all, all} & lanes_detail::Order{1, 2, 4, 8}) != 0};
+}
+inline bool any_of(const LaneMask& a) { return bits_of(a) != 0; }
 inline bool none_of(const LaneMask& a) { return !any_of(a); }
 
 /// One double per interaction of a batch, in a vector register. Measures and potentials are

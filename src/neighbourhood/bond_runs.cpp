@@ -1,48 +1,93 @@
 #include "src/neighbourhood/bond_runs.hpp"
 
+#include <algorithm>
+#include <tuple>
+
 namespace peristat {
 namespace {
 
-/// True if the bonds of both points are alike.
-bool are_alike(const Bonds& bonds, Index one, Index other) {
-  const Offset first = bonds.offset[one], second = bonds.offset[other];
-  const Offset count = bonds.offset[one + 1] - first;
-  if (bonds.offset[other + 1] - second != count) return false;
-  for (Offset k = 0; k < count; ++k) {
-    const Index ahead = bonds.partner[first + k] - one;
-    if (bonds.partner[second + k] - other != ahead) return false;
-    if (bonds.kind[first + k] != bonds.kind[second + k]) return false;
+bool is_bonded_to_next(const Bonds& bonds, Index i) {
+  return bonds.offset[i] < bonds.offset[i + 1] && bonds.partner[bonds.offset[i]] == i + 1;
+}
+
+/// All maximal runs of these points, as long as they may be, in the order of their first bonds.
+/// @param ghosts the first of them: points from it on are no partners of runs
+std::vector<BondRun> runs_between(const Bonds& bonds, Index first, Index last, Index ghosts) {
+  std::vector<BondRun> found;
+  std::vector<std::size_t> open, opened;  // runs of the point before and of this one, by `ahead`
+  for (Index i = first; i < last; ++i, open.swap(opened)) {
+    opened.clear();
+    auto candidate = open.begin();
+    const Offset first_bond = bonds.offset[i];
+    for (Offset bond = first_bond; bond < bonds.offset[i + 1]; ++bond) {
+      const Index partner = bonds.partner[bond], ahead = partner - i;
+      if (partner >= ghosts) break;
+      while (candidate != open.end() && found[*candidate].ahead < ahead) ++candidate;
+      const bool goes_on = candidate != open.end() && found[*candidate].ahead == ahead &&
+                           bonds.kind[found[*candidate].first_bond(bonds)] == bonds.kind[bond];
+      if (goes_on) {
+        opened.push_back(*candidate);
+        ++found[*candidate].points;
+      } else {
+        opened.push_back(found.size());
+        found.push_back({i, 1, ahead, Index(bond - first_bond)});
+      }
+    }
   }
-  return true;
+  return found;
 }
 
 }  // namespace
 
-std::vector<BondRun> bond_runs(const Points& points, const Bonds& bonds, int threads) {
-  const Index owned = points.owned.value_or(points.count());
-  const Index count = bonds.points();
-  const auto stays_owned = [&](Index i) {
-    const Offset first = bonds.offset[i], last = bonds.offset[i + 1];
-    return i < owned && last > first && bonds.partner[last - 1] < owned;
-  };
-  std::vector<char> continues(std::size_t(count), 0);  // the run of the point before
-#pragma omp parallel for num_threads(threads)
-  for (Index i = 1; i < count; ++i) {
-    continues[i] = stays_owned(i - 1) && stays_owned(i) && are_alike(bonds, i - 1, i);
+BondRuns::BondRuns(const Points& points, const Bonds& bonds, Index first, Index last)
+    : first_(first) {
+  while (first < last) {
+    Index row = first + 1;
+    while (row < last && is_bonded_to_next(bonds, row - 1)) ++row;
+    const Index parts = (row - first + longest - 1) / longest;
+    for (Index part = parts; part > 0; --part) {
+      const Index end = first + (row - first + part - 1) / part;
+      add_group(points, bonds, first, end);
+      first = end;
+    }
   }
-  std::vector<BondRun> runs;
-  for (Index first = 0, last = 0; first < count; first = last) {
-    last = first + 1;
-    while (last < count && continues[last]) ++last;
-    if (last - first >= least_run) runs.push_back({first, last});
-  }
-  return runs;
+}
+
+void BondRuns::add_group(const Points& points, const Bonds& bonds, Index first, Index last) {
+  std::vector<BondRun> runs =
+      runs_between(bonds, first, last, points.owned.value_or(points.count()));
+  std::erase_if(runs, [](const BondRun& run) { return run.points < shortest; });
+  std::ranges::sort(runs, {}, [](const BondRun& run) { return std::tuple(run.ahead, run.first); });
+  const std::size_t before = loose_.size();
+  for_each_bond(
+      {first, last, runs, {}}, bonds, [](std::size_t, Index, Offset) {},
+      [&](Index i, Offset bond) {
+        const bool goes_on =
+            loose_.size() > before && loose_.back().point == i && loose_.back().last == bond;
+        if (goes_on) {
+          ++loose_.back().last;
+        } else {
+          loose_.push_back({i, bond, bond + 1});
+        }
+      });
+  runs_.insert(runs_.end(), runs.begin(), runs.end());
+  ends_.push_back({last, runs_.size(), loose_.size()});
+}
+
+BondRuns::Group BondRuns::group(std::size_t number) const {
+  const End before = number > 0 ? ends_[number - 1] : End{first_, 0, 0}, end = ends_[number];
+  return {before.last, end.last, std::span(runs_).subspan(before.runs, end.runs - before.runs),
+          std::span(loose_).subspan(before.loose, end.loose - before.loose)};
 }
 
 double share_in_runs(const Points& points, const Bonds& bonds, int threads) {
+  const auto count = std::ptrdiff_t(bonds.points());
   double inside = 0.0;
-  for (const BondRun& run : bond_runs(points, bonds, threads)) {
-    inside += double(bonds.offset[run.last] - bonds.offset[run.first]);
+#pragma omp parallel for num_threads(threads) reduction(+ : inside)
+  for (int part = 0; part < threads; ++part) {
+    const BondRuns runs(points, bonds, Index(count * part / threads),
+                        Index(count * (part + 1) / threads));
+    for (const BondRun& run : runs.runs()) inside += double(run.points);
   }
   return bonds.count() > 0 ? inside / double(bonds.count()) : 0.0;
 }

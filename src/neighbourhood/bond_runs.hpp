@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "src/geometry/points.hpp"
@@ -7,18 +9,89 @@
 
 namespace peristat {
 
-/// Consecutive points whose bonds are alike: as many, to partners that are as many points ahead,
-/// with the same lengths and weights.
+/// Bonds of consecutive points to partners that are as many points ahead, with one length and
+/// weight.
 struct BondRun {
-  Index first, last;  ///< the last one is not part of it
+  Index first;   ///< of the lower points
+  Index points;  ///< how many
+  Index ahead;   ///< from a point to its partner
+  Index place;   ///< of the first bond among those of its point
+
+  [[nodiscard]] Index last() const { return first + points; }  ///< not part of it
+  [[nodiscard]] Offset first_bond(const Bonds& bonds) const { return bonds.offset[first] + place; }
 };
 
-/// Fewest points that make a run.
-inline constexpr Index least_run = 8;
+/// Bonds of a point, one after another, that are in no run.
+struct LooseBonds {
+  Index point;
+  Offset first, last;  ///< the last one is not part of them
+};
 
-/// Runs of a body, ascending. On a lattice they are parts of its rows, where holes, cracks and the
-/// surface leave alike bonds. Bonds to ghosts are in none.
-[[nodiscard]] std::vector<BondRun> bond_runs(const Points& points, const Bonds& bonds, int threads);
+/// The bonds of consecutive lower points. On a lattice most of them are in runs: along its rows,
+/// wherever holes, cracks and surfaces end them.
+class BondRuns {
+ public:
+  /// Most points of a group: their vectors stay in the nearest cache.
+  static constexpr Index longest = 128;
+  /// Fewest points that make a run.
+  static constexpr Index shortest = 4;
+
+  /// Consecutive points that are bonded one to the next, with all of their bonds.
+  struct Group {
+    Index first, last;
+    std::span<const BondRun> runs;  ///< ascending by `ahead`, then by their points
+    std::span<const LooseBonds> loose;
+  };
+
+  BondRuns() = default;
+  /// Finds the runs of the points first .. last - 1. Bonds to ghosts are in none.
+  BondRuns(const Points& points, const Bonds& bonds, Index first, Index last);
+
+  /// True if no bond is in a run.
+  [[nodiscard]] bool empty() const { return runs_.empty(); }
+  [[nodiscard]] std::span<const BondRun> runs() const { return runs_; }
+  [[nodiscard]] std::size_t groups() const { return ends_.size(); }
+  [[nodiscard]] Group group(std::size_t number) const;
+
+  /// Calls on_run(run's number, point, bond) for the bonds of a group that are in runs, and
+  /// on_loose(point, bond) for the others, point by point in their order.
+  template <class OnRun, class OnLoose>
+  static void for_each_bond(const Group& group, const Bonds& bonds, const OnRun& on_run,
+                            const OnLoose& on_loose);
+
+ private:
+  struct End {
+    Index last;
+    std::size_t runs, loose;
+  };
+  void add_group(const Points& points, const Bonds& bonds, Index first, Index last);
+
+  Index first_ = 0;
+  std::vector<End> ends_;  // of the groups
+  std::vector<BondRun> runs_;
+  std::vector<LooseBonds> loose_;
+};
+
+template <class OnRun, class OnLoose>
+void BondRuns::for_each_bond(const Group& group, const Bonds& bonds, const OnRun& on_run,
+                             const OnLoose& on_loose) {
+  for (Index i = group.first; i < group.last; ++i) {
+    auto run = group.runs.begin();
+    for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
+      const Index ahead = bonds.partner[bond] - i;
+      while (run != group.runs.end() &&
+             (run->ahead < ahead || (run->ahead == ahead && run->last() <= i))) {
+        ++run;
+      }
+      const bool inside = run != group.runs.end() && run->ahead == ahead && run->first <= i;
+      if (inside) {
+        on_run(std::size_t(run - group.runs.begin()), i, bond);
+      } else {
+        on_loose(i, bond);
+      }
+    }
+  }
+}
 
 /// Share of the bonds that are in runs, from 0 to 1.
 [[nodiscard]] double share_in_runs(const Points& points, const Bonds& bonds, int threads);

@@ -29,17 +29,17 @@ struct Batch {
   Vector<D, Lanes> vector0, vector1;  // partner's minus the row's own gathered vectors
 };
 
-/// Calls visit(batch) for the bonds of row i, with the weights of these kinds.
+/// Calls visit(batch) for some bonds of a row, with the weights of these kinds.
 template <int D, class Visit>
 [[gnu::always_inline]] inline void for_each_batch(const Bonds& bonds, const BondKinds& kinds,
-                                                  const double* rows, Index i, const Visit& visit) {
+                                                  const double* rows, const LooseBonds& of,
+                                                  const Visit& visit) {
   constexpr int width = row_width(D);
-  const double* own = rows + std::size_t(i) * width;
-  const Offset end = bonds.offset[i + 1];
+  const double* own = rows + std::size_t(of.point) * width;
   Batch<D> batch;
-  for (Offset first = bonds.offset[i]; first < end; first += lane_count) {
+  for (Offset first = of.first; first < of.last; first += lane_count) {
     batch.first = first;
-    batch.count = static_cast<int>(std::min<Offset>(lane_count, end - first));
+    batch.count = static_cast<int>(std::min<Offset>(lane_count, of.last - first));
     std::array<Offset, lane_count> bond;
     if (batch.count == lane_count) {
 #pragma GCC unroll 4
@@ -74,6 +74,12 @@ template <int D, class Visit>
   }
 }
 
+/// The same for all bonds of row i.
+template <int D, class Visit>
+[[gnu::always_inline]] inline void for_each_batch(const Bonds& bonds, const BondKinds& kinds,
+                                                  const double* rows, Index i, const Visit& visit) {
+  for_each_batch<D>(bonds, kinds, rows, LooseBonds{i, bonds.offset[i], bonds.offset[i + 1]}, visit);
+}
 template <int D, class Visit>
 [[gnu::always_inline]] inline void for_each_batch(const Bonds& bonds, const double* rows, Index i,
                                                   const Visit& visit) {

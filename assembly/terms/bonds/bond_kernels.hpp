@@ -20,7 +20,7 @@ void with_pass(const BondWorkspace& a, const RunWindow& window, const P& potenti
   if constexpr (PotentialWithHistory<P>) {
     double* changing = nullptr;
     if constexpr (!std::is_const_v<Stretch>) changing = largest_stretch;
-    FailingBatchOf<P> failing(potential, a.points, largest_stretch, changing, growth);
+    FailingBondsOf<P> failing(potential, a.points, a.bonds, largest_stretch, changing, growth);
     visit(Pass(a.bonds, window.vectors, whole, eigenstretch, &failing));
   } else {
     visit(Pass(a.bonds, window.vectors, whole, eigenstretch, nullptr));
@@ -50,51 +50,51 @@ struct BondKernels {
       Lanes shortest = std::numeric_limits<double>::infinity();
       double energy = 0.0;
       DamageGrowth growth;
-      const auto on_piece = [&](const RunPiece& piece, RunWindow& window) {
+      const auto on_run = [&](const BondRun& run, RunDamage* damage, RunWindow& window) {
         with_pass<D>(a, window, potential, eigenstretch, largest_stretch, growth,
                      [&](const auto& pass) {
                        pass.template add_forces<with_energy>(
-                           piece, energy_only ? nullptr : &window.sums, energy, shortest);
+                           run, damage, energy_only ? nullptr : &window.sums, energy, shortest);
                      });
       };
-      const auto on_rows = [&](Index first, Index last, double* to) {
-        for (Index i = first; i < last; ++i) {
-          const Index whole_below = i < owned ? owned : 0;
-          Lanes row_energy = 0.0;
-          Vector<D, Lanes> own;
-          own.fill(Lanes(0.0));
-          for_each_batch<D>(
-              bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-                auto measure =
-                    Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-                relieve(measure, eigenstretch, i, batch);
-                if constexpr (commits) {
-                  commit<D>(a.points, potential, i, batch, measure.relative_change, largest_stretch,
-                            growth);
-                }
-                shortest = min(shortest, measure.current);
-                Vector<D, Lanes> force;
-                if constexpr (with_energy) {
-                  const auto psi = interaction_energy(
-                      batch.weight, at_history(largest_stretch, potential, batch.first), measure);
-                  row_energy += batch.partner.back() < whole_below
-                                    ? psi.value
-                                    : psi.value * share_of_owned(a.points, i, batch.partner);
-                  if (energy_only) return;
-                  force = energy_gradient(psi, measure)[0];
-                } else {
-                  force = scaled<D>(batch.weight * tension(largest_stretch, potential, batch.first,
-                                                           measure.relative_change),
-                                    measure.gradient[0]);
-                }
-                for (int c = 0; c < D; ++c) own[c] -= force[c];
-                add_to_partners<D>(to, batch.partner, force);
-              });
-          energy += sum(row_energy);
-          for (int c = 0; c < D; ++c) to[std::ptrdiff_t(i) * width + c] += sum(own[c]);
-        }
+      const auto on_loose = [&](const LooseBonds& loose, double* to) {
+        const Index i = loose.point;
+        const Index whole_below = i < owned ? owned : 0;
+        Lanes row_energy = 0.0;
+        Vector<D, Lanes> own;
+        own.fill(Lanes(0.0));
+        for_each_batch<D>(
+            bonds, bonds.kind, a.rows.data(),
+            loose, [&](const Batch<D>& batch) __attribute__((always_inline)) {
+              auto measure =
+                  Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+              relieve(measure, eigenstretch, i, batch);
+              if constexpr (commits) {
+                commit<D>(a.points, potential, i, batch, measure.relative_change, largest_stretch,
+                          growth);
+              }
+              shortest = min(shortest, measure.current);
+              Vector<D, Lanes> force;
+              if constexpr (with_energy) {
+                const auto psi = interaction_energy(
+                    batch.weight, at_history(largest_stretch, potential, batch.first), measure);
+                row_energy += batch.partner.back() < whole_below
+                                  ? psi.value
+                                  : psi.value * share_of_owned(a.points, i, batch.partner);
+                if (energy_only) return;
+                force = energy_gradient(psi, measure)[0];
+              } else {
+                force = scaled<D>(batch.weight * tension(largest_stretch, potential, batch.first,
+                                                         measure.relative_change),
+                                  measure.gradient[0]);
+              }
+              for (int c = 0; c < D; ++c) own[c] -= force[c];
+              add_to_partners<D>(to, batch.partner, force);
+            });
+        energy += sum(row_energy);
+        for (int c = 0; c < D; ++c) to[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       };
-      a.sum_range<D, width>(thread, range, sums, on_piece, on_rows);
+      a.sum_range<D, width>(thread, range, sums, on_run, on_loose);
       parts[thread] = {energy, !(smallest(shortest) > 0.0), growth};
     };
     a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
@@ -163,31 +163,31 @@ struct BondKernels {
     constexpr int width = vector_width(D);
     const auto body = [&](int thread, RowRange range, double* sums) {
       DamageGrowth none;
-      const auto on_piece = [&](const RunPiece& piece, RunWindow& window) {
-        with_pass<D>(a, window, potential, eigenstretch, largest_stretch, none,
-                     [&](const auto& pass) { pass.add_products(piece, projection, window.sums); });
+      const auto on_run = [&](const BondRun& run, RunDamage* damage, RunWindow& window) {
+        with_pass<D>(
+            a, window, potential, eigenstretch, largest_stretch, none,
+            [&](const auto& pass) { pass.add_products(run, damage, projection, window.sums); });
       };
-      const auto on_rows = [&](Index first, Index last, double* to) {
-        for (Index i = first; i < last; ++i) {
-          Vector<D, Lanes> own;
-          own.fill(Lanes(0.0));
-          for_each_batch<D>(
-              bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-                auto measure =
-                    Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
-                relieve(measure, eigenstretch, i, batch);
-                auto psi = interaction_energy(
-                    batch.weight, at_history(largest_stretch, potential, batch.first), measure);
-                if (projection > 0.0) psi = projected(psi, projection);
-                const Vector<D, Lanes> force =
-                    energy_hessian_times(psi, measure, Arms<1, D, Lanes>{batch.vector1})[0];
-                for (int c = 0; c < D; ++c) own[c] -= force[c];
-                add_to_partners<D>(to, batch.partner, force);
-              });
-          for (int c = 0; c < D; ++c) to[std::ptrdiff_t(i) * width + c] += sum(own[c]);
-        }
+      const auto on_loose = [&](const LooseBonds& loose, double* to) {
+        const Index i = loose.point;
+        Vector<D, Lanes> own;
+        own.fill(Lanes(0.0));
+        for_each_batch<D>(
+            bonds, bonds.kind, a.rows.data(),
+            loose, [&](const Batch<D>& batch) __attribute__((always_inline)) {
+              auto measure = Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
+              relieve(measure, eigenstretch, i, batch);
+              auto psi = interaction_energy(
+                  batch.weight, at_history(largest_stretch, potential, batch.first), measure);
+              if (projection > 0.0) psi = projected(psi, projection);
+              const Vector<D, Lanes> force =
+                  energy_hessian_times(psi, measure, Arms<1, D, Lanes>{batch.vector1})[0];
+              for (int c = 0; c < D; ++c) own[c] -= force[c];
+              add_to_partners<D>(to, batch.partner, force);
+            });
+        for (int c = 0; c < D; ++c) to[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       };
-      a.sum_range<D, width>(thread, range, sums, on_piece, on_rows);
+      a.sum_range<D, width>(thread, range, sums, on_run, on_loose);
     };
     a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
       put<D>(how, total, &result[std::size_t(i) * D]);

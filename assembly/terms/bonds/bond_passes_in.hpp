@@ -81,8 +81,7 @@ auto BondPassesIn<dimension>::dispatch(const StateView& at, const Body& body) {
           const std::span<const double> history = at.history.of(slot_);
           P law = failure_.at_history(potential, history);
           law.holds_damage = at.damage == Damage::held || failure_.fails_in_avalanches();
-          workspace_.runs.follow(failure_.bonds(), law, history.data(), at.history.version(),
-                                 workspace_.threads.threads());
+          workspace_.runs.follow(failure_.bonds(), law, history.data(), at.history.version());
           return with_law(law, history.data());
         } else {
           return with_law(potential, nullptr);

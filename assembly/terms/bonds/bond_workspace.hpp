@@ -4,8 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "assembly/terms/bonds/point_columns.hpp"
-#include "assembly/terms/bonds/run_pieces.hpp"
+#include "assembly/terms/bonds/thread_runs.hpp"
 #include "assembly/terms/workspace.hpp"
 #include "src/core/aligned_vector.hpp"
 #include "src/geometry/points.hpp"
@@ -17,18 +16,6 @@ namespace peristat {
 /// does not hold both.
 constexpr int row_width(int dimension) { return dimension == 3 ? 8 : 4; }
 
-/// Columns of the points that a thread's runs reach at the moment: a window that moves with them,
-/// so that large bodies need no second copy of their vectors and sums.
-struct RunWindow {
-  RunWindow(int dimension, Index most)
-      : vectors(2 * dimension, most), sums(dimension, most), capacity(most) {}
-
-  PointColumns vectors;  ///< the packed ones, components of the first one first
-  PointColumns sums;
-  Index capacity;
-  Index first = 0, last = 0;
-};
-
 /// Buffers of the passes over bonds.
 struct BondWorkspace {
   /// @param along_runs also sums along runs of points with alike bonds
@@ -36,23 +23,15 @@ struct BondWorkspace {
       : points(of),
         bonds(with),
         threads(shared),
-        rows(std::size_t(of.count()) * row_width(of.dimension)),
-        runs(along_runs ? bond_runs(of, with, shared.threads()) : std::vector<BondRun>()) {
-    if (runs.empty()) return;
-    reach = runs.reach(with);
-    for (const RowRange& range : shared.ranges) {
-      windows.emplace_back(of.dimension, std::min(range.touched_end - range.first,
-                                                  2 * (reach + RunPieces::longest)));
-    }
+        rows(std::size_t(of.count()) * row_width(of.dimension)) {
+    if (along_runs) runs = ThreadRuns(of, with, shared.ranges);
   }
 
   const Points& points;
   const Bonds& bonds;
   Workspace& threads;
   AlignedVector<double> rows;  ///< per point, the row that kernels gather; see pack
-  RunPieces runs;
-  Index reach = 0;                 ///< points to the farthest partner of a run's point
-  std::vector<RunWindow> windows;  ///< of each thread
+  ThreadRuns runs;
 
   /// Packs two vectors per point into rows, e.g. reference position and displacement.
   template <int D>
@@ -69,25 +48,31 @@ struct BondWorkspace {
     }
   }
 
-  /// Sums a thread's rows: pieces of runs by on_piece(piece, window), which reads and adds to the
-  /// window's columns, the other rows by on_rows(first, last, sums).
+  /// Sums the bonds of a thread's rows: runs by on_run(run, damage, window), which reads and adds
+  /// to the window's columns, the other ones by on_loose(bonds of a point, sums).
   /// @param sums `width` doubles per row, which everything is added to
-  template <int D, int width, class OnPiece, class OnRows>
-  void sum_range(int thread, RowRange range, double* sums, const OnPiece& on_piece,
-                 const OnRows& on_rows) {
-    if (runs.empty()) return on_rows(range.first, range.last, sums);
-    RunWindow& window = windows[std::size_t(thread)];
+  template <int D, int width, class OnRun, class OnLoose>
+  void sum_range(int thread, RowRange range, double* sums, const OnRun& on_run,
+                 const OnLoose& on_loose) {
+    if (!runs.in_use()) {
+      for (Index i = range.first; i < range.last; ++i) {
+        on_loose(LooseBonds{i, bonds.offset[i], bonds.offset[i + 1]}, sums);
+      }
+      return;
+    }
+    ThreadRuns::OfThread& one = runs.of(thread);
+    RunWindow& window = one.window;
     window.first = window.last = range.first;
-    runs.for_each(
-        range,
-        [&](const RunPiece& piece) {
-          if (std::min(piece.last + reach, range.touched_end) > window.last) {
-            add_sums<D, width>(window, sums);
-            move<D>(window, piece.first, range.touched_end);
-          }
-          on_piece(piece, window);
-        },
-        [&](Index first, Index last) { on_rows(first, last, sums); });
+    RunDamage* damage = one.damage.empty() ? nullptr : one.damage.data();
+    for (std::size_t g = 0; g < one.bonds.groups(); ++g) {
+      const BondRuns::Group group = one.bonds.group(g);
+      if (std::min(group.last + one.reach, range.touched_end) > window.last) {
+        add_sums<D, width>(window, sums);
+        move<D>(window, group.first, range.touched_end);
+      }
+      for (const BondRun& run : group.runs) on_run(run, damage ? damage++ : nullptr, window);
+      for (const LooseBonds& loose : group.loose) on_loose(loose, sums);
+    }
     add_sums<D, width>(window, sums);
   }
 

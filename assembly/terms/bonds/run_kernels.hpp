@@ -1,88 +1,73 @@
 #pragma once
 
+#include <array>
 #include <limits>
-#include <span>
 #include <type_traits>
 
 #include "assembly/terms/bonds/bond_batches.hpp"
 #include "assembly/terms/bonds/point_columns.hpp"
-#include "assembly/terms/bonds/run_pieces.hpp"
+#include "assembly/terms/bonds/run_damage.hpp"
 
 namespace peristat {
 
-/// A batch of bonds of consecutive points: those that are k-th of their points.
+/// Consecutive bonds of a run, side by side.
 struct RunBatch {
-  Index point;       ///< of lane 0
-  Index ahead;       ///< from a point to its partner
-  Offset bond;       ///< of lane 0
-  Offset per_point;  ///< from the bond of a lane to that of the next
-  Offset k;
-  int count;  ///< lanes past it belong to no bond
+  Index first;  ///< number of lane 0 in the run
+  int count;    ///< lanes past it belong to no bond
+
+  [[nodiscard]] std::size_t number() const { return std::size_t(first) / lane_count; }
 };
 
-/// Densities of a batch of which some bonds are damaged or start to fail.
-class FailingBatch {
+/// Densities of bonds that are damaged or start to fail.
+class FailingBonds {
  public:
-  /// @param damaged flags of the lanes
-  virtual PotentialDensity<Lanes> operator()(const RunPiece& piece, const RunBatch& batch,
-                                             unsigned damaged, const Lanes& stretch) = 0;
+  /// Replaces the densities of these lanes.
+  virtual void evaluate(const BondRun& run, RunDamage& damage, const RunBatch& batch,
+                        unsigned lanes, const Lanes& stretch, PotentialDensity<Lanes>& all) = 0;
 
  protected:
-  ~FailingBatch() = default;
+  ~FailingBonds() = default;
 };
 
 /// The same for bonds with a potential P and a history.
 template <class P>
-class FailingBatchOf final : public FailingBatch {
+class FailingBondsOf final : public FailingBonds {
  public:
   /// @param changing null: the history does not change. Otherwise it moves to the stretches first,
   /// and the damage is added to `growth`
-  FailingBatchOf(const P& potential, const Points& points, const double* largest_stretch,
-                 double* changing, DamageGrowth& growth)
+  FailingBondsOf(const P& potential, const Points& points, const Bonds& bonds,
+                 const double* largest_stretch, double* changing, DamageGrowth& growth)
       : potential_(potential),
         points_(points),
+        bonds_(bonds),
         largest_stretch_(largest_stretch),
         changing_(changing),
         growth_(growth) {}
 
-  PotentialDensity<Lanes> operator()(const RunPiece& piece, const RunBatch& batch, unsigned damaged,
-                                     const Lanes& stretch) override {
-    PotentialDensity<Lanes> all = whole_potential(potential_)(stretch);
+  void evaluate(const BondRun& run, RunDamage& damage, const RunBatch& batch, unsigned lanes,
+                const Lanes& stretch, PotentialDensity<Lanes>& all) override {
     for (int l = 0; l < batch.count; ++l) {
-      if (!(damaged >> l & 1u) && !(stretch[l] > piece.free_below)) continue;
-      const Offset bond = batch.bond + l * batch.per_point;
-      if (changing_) commit(piece, batch, l, stretch[l]);
-      const PotentialDensity<double> one = density(potential_.of_bond(bond), bond, stretch[l]);
+      if (!(lanes >> l & 1u)) continue;
+      const Index of = batch.first + l, i = run.first + of;
+      const Offset bond = *bonds_.find(i, i + run.ahead);
+      const auto& of_bond = potential_.of_bond(bond);
+      if (changing_) {
+        double& largest = changing_[bond];
+        const double before = largest;
+        commit_bond(points_, of_bond, i, i + run.ahead, stretch[l], largest, growth_);
+        if (largest != before) damage.note(run, of, bears_nothing(of_bond, largest));
+      }
+      const PotentialDensity<double> one = of_bond(stretch[l], largest_stretch_[bond]);
       all.value.set(l, one.value);
       all.first.set(l, one.first);
       all.second.set(l, one.second);
     }
-    return all;
   }
 
  private:
-  /// Most damaged bonds are broken: they need no law.
-  template <class OfBond>
-  [[nodiscard]] PotentialDensity<double> density(const OfBond& of_bond, Offset bond,
-                                                 double stretch) const {
-    const double largest = largest_stretch_[bond];
-    const bool is_closed = of_bond.closes && !(stretch > 0.0);
-    if (of_bond.is_broken(largest) && !is_closed) return {0.0, 0.0, 0.0};
-    return of_bond(stretch, largest);
-  }
-
-  void commit(const RunPiece& piece, const RunBatch& batch, int l, double stretch) {
-    const Offset bond = batch.bond + l * batch.per_point;
-    const Index i = batch.point + l;
-    const double before = changing_[bond];
-    commit_bond(points_, potential_.of_bond(bond), i, i + batch.ahead, stretch, changing_[bond],
-                growth_);
-    if (changing_[bond] == before) return;
-    piece.damaged->raise(batch.k, i - piece.first_of_run);
-  }
-
   const P& potential_;
   const Points& points_;
+  const Bonds& bonds_;
   const double* largest_stretch_;
   double* changing_;
   DamageGrowth& growth_;
@@ -91,16 +76,15 @@ class FailingBatchOf final : public FailingBatch {
 /// The lanes of a batch; `none` past them.
 [[nodiscard, gnu::always_inline]] inline Lanes within(const RunBatch& batch, const Lanes& lanes,
                                                       double none) {
-  if (batch.count == lane_count) [[likely]]
-    return lanes;
-  return Lanes([&](int l) { return l < batch.count ? lanes[l] : none; });
+  if (batch.count == lane_count) return lanes;
+  return chosen(mask_of((1u << batch.count) - 1), lanes, none);
 }
 
-/// Sums over the bonds of a piece of a run. All points have alike bonds, so the passes go through
-/// the k-th bonds of all points before the next ones, with one kind. Each goes thrice through the
-/// piece: differences between points, then square roots and divisions, then sums. One loop with all
-/// three waits for the roots of each batch: processors do not look far enough ahead. The passes are
-/// compiled once for all laws of damage: they are not inlined.
+/// Sums over the bonds of a run, in loops over its points: differences between points, then square
+/// roots and divisions, then sums. One loop with all of that waits for the roots of each batch:
+/// processors do not look far enough ahead. Where no bond is damaged, the second loop takes all
+/// bonds for undamaged, and is repeated if one of them turns out to fail. The passes are compiled
+/// once for all laws of damage: they are not inlined.
 template <int D, class Whole, class E>
 class RunPass {
  public:
@@ -108,7 +92,7 @@ class RunPass {
   /// @param whole potential of the undamaged bonds
   /// @param failing null: none can
   RunPass(const Bonds& bonds, const PointColumns& columns, const Whole& whole,
-          const E& eigenstretch, FailingBatch* failing)
+          const E& eigenstretch, FailingBonds* failing)
       : bonds_(bonds),
         columns_(columns),
         whole_(whole),
@@ -116,162 +100,201 @@ class RunPass {
         failing_(failing) {}
 
   /// Adds forces and energy; the columns are reference positions and displacements.
+  /// @param damage of the run; null: no bond can fail
   /// @param sums of forces; null: not wanted
   template <bool with_energy>
-  [[gnu::noinline]] void add_forces(const RunPiece& piece, PointColumns* sums, double& energy,
-                                    Lanes& shortest) const {
+  [[gnu::noinline]] void add_forces(const BondRun& run, RunDamage* damage, PointColumns* sums,
+                                    double& energy, Lanes& shortest) const {
     Vector<D, Row> arm;
     Row squared, change, tension;
+    for_each_batch(
+        run, [&](const RunBatch& batch) __attribute__((always_inline)) {
+          const std::size_t b = batch.number();
+          const Vector<D, Lanes> reference = difference(run, batch, 0),
+                                 displacement = difference(run, batch, D);
+          const Vector<D, Lanes> current = plus<D>(reference, displacement);
+          for (int c = 0; c < D; ++c) arm[c][b] = current[c];
+          squared[b] = dot<D>(current, current);
+          change[b] = dot<D>(displacement, plus<D>(reference, current));
+        });
+    const BondKind& kind = bonds_.kind[run.first_bond(bonds_)];
+    const Lanes inverse_length = kind.inverse_length, weight = kind.weight;
     Lanes total = 0.0, least = shortest;
-    for_each_bond(piece, [&](const Bond& bond) {
-      for_each_batch(piece, [&](int b, Index i) {
-        const Vector<D, Lanes> reference = difference(i, bond.ahead, 0),
-                               displacement = difference(i, bond.ahead, D);
-        const Vector<D, Lanes> current = plus<D>(reference, displacement);
-        for (int c = 0; c < D; ++c) arm[c][b] = current[c];
-        squared[b] = dot<D>(current, current);
-        change[b] = dot<D>(displacement, plus<D>(reference, current));
-      });
-      const Lanes inverse_length = bond.kind.inverse_length, weight = bond.kind.weight;
-      const Lanes of_energy = bond.kind.weight / bond.kind.inverse_length;
-      for_each_batch(piece, [&](int b, Index i) {
-        auto measure = Length::from_squares(inverse_length, squared[b], change[b]);
-        const RunBatch batch = batch_of(piece, bond, i);
-        relieve(measure, batch);
-        least = min(least, within(batch, measure.current, std::numeric_limits<double>::infinity()));
-        const auto phi = density(piece, batch, measure.relative_change);
-        if constexpr (with_energy) total += within(batch, phi.value, 0.0) * of_energy;
-        tension[b] = within(batch, weight * phi.first * measure.inverse, 0.0);
-      });
-      if (!sums) return;
-      for_each_batch(piece, [&](int b, Index i) {
-        for (int c = 0; c < D; ++c) add_to_both(*sums, c, i, bond.ahead, tension[b] * arm[c][b]);
-      });
-    });
-    energy += sum(total);
+    with_densities(
+        run, damage, [&](const auto& density) __attribute__((always_inline)) {
+          total = 0.0;
+          for_each_batch(
+              run, [&](const RunBatch& batch) __attribute__((always_inline)) {
+                const std::size_t b = batch.number();
+                auto measure = Length::from_squares(inverse_length, squared[b], change[b]);
+                relieve(measure, run, batch);
+                least = min(
+                    least, within(batch, measure.current, std::numeric_limits<double>::infinity()));
+                const auto phi = density(batch, measure.relative_change);
+                if constexpr (with_energy) total += within(batch, phi.value, 0.0);
+                tension[b] = within(batch, weight * phi.first * measure.inverse, 0.0);
+              });
+        });
+    energy += sum(total) * (kind.weight / kind.inverse_length);
     shortest = least;
+    if (!sums) return;
+    add_to_ends(
+        run, *sums, [&](int c, std::size_t b) __attribute__((always_inline)) {
+          return tension[b] * arm[c][b];
+        });
   }
 
   /// Adds the tangent's product with v; the columns are positions and v. A bond adds psi'' n (n.v)
   /// + psi'/l (v - n (n.v)).
-  [[gnu::noinline]] void add_products(const RunPiece& piece, double projection,
+  /// @param damage as above
+  [[gnu::noinline]] void add_products(const BondRun& run, RunDamage* damage, double projection,
                                       PointColumns& sums) const {
     Vector<D, Row> arm, along;
     Row squared, product, of_arm, of_along;
-    for_each_bond(piece, [&](const Bond& bond) {
-      for_each_batch(piece, [&](int b, Index i) {
-        const Vector<D, Lanes> current = difference(i, bond.ahead, 0),
-                               v = difference(i, bond.ahead, D);
-        for (int c = 0; c < D; ++c) {
-          arm[c][b] = current[c];
-          along[c][b] = v[c];
-        }
-        squared[b] = dot<D>(current, current);
-        product[b] = dot<D>(current, v);
-      });
-      const Lanes inverse_length = bond.kind.inverse_length, weight = bond.kind.weight;
-      const Lanes of_second = bond.kind.weight * bond.kind.inverse_length;
-      for_each_batch(piece, [&](int b, Index i) {
-        auto measure = Length::from_square(inverse_length, squared[b]);
-        const RunBatch batch = batch_of(piece, bond, i);
-        relieve(measure, batch);
-        const auto phi = density(piece, batch, measure.relative_change);
-        InteractionEnergy<Lanes> psi{0.0, weight * phi.first, of_second * phi.second};
-        if (projection > 0.0) psi = projected(psi, projection);
-        const Lanes across = psi.first * measure.inverse;
-        of_along[b] = within(batch, across, 0.0);
-        of_arm[b] = within(
-            batch, (psi.second - across) * (measure.inverse * measure.inverse) * product[b], 0.0);
-      });
-      for_each_batch(piece, [&](int b, Index i) {
-        for (int c = 0; c < D; ++c)
-          add_to_both(sums, c, i, bond.ahead, of_arm[b] * arm[c][b] + of_along[b] * along[c][b]);
-      });
-    });
+    for_each_batch(
+        run, [&](const RunBatch& batch) __attribute__((always_inline)) {
+          const std::size_t b = batch.number();
+          const Vector<D, Lanes> current = difference(run, batch, 0), v = difference(run, batch, D);
+          for (int c = 0; c < D; ++c) {
+            arm[c][b] = current[c];
+            along[c][b] = v[c];
+          }
+          squared[b] = dot<D>(current, current);
+          product[b] = dot<D>(current, v);
+        });
+    const BondKind& kind = bonds_.kind[run.first_bond(bonds_)];
+    const Lanes inverse_length = kind.inverse_length, weight = kind.weight;
+    const Lanes of_second = kind.weight * kind.inverse_length;
+    with_densities(
+        run, damage, [&](const auto& density) __attribute__((always_inline)) {
+          for_each_batch(
+              run, [&](const RunBatch& batch) __attribute__((always_inline)) {
+                const std::size_t b = batch.number();
+                auto measure = Length::from_square(inverse_length, squared[b]);
+                relieve(measure, run, batch);
+                const auto phi = density(batch, measure.relative_change);
+                InteractionEnergy<Lanes> psi{0.0, weight * phi.first, of_second * phi.second};
+                if (projection > 0.0) psi = projected(psi, projection);
+                const Lanes across = psi.first * measure.inverse;
+                of_along[b] = within(batch, across, 0.0);
+                of_arm[b] = within(
+                    batch, (psi.second - across) * (measure.inverse * measure.inverse) * product[b],
+                    0.0);
+              });
+        });
+    add_to_ends(
+        run, sums, [&](int c, std::size_t b) __attribute__((always_inline)) {
+          return of_arm[b] * arm[c][b] + of_along[b] * along[c][b];
+        });
   }
 
  private:
-  using Row = std::array<Lanes, (RunPieces::longest + lane_count - 1) / lane_count>;
-
-  /// The k-th bonds of the points.
-  struct Bond {
-    Index ahead;
-    Offset first, per_point, k;
-    BondKind kind;
-  };
+  using Row = std::array<Lanes, (BondRuns::longest + lane_count - 1) / lane_count>;
 
   template <class Visit>
-  [[gnu::always_inline]] void for_each_bond(const RunPiece& piece, const Visit& visit) const {
-    const Offset first = bonds_.offset[piece.first];
-    const Offset per_point = bonds_.offset[piece.first + 1] - first;
-    for (Offset bond = first; bond < first + per_point; ++bond) {
-      visit(Bond{bonds_.partner[bond] - piece.first, bond, per_point, bond - first,
-                 bonds_.kind[bond]});
-    }
-  }
-
-  /// Calls visit(number, first point) for the batches of a piece.
-  template <class Visit>
-  [[gnu::always_inline]] static void for_each_batch(const RunPiece& piece, const Visit& visit) {
-    int b = 0;
-    for (Index i = piece.first; i < piece.last; i += lane_count) visit(b++, i);
+  [[gnu::always_inline]] static void for_each_batch(const BondRun& run, const Visit& visit) {
+    const Index points = run.points;
+    Index first = 0;
+    for (; first + lane_count <= points; first += lane_count) visit(RunBatch{first, lane_count});
+    if (first < points) visit(RunBatch{first, points - first});
   }
 
   /// Vectors of a batch's partners minus those of its points.
-  [[nodiscard, gnu::always_inline]] Vector<D, Lanes> difference(Index i, Index ahead,
+  [[nodiscard, gnu::always_inline]] Vector<D, Lanes> difference(const BondRun& run,
+                                                                const RunBatch& batch,
                                                                 int component) const {
     Vector<D, Lanes> result;
     for (int c = 0; c < D; ++c) {
-      const double* const own = columns_[component + c] + i;
-      result[c] = Lanes(own + ahead) - Lanes(own);
+      const double* const own = columns_[component + c] + (run.first + batch.first);
+      result[c] = Lanes(own + run.ahead) - Lanes(own);
     }
     return result;
   }
 
-  [[nodiscard, gnu::always_inline]] static RunBatch batch_of(const RunPiece& piece,
-                                                             const Bond& bond, Index i) {
-    return {i,
-            bond.ahead,
-            bond.first + (i - piece.first) * bond.per_point,
-            bond.per_point,
-            bond.k,
-            std::min<int>(lane_count, piece.last - i)};
-  }
-
   template <class MeasureAt>
-  [[gnu::always_inline]] void relieve(MeasureAt& measure, const RunBatch& batch) const {
+  [[gnu::always_inline]] void relieve(MeasureAt& measure, const BondRun& run,
+                                      const RunBatch& batch) const {
     if constexpr (std::is_same_v<E, Eigenstretch>) {
-      const double* const own = eigenstretch_.of_point + batch.point;
+      const double* const own = eigenstretch_.of_point + (run.first + batch.first);
       measure.relative_change -=
-          0.5 *
-          (Lanes([&](int l) { return l < batch.count ? own[l] + own[l + batch.ahead] : 0.0; }));
+          0.5 * (Lanes([&](int l) { return l < batch.count ? own[l] + own[l + run.ahead] : 0.0; }));
     }
   }
 
-  [[nodiscard, gnu::always_inline]] PotentialDensity<Lanes> density(const RunPiece& piece,
+  /// Calls loop(density), where density(batch, stretch) is that of the bonds; again, from the
+  /// start, if a bond fails that it has taken for undamaged.
+  template <class Loop>
+  [[gnu::always_inline]] void with_densities(const BondRun& run, RunDamage* damage,
+                                             const Loop& loop) const {
+    if (!damage || !damage->any()) {
+      Lanes largest = -std::numeric_limits<double>::infinity();
+      loop([&](const RunBatch& batch, const Lanes& stretch) __attribute__((always_inline)) {
+        largest = max(largest, within(batch, stretch, -std::numeric_limits<double>::infinity()));
+        return whole_(stretch);
+      });
+      if (!damage || none_of(largest > damage->free_below)) return;
+    }
+    loop([&](const RunBatch& batch, const Lanes& stretch)
+             __attribute__((always_inline)) { return density(run, *damage, batch, stretch); });
+  }
+
+  [[nodiscard, gnu::always_inline]] PotentialDensity<Lanes> density(const BondRun& run,
+                                                                    RunDamage& damage,
                                                                     const RunBatch& batch,
                                                                     const Lanes& stretch) const {
-    if (piece.damaged) {
-      const unsigned damaged = piece.damaged->of(batch.k, batch.point - piece.first_of_run);
-      if (damaged != 0 || any_of(stretch > piece.free_below)) [[unlikely]] {
-        return (*failing_)(piece, batch, damaged, stretch);
-      }
+    PotentialDensity<Lanes> all = whole_(stretch);
+    unsigned failing = bits_of(stretch > damage.free_below), broken = 0;
+    if (damage.any()) {
+      broken = damage.broken(batch.number());
+      failing = (failing | damage.damaged(batch.number())) & ~broken;
     }
-    return whole_(stretch);
+    if (failing != 0) [[unlikely]]
+      failing_->evaluate(run, damage, batch, failing, stretch, all);
+    if (broken != 0) {
+      const LaneMask none = mask_of(broken);
+      all.value = chosen(none, 0.0, all.value);
+      all.first = chosen(none, 0.0, all.first);
+      all.second = chosen(none, 0.0, all.second);
+    }
+    return all;
   }
 
-  [[gnu::always_inline]] static void add_to_both(PointColumns& sums, int component, Index i,
-                                                 Index ahead, const Lanes& force) {
-    double* const own = sums[component] + i;
-    (Lanes(own) - force).copy_to(own);
-    (Lanes(own + ahead) + force).copy_to(own + ahead);
+  /// Adds force(component, batch's number) to the partners and takes it from the points.
+  template <class Force>
+  [[gnu::always_inline]] static void add_to_ends(const BondRun& run, PointColumns& sums,
+                                                 const Force& force) {
+    const auto add = [&](Index ahead, double sign) __attribute__((always_inline)) {
+      for_each_batch(
+          run, [&](const RunBatch& batch) __attribute__((always_inline)) {
+            for (int c = 0; c < D; ++c) {
+              double* const to = sums[c] + (run.first + batch.first + ahead);
+              (Lanes(to) + sign * force(c, batch.number())).copy_to(to);
+            }
+          });
+    };
+    // A load that overlaps a store of just before waits for it.
+    constexpr Index close = 4 * lane_count;
+    if (run.ahead < close) {
+      add(0, -1.0);
+      add(run.ahead, 1.0);
+      return;
+    }
+    for_each_batch(
+        run, [&](const RunBatch& batch) __attribute__((always_inline)) {
+          for (int c = 0; c < D; ++c) {
+            double* const own = sums[c] + (run.first + batch.first);
+            const Lanes added = force(c, batch.number());
+            (Lanes(own) - added).copy_to(own);
+            (Lanes(own + run.ahead) + added).copy_to(own + run.ahead);
+          }
+        });
   }
 
   const Bonds& bonds_;
   const PointColumns& columns_;
   const Whole& whole_;
   const E& eigenstretch_;
-  FailingBatch* failing_;
+  FailingBonds* failing_;
 };
 
 }  // namespace peristat

@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(Dimensions, BondRunsIn, testing::Values(1, 2, 3));
 TEST_P(BondRunsIn, SumsAreThoseOfSingleBonds) {
   for (const auto& potential : {whole, brittle, softening}) {
     const BoxBody body = cut_body(rows_of(GetParam(), potential));
-    ASSERT_GT(share_in_runs(body.points, body.model.bonds(), 1), 0.4);
+    ASSERT_GT(share_in_runs(body.points, body.model.bonds(), 1), 0.9);
     const Model list = one_by_one(body.model);
     for (const int threads : {1, 2, 3}) {
       Assembler along(body.points, body.model, threads), single(body.points, list, threads);
@@ -243,14 +243,44 @@ TEST_P(BondRunsIn, PointsThatCoincideAreDegenerate) {
   EXPECT_TRUE(along.gradient(StateView{u}, forces).degenerate);
 }
 
-TEST(BondRuns, AreRowsOfALattice) {
+/// The bonds of a group in runs and loose ones are those of its points, each once.
+void expect_covered(const BoxBody& body, const BondRuns& runs) {
+  const Bonds& bonds = body.model.bonds();
+  std::vector<int> found(std::size_t(bonds.count()), 0);
+  for (std::size_t g = 0; g < runs.groups(); ++g) {
+    const BondRuns::Group group = runs.group(g);
+    for (const BondRun& run : group.runs) {
+      EXPECT_GE(run.points, BondRuns::shortest);
+      EXPECT_LE(run.points, BondRuns::longest);
+      for (Index i = run.first; i < run.last(); ++i) {
+        const Offset bond = *bonds.find(i, i + run.ahead);
+        EXPECT_EQ(bonds.kind[bond], bonds.kind[run.first_bond(bonds)]);
+        ++found[std::size_t(bond)];
+      }
+    }
+    for (const LooseBonds& loose : group.loose) {
+      EXPECT_GE(loose.first, bonds.offset[loose.point]);
+      EXPECT_LE(loose.last, bonds.offset[loose.point + 1]);
+      for (Offset bond = loose.first; bond < loose.last; ++bond) ++found[std::size_t(bond)];
+    }
+  }
+  for (const int times : found) ASSERT_EQ(times, 1);
+}
+
+TEST(BondRuns, CoverEveryBondOnce) {
+  for (const int dimension : {1, 2, 3}) {
+    const BoxBody body = cut_body(rows_of(dimension, whole));
+    expect_covered(body, BondRuns(body.points, body.model.bonds(), 0, body.points.count()));
+  }
+}
+
+TEST(BondRuns, HoldAllBondsOfALattice) {
   BoxSetting box = tests::small_box(2);
   box.extent = {30, 20, 0};
   const BoxBody body(box);
-  const std::vector<BondRun> runs = bond_runs(body.points, body.model.bonds(), 2);
-  // Points next to the ends of a row, which is along the shorter side, lack bonds.
-  EXPECT_EQ(runs.size(), 30u);
-  for (const BondRun& run : runs) EXPECT_GE(run.last - run.first, 16);
+  EXPECT_EQ(share_in_runs(body.points, body.model.bonds(), 3), 1.0);
+  const BondRuns runs(body.points, body.model.bonds(), 0, body.points.count());
+  EXPECT_EQ(runs.groups(), 30u);  // rows along the shorter side
 }
 
 TEST(BondRuns, NeedAlikeBonds) {
@@ -268,9 +298,9 @@ TEST(BondRuns, NeedAlikeBonds) {
 
   BoxBody owned(box);
   owned.points.owned = 10 * 20;
-  const std::vector<BondRun> runs = bond_runs(owned.points, owned.model.bonds(), 1);
-  EXPECT_EQ(runs.size(), 8u);  // points of the last two rows that are owned have bonds to others
-  for (const BondRun& run : runs) EXPECT_LE(run.last, 8 * 20);
+  const BondRuns runs(owned.points, owned.model.bonds(), 0, owned.points.count());
+  expect_covered(owned, runs);
+  for (const BondRun& run : runs.runs()) EXPECT_LE(run.last() + run.ahead, 10 * 20);
 }
 
 }  // namespace

@@ -1,0 +1,22 @@
+#include "assembly/terms/bonds/thread_runs.hpp"
+
+namespace peristat {
+
+ThreadRuns::ThreadRuns(const Points& points, const Bonds& bonds,
+                       const std::vector<RowRange>& ranges) {
+  const int threads = int(ranges.size());
+  std::vector<OfThread> found(ranges.size());
+#pragma omp parallel for num_threads(threads)
+  for (int t = 0; t < threads; ++t) {
+    const RowRange range = ranges[std::size_t(t)];
+    OfThread& one = found[std::size_t(t)];
+    one.bonds = BondRuns(points, bonds, range.first, range.last);
+    for (const BondRun& run : one.bonds.runs()) one.reach = std::max(one.reach, run.ahead);
+    const Index most = 2 * (one.reach + BondRuns::longest);
+    one.window = RunWindow(points.dimension, std::min(range.touched_end - range.first, most));
+  }
+  const auto is_loose = [](const OfThread& one) { return one.bonds.empty(); };
+  if (!std::ranges::all_of(found, is_loose)) of_threads_ = std::move(found);
+}
+
+}  // namespace peristat

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "assembly/operators/block_pattern.hpp"
+#include "assembly/terms/bonds/point_columns.hpp"
+#include "assembly/terms/bonds/run_damage.hpp"
+#include "src/neighbourhood/bond_runs.hpp"
+
+namespace peristat {
+
+/// Columns of the points that a thread's runs reach at the moment: a window that moves with them,
+/// so that large bodies need no second copy of their vectors and sums.
+struct RunWindow {
+  RunWindow() = default;
+  RunWindow(int dimension, Index most)
+      : vectors(2 * dimension, most), sums(dimension, most), capacity(most) {}
+
+  PointColumns vectors;  ///< the packed ones, components of the first one first
+  PointColumns sums;
+  Index capacity = 0;
+  Index first = 0, last = 0;
+};
+
+/// The runs among the bonds of each thread's rows, with the damage of a history.
+class ThreadRuns {
+ public:
+  struct OfThread {
+    BondRuns bonds;
+    std::vector<RunDamage> damage;  ///< of the runs; empty: no bond can fail
+    Index reach = 0;                ///< points from a run's point to its farthest partner
+    RunWindow window;
+  };
+
+  ThreadRuns() = default;
+  ThreadRuns(const Points& points, const Bonds& bonds, const std::vector<RowRange>& ranges);
+
+  /// True if sums go along runs.
+  [[nodiscard]] bool in_use() const { return !of_threads_.empty() && !onsets_move_; }
+  [[nodiscard]] OfThread& of(int thread) { return of_threads_[std::size_t(thread)]; }
+
+  /// Finds the damaged bonds of a history, unless they are known.
+  /// @param law of the bonds at that history
+  /// @param version of the history, see History::version
+  template <class P>
+  void follow(const Bonds& bonds, const P& law, const double* largest_stretch,
+              std::uint64_t version);
+  /// To be called with the version of a history whose damage the last commit has noted.
+  void have_followed(std::uint64_t version) { version_ = version; }
+
+ private:
+  template <class P>
+  static void follow(OfThread& one, const Bonds& bonds, const P& law,
+                     const double* largest_stretch);
+
+  std::vector<OfThread> of_threads_;  // empty: no bond is in a run
+  bool onsets_move_ = false;          // with histories
+  bool follows_ = false;              // the history of this version:
+  std::uint64_t version_ = 0;
+};
+
+template <class P>
+void ThreadRuns::follow(const Bonds& bonds, const P& law, const double* largest_stretch,
+                        std::uint64_t version) {
+  if constexpr (requires { law.onset; }) onsets_move_ = law.onset != nullptr;
+  if (!in_use() || (follows_ && version == version_)) return;
+  follows_ = true;
+  version_ = version;
+  const int threads = int(of_threads_.size());
+#pragma omp parallel for num_threads(threads)
+  for (int t = 0; t < threads; ++t) follow(of(t), bonds, law, largest_stretch);
+}
+
+template <class P>
+void ThreadRuns::follow(OfThread& one, const Bonds& bonds, const P& law,
+                        const double* largest_stretch) {
+  one.damage.resize(one.bonds.runs().size());
+  for (RunDamage& damage : one.damage) damage = RunDamage();
+  for (std::size_t g = 0; g < one.bonds.groups(); ++g) {
+    const BondRuns::Group group = one.bonds.group(g);
+    RunDamage* const of_runs = one.damage.data() + (group.runs.data() - one.bonds.runs().data());
+    BondRuns::for_each_bond(
+        group, bonds,
+        [&](std::size_t r, Index i, Offset bond) {
+          RunDamage& damage = of_runs[r];
+          const double onset = law.onset_of(bond), largest = largest_stretch[bond];
+          damage.free_below = std::min(damage.free_below, onset);
+          // Brittle bonds may be broken at their onset itself.
+          if (largest >= onset) {
+            const BondRun& run = group.runs[r];
+            damage.note(run, i - run.first, bears_nothing(law.of_bond(bond), largest));
+          }
+        },
+        [](Index, Offset) {});
+  }
+}
+
+}  // namespace peristat
