@@ -9,9 +9,11 @@
 
 #include "assembly/terms/bonds/bond_term.hpp"
 #include "assembly/terms/contact/obstacle_term.hpp"
+#include "assembly/terms/linear/linear_term.hpp"
 #include "assembly/terms/pressure/pressure_term.hpp"
 #include "assembly/terms/springs/foundation_term.hpp"
 #include "assembly/terms/springs/inertia_term.hpp"
+#include "assembly/terms/states/state_term.hpp"
 #include "solvers/body/body_memory.hpp"
 #include "solvers/body/point_contacts.hpp"
 #include "solvers/body/require_memory_for.hpp"
@@ -89,7 +91,10 @@ void require_rows(const Body& body, int threads) {
   const auto refuse = [](const std::string& why) {
     throw InputError("force_operator", "\"stencil\"", why + "; take \"bonds\"");
   };
-  if (!body.model.find<BondTerm>()) refuse("is for bonds of finite deformation");
+  const Model& model = body.model;
+  if (!model.find<BondTerm>() && !model.find<StateTerm>() && !model.find<LinearTerm>()) {
+    refuse("is for bonds and states");
+  }
   const double share = share_in_runs(body.points, body.model.bonds(), threads);
   if (share >= least_share) return;
   refuse("is for rows of lattice points with alike bonds; of this body's bonds only " +

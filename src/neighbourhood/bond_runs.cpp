@@ -12,7 +12,8 @@ bool is_bonded_to_next(const Bonds& bonds, Index i) {
 
 /// All maximal runs of these points, as long as they may be, in the order of their first bonds.
 /// @param ghosts the first of them: points from it on are no partners of runs
-std::vector<BondRun> runs_between(const Bonds& bonds, Index first, Index last, Index ghosts) {
+std::vector<BondRun> runs_between(const Bonds& bonds, const BondKinds& kinds, Index first,
+                                  Index last, Index ghosts) {
   std::vector<BondRun> found;
   std::vector<std::size_t> open, opened;  // runs of the point before and of this one, by `ahead`
   for (Index i = first; i < last; ++i, open.swap(opened)) {
@@ -24,7 +25,7 @@ std::vector<BondRun> runs_between(const Bonds& bonds, Index first, Index last, I
       if (partner >= ghosts) break;
       while (candidate != open.end() && found[*candidate].ahead < ahead) ++candidate;
       const bool goes_on = candidate != open.end() && found[*candidate].ahead == ahead &&
-                           bonds.kind[found[*candidate].first_bond(bonds)] == bonds.kind[bond];
+                           kinds[found[*candidate].first_bond(bonds)] == kinds[bond];
       if (goes_on) {
         opened.push_back(*candidate);
         ++found[*candidate].points;
@@ -39,7 +40,8 @@ std::vector<BondRun> runs_between(const Bonds& bonds, Index first, Index last, I
 
 }  // namespace
 
-BondRuns::BondRuns(const Points& points, const Bonds& bonds, Index first, Index last)
+BondRuns::BondRuns(const Points& points, const Bonds& bonds, const BondKinds& kinds, Index first,
+                   Index last)
     : first_(first) {
   while (first < last) {
     Index row = first + 1;
@@ -47,15 +49,16 @@ BondRuns::BondRuns(const Points& points, const Bonds& bonds, Index first, Index 
     const Index parts = (row - first + longest - 1) / longest;
     for (Index part = parts; part > 0; --part) {
       const Index end = first + (row - first + part - 1) / part;
-      add_group(points, bonds, first, end);
+      add_group(points, bonds, kinds, first, end);
       first = end;
     }
   }
 }
 
-void BondRuns::add_group(const Points& points, const Bonds& bonds, Index first, Index last) {
+void BondRuns::add_group(const Points& points, const Bonds& bonds, const BondKinds& kinds,
+                         Index first, Index last) {
   std::vector<BondRun> runs =
-      runs_between(bonds, first, last, points.owned.value_or(points.count()));
+      runs_between(bonds, kinds, first, last, points.owned.value_or(points.count()));
   std::erase_if(runs, [](const BondRun& run) { return run.points < shortest; });
   std::ranges::sort(runs, {}, [](const BondRun& run) { return std::tuple(run.ahead, run.first); });
   const std::size_t before = loose_.size();
@@ -85,7 +88,7 @@ double share_in_runs(const Points& points, const Bonds& bonds, int threads) {
   double inside = 0.0;
 #pragma omp parallel for num_threads(threads) reduction(+ : inside)
   for (int part = 0; part < threads; ++part) {
-    const BondRuns runs(points, bonds, Index(count * part / threads),
+    const BondRuns runs(points, bonds, bonds.kind, Index(count * part / threads),
                         Index(count * (part + 1) / threads));
     for (const BondRun& run : runs.runs()) inside += double(run.points);
   }

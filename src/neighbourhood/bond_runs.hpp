@@ -45,7 +45,9 @@ class BondRuns {
 
   BondRuns() = default;
   /// Finds the runs of the points first .. last - 1. Bonds to ghosts are in none.
-  BondRuns(const Points& points, const Bonds& bonds, Index first, Index last);
+  /// @param kinds in whose lengths and weights the bonds of a run agree
+  BondRuns(const Points& points, const Bonds& bonds, const BondKinds& kinds, Index first,
+           Index last);
 
   /// True if no bond is in a run.
   [[nodiscard]] bool empty() const { return runs_.empty(); }
@@ -64,7 +66,8 @@ class BondRuns {
     Index last;
     std::size_t runs, loose;
   };
-  void add_group(const Points& points, const Bonds& bonds, Index first, Index last);
+  void add_group(const Points& points, const Bonds& bonds, const BondKinds& kinds, Index first,
+                 Index last);
 
   Index first_ = 0;
   std::vector<End> ends_;  // of the groups

@@ -38,7 +38,9 @@ fi
 exit 0
 """
 PLOT = """import sys
-print("pictures of", sys.argv[1])
+folder = sys.argv[1] if sys.argv[1] != "-" else sys.stdin.readline().strip()
+if folder:
+    print("pictures of", folder)
 sys.exit(len(sys.argv) > 2)
 """
 SWEEP = """import os, sys

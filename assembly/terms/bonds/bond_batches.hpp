@@ -22,6 +22,7 @@ namespace peristat {
 /// weight zero, so that they add nothing.
 template <int D>
 struct Batch {
+  Index point;
   Offset first;
   int count;
   std::array<Index, lane_count> partner;
@@ -37,6 +38,7 @@ template <int D, class Visit>
   constexpr int width = row_width(D);
   const double* own = rows + std::size_t(of.point) * width;
   Batch<D> batch;
+  batch.point = of.point;
   for (Offset first = of.first; first < of.last; first += lane_count) {
     batch.first = first;
     batch.count = static_cast<int>(std::min<Offset>(lane_count, of.last - first));
@@ -183,7 +185,7 @@ inline void store_upper_halves(double* blocks, int count,
 }
 
 /// Sums the blocks of bonds row by row.
-/// @param block_of(batch, i) of the bonds of a batch between their points, of packed rows
+/// @param block_of(batch) of the bonds of a batch between their points, of packed rows
 /// @param blocks_of(thread, i) where minus the blocks of row i are written
 /// @param done(thread, i) called once they are
 /// @param diagonal blocks of points, overwritten; empty: not wanted
@@ -200,7 +202,7 @@ void sum_blocks(BondWorkspace& a, const BondKinds& kinds, const BlockOf& block_o
       for_each_batch<D>(
           bonds, kinds, a.rows.data(),
           i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-            const Matrix<D, Lanes> block = block_of(batch, i);
+            const Matrix<D, Lanes> block = block_of(batch);
             const auto half = upper_half<D>(block);
             const std::ptrdiff_t place = batch.first - bonds.offset[i];
             if constexpr (stored_as == Tangent::Blocks::whole) {
@@ -252,14 +254,30 @@ struct Eigenstretch {
 };
 struct NoEigenstretch {};
 
-/// Subtracts the stress-free stretches of a batch of bonds of row i.
-template <int D, class E, class MeasureAt>
-[[gnu::always_inline]] inline void relieve(MeasureAt& measure, const E& eigenstretch, Index i,
-                                           const Batch<D>& batch) {
+/// The lanes of a batch: those past its bonds repeat the last of them.
+template <int D>
+[[gnu::always_inline]] inline Lanes within(const Batch<D>&, const Lanes& lanes, double) {
+  return lanes;
+}
+
+template <int D>
+[[gnu::always_inline]] inline Lanes lengths_of(const Batch<D>& batch) {
+  return 1.0 / batch.inverse_length;
+}
+
+/// Values of points that bonds have at their ends, added.
+template <int D>
+[[gnu::always_inline]] inline Lanes sum_of_ends(const double* of_point, const Batch<D>& batch) {
+  const double own = of_point[batch.point];
+  return Lanes([&](int l) { return own + of_point[batch.partner[l]]; });
+}
+
+/// Subtracts the stress-free stretches of a batch of bonds.
+template <class E, class MeasureAt, class AnyBatch>
+[[gnu::always_inline]] inline void relieve(MeasureAt& measure, const E& eigenstretch,
+                                           const AnyBatch& batch) {
   if constexpr (std::is_same_v<E, Eigenstretch>) {
-    const double own = eigenstretch.of_point[i];
-    measure.relative_change -=
-        Lanes([&](int l) { return 0.5 * (own + eigenstretch.of_point[batch.partner[l]]); });
+    measure.relative_change -= 0.5 * sum_of_ends(eigenstretch.of_point, batch);
   }
 }
 

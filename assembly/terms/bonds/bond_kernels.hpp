@@ -68,7 +68,7 @@ struct BondKernels {
             loose, [&](const Batch<D>& batch) __attribute__((always_inline)) {
               auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-              relieve(measure, eigenstretch, i, batch);
+              relieve(measure, eigenstretch, batch);
               if constexpr (commits) {
                 commit<D>(a.points, potential, i, batch, measure.relative_change, largest_stretch,
                           growth);
@@ -113,7 +113,7 @@ struct BondKernels {
         for_each_batch<D>(a.bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
           auto measure =
               Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-          relieve(measure, eigenstretch, i, batch);
+          relieve(measure, eigenstretch, batch);
           look_at<D>(a.points, potential, i, batch, measure.relative_change, largest_stretch,
                      found);
         });
@@ -134,10 +134,10 @@ struct BondKernels {
     a.pack<D>(a.points.reference, displacement);
     sum_blocks<D, stored_as>(
         a, a.bonds.kind,
-        [&](const Batch<D>& batch, Index i) __attribute__((always_inline)) {
+        [&](const Batch<D>& batch) __attribute__((always_inline)) {
           auto measure =
               Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-          relieve(measure, eigenstretch, i, batch);
+          relieve(measure, eigenstretch, batch);
           auto psi = interaction_energy(
               batch.weight, at_history(largest_stretch, potential, batch.first), measure);
           if (projection > 0.0) psi = projected(psi, projection);
@@ -176,7 +176,7 @@ struct BondKernels {
             bonds, bonds.kind, a.rows.data(),
             loose, [&](const Batch<D>& batch) __attribute__((always_inline)) {
               auto measure = Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
-              relieve(measure, eigenstretch, i, batch);
+              relieve(measure, eigenstretch, batch);
               auto psi = interaction_energy(
                   batch.weight, at_history(largest_stretch, potential, batch.first), measure);
               if (projection > 0.0) psi = projected(psi, projection);
@@ -207,7 +207,7 @@ struct BondKernels {
             bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
               auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-              relieve(measure, eigenstretch, i, batch);
+              relieve(measure, eigenstretch, batch);
               const Lanes half =
                   0.5 * interaction_energy(batch.weight,
                                            at_history(largest_stretch, potential, batch.first),
@@ -240,7 +240,7 @@ struct BondKernels {
               a.bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
                 auto measure =
                     Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-                relieve(measure, eigenstretch, i, batch);
+                relieve(measure, eigenstretch, batch);
                 const auto psi = interaction_energy(
                     batch.weight, at_history(largest_stretch, potential, batch.first), measure);
                 const Lanes half = 0.5 * energy_gradient(psi, measure)[0][component];

@@ -65,7 +65,7 @@ BondPassesIn<dimension>::BondPassesIn(const BondFailure& failure, const TermSett
       pattern_(setting.pattern),
       places_(setting.pattern.places_of(failure.bonds())),
       workspace_(setting.points, failure.bonds(), setting.workspace,
-                 setting.model.sums_along_runs()) {}
+                 setting.model.sums_along_runs() ? &failure.bonds().kind : nullptr) {}
 
 template <int dimension>
 template <class Body>

@@ -18,13 +18,14 @@ constexpr int row_width(int dimension) { return dimension == 3 ? 8 : 4; }
 
 /// Buffers of the passes over bonds.
 struct BondWorkspace {
-  /// @param along_runs also sums along runs of points with alike bonds
-  BondWorkspace(const Points& of, const Bonds& with, Workspace& shared, bool along_runs = false)
+  /// @param alike sums go along runs of bonds that agree in these kinds; null: bond by bond
+  BondWorkspace(const Points& of, const Bonds& with, Workspace& shared,
+                const BondKinds* alike = nullptr)
       : points(of),
         bonds(with),
         threads(shared),
         rows(std::size_t(of.count()) * row_width(of.dimension)) {
-    if (along_runs) runs = ThreadRuns(of, with, shared.ranges);
+    if (alike) runs = ThreadRuns(of, with, *alike, shared.ranges);
   }
 
   const Points& points;
@@ -50,8 +51,9 @@ struct BondWorkspace {
 
   /// Sums the bonds of a thread's rows: runs by on_run(run, damage, window), which reads and adds
   /// to the window's columns, the other ones by on_loose(bonds of a point, sums).
+  /// @tparam columns of the window's sums that are added up
   /// @param sums `width` doubles per row, which everything is added to
-  template <int D, int width, class OnRun, class OnLoose>
+  template <int D, int width, int columns = D, class OnRun, class OnLoose>
   void sum_range(int thread, RowRange range, double* sums, const OnRun& on_run,
                  const OnLoose& on_loose) {
     if (!runs.in_use()) {
@@ -67,20 +69,20 @@ struct BondWorkspace {
     for (std::size_t g = 0; g < one.bonds.groups(); ++g) {
       const BondRuns::Group group = one.bonds.group(g);
       if (std::min(group.last + one.reach, range.touched_end) > window.last) {
-        add_sums<D, width>(window, sums);
+        add_sums<columns, width>(window, sums);
         move<D>(window, group.first, range.touched_end);
       }
       for (const BondRun& run : group.runs) on_run(run, damage ? damage++ : nullptr, window);
       for (const LooseBonds& loose : group.loose) on_loose(loose, sums);
     }
-    add_sums<D, width>(window, sums);
+    add_sums<columns, width>(window, sums);
   }
 
  private:
-  template <int D, int width>
+  template <int columns, int width>
   static void add_sums(const RunWindow& window, double* sums) {
     for (Index i = window.first; i < window.last; ++i) {
-      for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += window.sums[c][i];
+      for (int c = 0; c < columns; ++c) sums[std::ptrdiff_t(i) * width + c] += window.sums[c][i];
     }
   }
 

@@ -1,22 +1,13 @@
 #pragma once
 
-#include <array>
 #include <limits>
 #include <type_traits>
 
 #include "assembly/terms/bonds/bond_batches.hpp"
-#include "assembly/terms/bonds/point_columns.hpp"
+#include "assembly/terms/bonds/run_batches.hpp"
 #include "assembly/terms/bonds/run_damage.hpp"
 
 namespace peristat {
-
-/// Consecutive bonds of a run, side by side.
-struct RunBatch {
-  Index first;  ///< number of lane 0 in the run
-  int count;    ///< lanes past it belong to no bond
-
-  [[nodiscard]] std::size_t number() const { return std::size_t(first) / lane_count; }
-};
 
 /// Densities of bonds that are damaged or start to fail.
 class FailingBonds {
@@ -73,13 +64,6 @@ class FailingBondsOf final : public FailingBonds {
   DamageGrowth& growth_;
 };
 
-/// The lanes of a batch; `none` past them.
-[[nodiscard, gnu::always_inline]] inline Lanes within(const RunBatch& batch, const Lanes& lanes,
-                                                      double none) {
-  if (batch.count == lane_count) return lanes;
-  return chosen(mask_of((1u << batch.count) - 1), lanes, none);
-}
-
 /// Sums over the bonds of a run, in loops over its points: differences between points, then square
 /// roots and divisions, then sums. One loop with all of that waits for the roots of each batch:
 /// processors do not look far enough ahead. Where no bond is damaged, the second loop takes all
@@ -105,13 +89,13 @@ class RunPass {
   template <bool with_energy>
   [[gnu::noinline]] void add_forces(const BondRun& run, RunDamage* damage, PointColumns* sums,
                                     double& energy, Lanes& shortest) const {
-    Vector<D, Row> arm;
-    Row squared, change, tension;
+    Vector<D, RunRow> arm;
+    RunRow squared, change, tension;
     for_each_batch(
         run, [&](const RunBatch& batch) __attribute__((always_inline)) {
           const std::size_t b = batch.number();
-          const Vector<D, Lanes> reference = difference(run, batch, 0),
-                                 displacement = difference(run, batch, D);
+          const Vector<D, Lanes> reference = difference<D>(columns_, 0, run, batch),
+                                 displacement = difference<D>(columns_, D, run, batch);
           const Vector<D, Lanes> current = plus<D>(reference, displacement);
           for (int c = 0; c < D; ++c) arm[c][b] = current[c];
           squared[b] = dot<D>(current, current);
@@ -138,7 +122,7 @@ class RunPass {
     energy += sum(total) * (kind.weight / kind.inverse_length);
     shortest = least;
     if (!sums) return;
-    add_to_ends(
+    add_to_ends<D, -1>(
         run, *sums, [&](int c, std::size_t b) __attribute__((always_inline)) {
           return tension[b] * arm[c][b];
         });
@@ -149,12 +133,13 @@ class RunPass {
   /// @param damage as above
   [[gnu::noinline]] void add_products(const BondRun& run, RunDamage* damage, double projection,
                                       PointColumns& sums) const {
-    Vector<D, Row> arm, along;
-    Row squared, product, of_arm, of_along;
+    Vector<D, RunRow> arm, along;
+    RunRow squared, product, of_arm, of_along;
     for_each_batch(
         run, [&](const RunBatch& batch) __attribute__((always_inline)) {
           const std::size_t b = batch.number();
-          const Vector<D, Lanes> current = difference(run, batch, 0), v = difference(run, batch, D);
+          const Vector<D, Lanes> current = difference<D>(columns_, 0, run, batch),
+                                 v = difference<D>(columns_, D, run, batch);
           for (int c = 0; c < D; ++c) {
             arm[c][b] = current[c];
             along[c][b] = v[c];
@@ -182,42 +167,18 @@ class RunPass {
                     0.0);
               });
         });
-    add_to_ends(
+    add_to_ends<D, -1>(
         run, sums, [&](int c, std::size_t b) __attribute__((always_inline)) {
           return of_arm[b] * arm[c][b] + of_along[b] * along[c][b];
         });
   }
 
  private:
-  using Row = std::array<Lanes, (BondRuns::longest + lane_count - 1) / lane_count>;
-
-  template <class Visit>
-  [[gnu::always_inline]] static void for_each_batch(const BondRun& run, const Visit& visit) {
-    const Index points = run.points;
-    Index first = 0;
-    for (; first + lane_count <= points; first += lane_count) visit(RunBatch{first, lane_count});
-    if (first < points) visit(RunBatch{first, points - first});
-  }
-
-  /// Vectors of a batch's partners minus those of its points.
-  [[nodiscard, gnu::always_inline]] Vector<D, Lanes> difference(const BondRun& run,
-                                                                const RunBatch& batch,
-                                                                int component) const {
-    Vector<D, Lanes> result;
-    for (int c = 0; c < D; ++c) {
-      const double* const own = columns_[component + c] + (run.first + batch.first);
-      result[c] = Lanes(own + run.ahead) - Lanes(own);
-    }
-    return result;
-  }
-
   template <class MeasureAt>
   [[gnu::always_inline]] void relieve(MeasureAt& measure, const BondRun& run,
                                       const RunBatch& batch) const {
     if constexpr (std::is_same_v<E, Eigenstretch>) {
-      const double* const own = eigenstretch_.of_point + (run.first + batch.first);
-      measure.relative_change -=
-          0.5 * (Lanes([&](int l) { return l < batch.count ? own[l] + own[l + run.ahead] : 0.0; }));
+      measure.relative_change -= 0.5 * sum_of_ends(eigenstretch_.of_point, run, batch);
     }
   }
 
@@ -257,37 +218,6 @@ class RunPass {
       all.second = chosen(none, 0.0, all.second);
     }
     return all;
-  }
-
-  /// Adds force(component, batch's number) to the partners and takes it from the points.
-  template <class Force>
-  [[gnu::always_inline]] static void add_to_ends(const BondRun& run, PointColumns& sums,
-                                                 const Force& force) {
-    const auto add = [&](Index ahead, double sign) __attribute__((always_inline)) {
-      for_each_batch(
-          run, [&](const RunBatch& batch) __attribute__((always_inline)) {
-            for (int c = 0; c < D; ++c) {
-              double* const to = sums[c] + (run.first + batch.first + ahead);
-              (Lanes(to) + sign * force(c, batch.number())).copy_to(to);
-            }
-          });
-    };
-    // A load that overlaps a store of just before waits for it.
-    constexpr Index close = 4 * lane_count;
-    if (run.ahead < close) {
-      add(0, -1.0);
-      add(run.ahead, 1.0);
-      return;
-    }
-    for_each_batch(
-        run, [&](const RunBatch& batch) __attribute__((always_inline)) {
-          for (int c = 0; c < D; ++c) {
-            double* const own = sums[c] + (run.first + batch.first);
-            const Lanes added = force(c, batch.number());
-            (Lanes(own) - added).copy_to(own);
-            (Lanes(own + run.ahead) + added).copy_to(own + run.ahead);
-          }
-        });
   }
 
   const Bonds& bonds_;

@@ -2,7 +2,7 @@
 
 namespace peristat {
 
-ThreadRuns::ThreadRuns(const Points& points, const Bonds& bonds,
+ThreadRuns::ThreadRuns(const Points& points, const Bonds& bonds, const BondKinds& kinds,
                        const std::vector<RowRange>& ranges) {
   const int threads = int(ranges.size());
   std::vector<OfThread> found(ranges.size());
@@ -10,7 +10,7 @@ ThreadRuns::ThreadRuns(const Points& points, const Bonds& bonds,
   for (int t = 0; t < threads; ++t) {
     const RowRange range = ranges[std::size_t(t)];
     OfThread& one = found[std::size_t(t)];
-    one.bonds = BondRuns(points, bonds, range.first, range.last);
+    one.bonds = BondRuns(points, bonds, kinds, range.first, range.last);
     for (const BondRun& run : one.bonds.runs()) one.reach = std::max(one.reach, run.ahead);
     const Index most = 2 * (one.reach + BondRuns::longest);
     one.window = RunWindow(points.dimension, std::min(range.touched_end - range.first, most));

@@ -16,10 +16,10 @@ namespace peristat {
 struct RunWindow {
   RunWindow() = default;
   RunWindow(int dimension, Index most)
-      : vectors(2 * dimension, most), sums(dimension, most), capacity(most) {}
+      : vectors(2 * dimension, most), sums(std::max(dimension, 2), most), capacity(most) {}
 
   PointColumns vectors;  ///< the packed ones, components of the first one first
-  PointColumns sums;
+  PointColumns sums;     ///< of a vector or of two numbers
   Index capacity = 0;
   Index first = 0, last = 0;
 };
@@ -35,7 +35,9 @@ class ThreadRuns {
   };
 
   ThreadRuns() = default;
-  ThreadRuns(const Points& points, const Bonds& bonds, const std::vector<RowRange>& ranges);
+  /// @param kinds see BondRuns
+  ThreadRuns(const Points& points, const Bonds& bonds, const BondKinds& kinds,
+             const std::vector<RowRange>& ranges);
 
   /// True if sums go along runs.
   [[nodiscard]] bool in_use() const { return !of_threads_.empty() && !onsets_move_; }
@@ -50,11 +52,11 @@ class ThreadRuns {
   /// To be called with the version of a history whose damage the last commit has noted.
   void have_followed(std::uint64_t version) { version_ = version; }
 
- private:
-  template <class P>
-  static void follow(OfThread& one, const Bonds& bonds, const P& law,
-                     const double* largest_stretch);
+  /// Notes damage anew: calls note(damage of a run, run, number of a bond in it, bond).
+  template <class Note>
+  void note_damage(const Bonds& bonds, const Note& note);
 
+ private:
   std::vector<OfThread> of_threads_;  // empty: no bond is in a run
   bool onsets_move_ = false;          // with histories
   bool follows_ = false;              // the history of this version:
@@ -68,32 +70,32 @@ void ThreadRuns::follow(const Bonds& bonds, const P& law, const double* largest_
   if (!in_use() || (follows_ && version == version_)) return;
   follows_ = true;
   version_ = version;
-  const int threads = int(of_threads_.size());
-#pragma omp parallel for num_threads(threads)
-  for (int t = 0; t < threads; ++t) follow(of(t), bonds, law, largest_stretch);
+  note_damage(bonds, [&](RunDamage& damage, const BondRun& run, Index of, Offset bond) {
+    const double onset = law.onset_of(bond), largest = largest_stretch[bond];
+    damage.free_below = std::min(damage.free_below, onset);
+    // Brittle bonds may be broken at their onset itself.
+    if (largest >= onset) damage.note(run, of, bears_nothing(law.of_bond(bond), largest));
+  });
 }
 
-template <class P>
-void ThreadRuns::follow(OfThread& one, const Bonds& bonds, const P& law,
-                        const double* largest_stretch) {
-  one.damage.resize(one.bonds.runs().size());
-  for (RunDamage& damage : one.damage) damage = RunDamage();
-  for (std::size_t g = 0; g < one.bonds.groups(); ++g) {
-    const BondRuns::Group group = one.bonds.group(g);
-    RunDamage* const of_runs = one.damage.data() + (group.runs.data() - one.bonds.runs().data());
-    BondRuns::for_each_bond(
-        group, bonds,
-        [&](std::size_t r, Index i, Offset bond) {
-          RunDamage& damage = of_runs[r];
-          const double onset = law.onset_of(bond), largest = largest_stretch[bond];
-          damage.free_below = std::min(damage.free_below, onset);
-          // Brittle bonds may be broken at their onset itself.
-          if (largest >= onset) {
-            const BondRun& run = group.runs[r];
-            damage.note(run, i - run.first, bears_nothing(law.of_bond(bond), largest));
-          }
-        },
-        [](Index, Offset) {});
+template <class Note>
+void ThreadRuns::note_damage(const Bonds& bonds, const Note& note) {
+  const int threads = int(of_threads_.size());
+#pragma omp parallel for num_threads(threads)
+  for (int t = 0; t < threads; ++t) {
+    OfThread& one = of(t);
+    one.damage.assign(one.bonds.runs().size(), RunDamage());
+    RunDamage* damage = one.damage.data();
+    for (std::size_t g = 0; g < one.bonds.groups(); ++g) {
+      const BondRuns::Group group = one.bonds.group(g);
+      BondRuns::for_each_bond(
+          group, bonds,
+          [&](std::size_t r, Index i, Offset bond) {
+            note(damage[r], group.runs[r], i - group.runs[r].first, bond);
+          },
+          [](Index, Offset) {});
+      damage += group.runs.size();
+    }
   }
 }
 

@@ -5,8 +5,28 @@
 #include <type_traits>
 
 #include "assembly/terms/bonds/bond_batches.hpp"
+#include "assembly/terms/bonds/bond_sums.hpp"
 
 namespace peristat {
+
+namespace {
+
+/// Values of points that bonds have at their ends, multiplied; 1 in lanes past them.
+template <int D>
+[[gnu::always_inline]] inline Lanes product_of_ends(const std::vector<double>& of_point,
+                                                    const Batch<D>& batch) {
+  const double own = of_point[std::size_t(batch.point)];
+  return Lanes([&](int l) { return own * of_point[std::size_t(batch.partner[l])]; });
+}
+template <int D>
+[[gnu::always_inline]] inline Lanes product_of_ends(const std::vector<double>& of_point,
+                                                    const RunBonds<D>& batch) {
+  const double* const own = of_point.data() + (batch.run.first + batch.first);
+  if (batch.count == lane_count) return Lanes(own) * Lanes(own + batch.run.ahead);
+  return Lanes([&](int l) { return l < batch.count ? own[l] * own[l + batch.run.ahead] : 1.0; });
+}
+
+}  // namespace
 
 template <int D>
 struct LinearBondSums::Kernels {
@@ -18,75 +38,51 @@ struct LinearBondSums::Kernels {
 
   LinearBondSums& of;
 
-  [[nodiscard, gnu::always_inline]] Spring spring(Index i, const Batch<D>& batch) const {
-    const double own = of.micromodulus_ * of.integrity_[std::size_t(i)];
-    const Lanes integrity(
-        [&](int l) { return own * of.integrity_[std::size_t(batch.partner[l])]; });
+  [[nodiscard, gnu::always_inline]] Spring spring(const auto& batch) const {
+    const Lanes stiffness = of.micromodulus_ * batch.weight * batch.inverse_length;
     return {scaled<D>(batch.inverse_length, batch.vector0),
-            integrity * batch.weight * batch.inverse_length};
+            stiffness * product_of_ends(of.integrity_, batch)};
   }
 
-  /// Calls visit(i, batch, spring, sums) for the bonds of all rows, and write(i, total) with the
-  /// sums that it has added up over them.
-  template <int width, class Visit, class WriteRow>
-  void sum(std::span<const double> moved, const Visit& visit, const WriteRow& write) {
-    BondWorkspace& a = of.workspace_;
-    a.pack<D>(a.points.reference, moved);
-    const auto body = [&](int, RowRange range, double* sums) {
-      for (Index i = range.first; i < range.last; ++i) {
-        for_each_batch<D>(
-            a.bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-              visit(i, batch, spring(i, batch), sums);
-            });
-      }
-    };
-    a.threads.sum_rows<width>(body, write);
+  /// Sums part_of(batch, spring) of bonds, see sum_bonds.
+  template <int width, int sign, class PartOf, class Done>
+  void sum_parts(std::span<const double> moved, const PartOf& part_of, const Done& done) {
+    of.workspace_.template pack<D>(of.workspace_.points.reference, moved);
+    sum_bonds<D, width, sign>(
+        of.workspace_, of.workspace_.bonds.kind,
+        [&](const auto& batch, const RunDamage*, int)
+            __attribute__((always_inline)) { return part_of(batch, spring(batch)); },
+        done);
   }
 
   void forces(std::span<const double> moved, std::span<double> force, double sign) {
-    constexpr int width = vector_width(D);
-    sum<width>(
-        moved,
-        [](Index i, const Batch<D>& batch, const Spring& bond, double* sums)
-            __attribute__((always_inline)) {
-              const Vector<D, Lanes> pull =
-                  scaled<D>(bond.stiffness * dot<D>(bond.direction, batch.vector1), bond.direction);
-              for (int c = 0; c < D; ++c)
-                sums[std::ptrdiff_t(i) * width + c] += ::peristat::sum(pull[c]);
-              add_to_partners<D>(sums, batch.partner, scaled<D>(Lanes(-1.0), pull));
-            },
+    sum_parts<D, -1>(
+        moved, [](const auto& batch, const Spring& bond) __attribute__((always_inline)) {
+          return scaled<D>(bond.stiffness * dot<D>(bond.direction, batch.vector1), bond.direction);
+        },
         [&](Index i, const double* total) {
-          for (int c = 0; c < D; ++c) force[std::size_t(i) * D + c] = sign * total[c];
+          for (int c = 0; c < D; ++c) force[std::size_t(i) * D + c] = -sign * total[c];
         });
   }
 
   void energies(std::span<const double> moved, std::span<double> energy) {
-    sum<1>(
-        moved,
-        [](Index i, const Batch<D>& batch, const Spring& bond, double* sums)
-            __attribute__((always_inline)) {
-              const Lanes along = dot<D>(bond.direction, batch.vector1);
-              const Lanes quarter = 0.25 * bond.stiffness * along * along;
-              sums[i] += ::peristat::sum(quarter);
-              add_to_partners<1>(sums, batch.partner, Vector<1, Lanes>{quarter});
-            },
+    sum_parts<1, 1>(
+        moved, [](const auto& batch, const Spring& bond) __attribute__((always_inline)) {
+          const Lanes along = dot<D>(bond.direction, batch.vector1);
+          return Vector<1, Lanes>{0.25 * bond.stiffness * along * along};
+        },
         [&](Index i, const double* total) { energy[std::size_t(i)] = *total; });
   }
 
   void virials(std::span<const double> moved, std::span<double> virials) {
-    constexpr int width = vector_width(D);
     for (int component = 0; component < D; ++component) {
-      sum<width>(
+      sum_parts<D, 1>(
           moved,
-          [&](Index i, const Batch<D>& batch, const Spring& bond, double* sums)
-              __attribute__((always_inline)) {
-                const Lanes half = 0.5 * bond.stiffness * dot<D>(bond.direction, batch.vector1) *
-                                   bond.direction[component];
-                const Vector<D, Lanes> row = scaled<D>(half, batch.vector0);
-                for (int c = 0; c < D; ++c)
-                  sums[std::ptrdiff_t(i) * width + c] += ::peristat::sum(row[c]);
-                add_to_partners<D>(sums, batch.partner, row);
-              },
+          [&](const auto& batch, const Spring& bond) __attribute__((always_inline)) {
+            const Lanes half = 0.5 * bond.stiffness * dot<D>(bond.direction, batch.vector1) *
+                               bond.direction[component];
+            return scaled<D>(half, batch.vector0);
+          },
           [&](Index i, const double* total) {
             double* const to = &virials[(std::size_t(i) * D + std::size_t(component)) * D];
             for (int c = 0; c < D; ++c) to[c] += total[c];
@@ -107,7 +103,7 @@ struct LinearBondSums::Kernels {
       for (Index i = range.first; i < range.last; ++i) {
         const Offset begin = a.bonds.offset[i];
         for_each_batch<D>(a.bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
-          const Spring bond = spring(i, batch);
+          const Spring bond = spring(batch);
           Matrix<D, Lanes> block;
           for (int r = 0; r < D; ++r) {
             for (int c = 0; c < D; ++c)
@@ -150,7 +146,7 @@ void LinearBondSums::in_dimension(const Body& body) {
 LinearBondSums::LinearBondSums(const Points& points, const Bonds& bonds, double micromodulus,
                                Workspace& shared)
     : micromodulus_(micromodulus),
-      workspace_(points, bonds, shared),
+      workspace_(points, bonds, shared, &bonds.kind),
       integrity_(std::size_t(points.count()), 1.0) {}
 
 void LinearBondSums::set_integrity(std::span<const double> integrity) {

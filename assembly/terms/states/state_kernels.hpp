@@ -13,6 +13,7 @@
 #include "assembly/operators/block_pattern.hpp"
 #include "assembly/terms/bond_drive.hpp"
 #include "assembly/terms/bonds/bond_batches.hpp"
+#include "assembly/terms/bonds/bond_sums.hpp"
 #include "assembly/terms/bonds/bond_workspace.hpp"
 #include "assembly/terms/failure/one_by_one.hpp"
 #include "assembly/terms/states/state_network.hpp"
@@ -35,13 +36,15 @@ class StateKernels {
   using Span = std::span<const double>;
 
   /// Shares outlive it.
+  /// @param along_runs see Model::sums_along_runs
   StateKernels(const Points& points, const Bonds& bonds, const StateShares& shares,
-               Workspace& workspace)
-      : buffers_(points, bonds, workspace), whole_(shares.whole), twins_(shares.twins) {
+               Workspace& workspace, bool along_runs)
+      : buffers_(points, bonds, workspace, along_runs ? &shares.whole : nullptr),
+        whole_(shares.whole),
+        twins_(shares.twins) {
     const auto count = points.volume.size();
-    ends_.assign(2 * count, 0.0);
     for (std::vector<double>* per_point :
-         {&dilatational_, &per_moment_, &stiffness_, &energy_, &rate_}) {
+         {&dilatational_, &per_moment_, &stiffness_, &energy_, &q_, &p_, &rate_}) {
       per_point->assign(count, 0.0);
     }
     const auto own = std::size_t(points.own());
@@ -52,7 +55,7 @@ class StateKernels {
       dilatational_[i] = points.volume[i] * (lambda - mu);
       stiffness_[i] = dilatational_[i] * per_moment_[i] * per_moment_[i];
       if (i >= own) dilatational_[i] = 0.0;  // an image's dilatation is its source's
-      ends_[2 * i] = points.volume[i] * (D + 2) * mu * per_moment_[i];
+      q_[i] = points.volume[i] * (D + 2) * mu * per_moment_[i];
     }
   }
 
@@ -63,6 +66,11 @@ class StateKernels {
     integrity_.resize(std::size_t(count) + lane_count, 0.0);
 #pragma omp parallel for num_threads(threads())
     for (Offset b = 0; b < count; ++b) integrity_[std::size_t(b)] = integrity(b);
+    buffers_.runs.note_damage(buffers_.bonds,
+                              [&](RunDamage& damage, const BondRun& run, Index of, Offset bond) {
+                                const double left = left_of(bond);
+                                if (left < 1.0) damage.note(run, of, left == 0.0);
+                              });
   }
 
   /// Finds p_i = V (lambda - mu) b theta and the energy of each point. Returns the sum of the
@@ -71,35 +79,25 @@ class StateKernels {
   Evaluation find_states(Span u, const E& eigenstretch) {
     buffers_.template pack<D>(buffers_.points.reference, u);
     std::vector<Lanes> shortest(std::size_t(threads()), std::numeric_limits<double>::infinity());
-    const auto body = [&](int thread, RowRange range, double* sums) {
-      Lanes least = std::numeric_limits<double>::infinity();
-      for (Index i = range.first; i < range.last; ++i) {
-        Vector<2, Lanes> own{Lanes(0.0), Lanes(0.0)};
-        for_each_bond(
-            i, [&](const Batch<D>& batch, const Lanes& share) __attribute__((always_inline)) {
-              const auto measure = strained(batch, eigenstretch, i);
-              const Lanes part = share * measure.relative_change / batch.inverse_length;
-              const Vector<2, Lanes> parts{part, part * measure.relative_change};
-              least = min(least, measure.current);
-              own[0] += parts[0];
-              own[1] += parts[1];
-              add_to_partners<2>(sums, batch.partner, parts);
-            });
-        sums[std::ptrdiff_t(i) * 2] += sum(own[0]);
-        sums[std::ptrdiff_t(i) * 2 + 1] += sum(own[1]);
-      }
-      shortest[std::size_t(thread)] = least;
-    };
-    buffers_.threads.template sum_rows<2>(body, [&](Index point, const double* total) {
-      const auto i = std::size_t(point);
-      rate_[i] = total[0];
-      energy_[i] = ends_[2 * i] * total[1];
-    });
+    sum_parts<2, 1>(
+        [&](const auto& batch, const Lanes& share, int thread) __attribute__((always_inline)) {
+          const auto measure = strained(batch, eigenstretch);
+          Lanes& least = shortest[std::size_t(thread)];
+          least =
+              min(least, within(batch, measure.current, std::numeric_limits<double>::infinity()));
+          const Lanes part = share * measure.relative_change * lengths_of(batch);
+          return Vector<2, Lanes>{part, part * measure.relative_change};
+        },
+        [&](Index point, const double* total) {
+          const auto i = std::size_t(point);
+          rate_[i] = total[0];
+          energy_[i] = q_[i] * total[1];
+        });
     gather_images(buffers_.points, rate_);
 #pragma omp parallel for num_threads(threads())
     for (std::size_t i = 0; i < energy_.size(); ++i) {
       const double theta = per_moment_[i] * rate_[i];
-      ends_[2 * i + 1] = stiffness_[i] * rate_[i];
+      p_[i] = stiffness_[i] * rate_[i];
       energy_[i] = 0.5 * (dilatational_[i] * theta * theta + energy_[i]);
     }
     Evaluation found;
@@ -115,10 +113,9 @@ class StateKernels {
   template <class E>
   void write_forces(const E& eigenstretch, std::span<double> force, Write how) {
     sum_forces(
-        force, how,
-        [&](const Batch<D>& batch, const Lanes& share, Index i) __attribute__((always_inline)) {
-          const auto measure = strained(batch, eigenstretch, i);
-          const auto [q, p] = of_ends(i, batch);
+        force, how, [&](const auto& batch, const Lanes& share, int) __attribute__((always_inline)) {
+          const auto measure = strained(batch, eigenstretch);
+          const Lanes q = sum_of_ends(q_.data(), batch), p = sum_of_ends(p_.data(), batch);
           return scaled<D>(share * (p + q * measure.relative_change), measure.gradient[0]);
         });
   }
@@ -128,35 +125,24 @@ class StateKernels {
   void write_product(Span u, const E& eigenstretch, Span v, double projection,
                      std::span<double> product, Write how) {
     pack_current(u, v);
-    const auto rates = [&](int, RowRange range, double* sums) {
-      for (Index i = range.first; i < range.last; ++i) {
-        Lanes own = 0.0;
-        for_each_bond(
-            i, [&](const Batch<D>& batch, const Lanes& share) __attribute__((always_inline)) {
-              const auto measure = current(batch);
-              const Lanes part = share * dot<D>(measure.gradient[0], batch.vector1);
-              own += part;
-              add_to_partners<1>(sums, batch.partner, Vector<1, Lanes>{part});
-            });
-        sums[i] += sum(own);
-      }
-    };
-    buffers_.threads.template sum_rows<1>(
-        rates, [&](Index point, const double* total) { rate_[std::size_t(point)] = *total; });
+    sum_parts<1, 1>(
+        [&](const auto& batch, const Lanes& share, int) __attribute__((always_inline)) {
+          return Vector<1, Lanes>{share * dot<D>(current(batch).gradient[0], batch.vector1)};
+        },
+        [&](Index point, const double* total) { rate_[std::size_t(point)] = *total; });
     gather_images(buffers_.points, rate_);
     for (std::size_t i = 0; i < rate_.size(); ++i) rate_[i] *= stiffness_[i];
     sum_forces(
-        product, how,
-        [&](const Batch<D>& batch, const Lanes& share, Index i) __attribute__((always_inline)) {
+        product,
+        how, [&](const auto& batch, const Lanes& share, int) __attribute__((always_inline)) {
           auto measure = current(batch);
-          const auto [q, p] = of_ends(i, batch);
-          const double own = rate_[std::size_t(i)];
-          const Lanes rate([&](int l) { return own + rate_[std::size_t(batch.partner[l])]; });
+          const Lanes q = sum_of_ends(q_.data(), batch), p = sum_of_ends(p_.data(), batch);
+          const Lanes rate = sum_of_ends(rate_.data(), batch);
           const Vector<D, Lanes>& n = measure.gradient[0];
           const Lanes along = dot<D>(n, batch.vector1);
           Vector<D, Lanes> force = scaled<D>(share * (rate + q * along * batch.inverse_length), n);
           if constexpr (bends) {
-            relieve(measure, eigenstretch, i, batch);
+            relieve(measure, eigenstretch, batch);
             const Lanes pull =
                 projected_pull(share * (p + q * measure.relative_change), projection);
             const Lanes across = pull * measure.inverse;
@@ -179,13 +165,13 @@ class StateKernels {
           own.fill(Lanes(0.0));
           for_each_bond(
               i, [&](const Batch<D>& batch, const Lanes& share) __attribute__((always_inline)) {
-                const auto measure = strained(batch, eigenstretch, i);
+                const auto measure = strained(batch, eigenstretch);
                 const Lanes& s = measure.relative_change;
                 const Lanes along = share * measure.gradient[0][row];
-                const double* const end = &ends_[2 * std::size_t(i)];
-                const Lanes q([&](int l) { return ends_[2 * std::size_t(batch.partner[l])]; });
-                const Lanes p([&](int l) { return ends_[2 * std::size_t(batch.partner[l]) + 1]; });
-                const auto here = scaled<D>(along * (end[1] + end[0] * s), batch.vector0);
+                const Lanes q([&](int l) { return q_[std::size_t(batch.partner[l])]; });
+                const Lanes p([&](int l) { return p_[std::size_t(batch.partner[l])]; });
+                const auto here =
+                    scaled<D>(along * (p_[std::size_t(i)] + q_[std::size_t(i)] * s), batch.vector0);
                 for (int c = 0; c < D; ++c) own[c] += here[c];
                 add_to_partners<D>(sums, batch.partner,
                                    scaled<D>(along * (p + q * s), batch.vector0));
@@ -246,8 +232,8 @@ class StateKernels {
     visit_rows<D>(buffers_, visit, [&](const auto& blocks_of, const auto& done) {
       sum_blocks<D, Tangent::Blocks::whole>(
           buffers_, whole_,
-          [&](const Batch<D>& batch, Index i) __attribute__((always_inline)) {
-            return block_of(batch, share_of(batch), i, current(batch), eigenstretch, 1.0);
+          [&](const Batch<D>& batch) __attribute__((always_inline)) {
+            return block_of(batch, share_of(batch), current(batch), eigenstretch, 1.0);
           },
           blocks_of, done, diagonal);
     });
@@ -265,12 +251,12 @@ class StateKernels {
       DamageGrowth found;
       for (Index i = range.first; i < range.last; ++i) {
         for_each_bond(i, [&](const Batch<D>& batch, const Lanes&) {
-          const Lanes s = strained(batch, eigenstretch, i).relative_change;
+          const Lanes s = strained(batch, eigenstretch).relative_change;
           const Lanes drop([&](int l) {
             const Offset bond = batch.first + std::min(l, batch.count - 1);
             return law.of_bond(bond).drop_after(history[bond]);
           });
-          const Lanes driving = equivalent_stretch(batch, i, s, drop);
+          const Lanes driving = equivalent_stretch(batch, s, drop);
           for (int l = 0; l < batch.count; ++l) {
             const Offset bond = batch.first + l, twin = twin_of(bond).bond;
             if (0 <= twin && twin < bond) continue;
@@ -317,7 +303,7 @@ class StateKernels {
       const auto i = std::size_t(first);
       for (Offset bond = bonds.offset[first]; bond < bonds.offset[first + 1]; ++bond) {
         const auto j = std::size_t(bonds.partner[bond]);
-        const double q = ends_[2 * i] + ends_[2 * j];
+        const double q = q_[i] + q_[j];
         const double lost = law.of_bond(bond).drop_after(history[bond]) * whole_of(bond) *
                             bonds.length(bond) * (stiffness_[i] + stiffness_[j]) / q;
         auto& [s, speed, squared] = drives[std::size_t(bond)];
@@ -342,7 +328,7 @@ class StateKernels {
     const auto i = std::size_t(driven.point);
     const auto j = std::size_t(buffers_.points.source(buffers_.bonds.partner[driven.bond]));
     const double s = driven.stretch, r = buffers_.bonds.length(driven.bond);
-    const double q = ends_[2 * i] + ends_[2 * j], p = ends_[2 * i + 1] + ends_[2 * j + 1];
+    const double q = q_[i] + q_[j], p = p_[i] + p_[j];
     const double drop = of_bond.drop_after(history);
     const double stiffness = stiffness_[i] + stiffness_[j], whole = whole_of(driven.bond);
     const double squared = s * (s + 2.0 * p / q - drop * whole * r * s * stiffness / q);
@@ -359,7 +345,7 @@ class StateKernels {
   }
   void lose_at(Index point, const Loss& loss) {
     const auto i = std::size_t(point);
-    ends_[2 * i + 1] -= stiffness_[i] * loss[1];
+    p_[i] -= stiffness_[i] * loss[1];
   }
 
   /// State before bonds fail, which their losses depend on.
@@ -368,7 +354,7 @@ class StateKernels {
   };
   [[nodiscard]] Before remembered() const {
     Before before{{integrity_.begin(), integrity_.end()}, std::vector<double>(energy_.size())};
-    for (std::size_t i = 0; i < energy_.size(); ++i) before.pressure[i] = ends_[2 * i + 1];
+    for (std::size_t i = 0; i < energy_.size(); ++i) before.pressure[i] = p_[i];
     return before;
   }
 
@@ -391,9 +377,9 @@ class StateKernels {
         const double inverse_length = 1.0 / bonds.length(bond);
         const double s = Measure::template at<D>(inverse_length, xi, eta).relative_change;
         const double true_s = Length::at<D>(inverse_length, xi, eta).relative_change;
-        const double pressure = 0.5 * (before.pressure[std::size_t(i)] + ends_[2 * i + 1] +
-                                       before.pressure[std::size_t(j)] + ends_[2 * j + 1]);
-        const double density = 0.5 * (ends_[2 * i] + ends_[2 * j]) * s;
+        const double pressure = 0.5 * (before.pressure[std::size_t(i)] + p_[i] +
+                                       before.pressure[std::size_t(j)] + p_[j]);
+        const double density = 0.5 * (q_[i] + q_[j]) * s;
         total += lost * bonds.length(bond) * (density + pressure) * s * weight(i, bond, true_s);
       }
     }
@@ -405,11 +391,10 @@ class StateKernels {
   ///
   ///   s_eq^2 = s^2 + 2 (p_i + p_j) s / (q_i + q_j)
   ///            - drop kappa r^2 s^2 (D_i b_i^2 + D_j b_j^2) / (q_i + q_j)  if s > 0, else 0.
-  [[gnu::always_inline]] Lanes equivalent_stretch(const Batch<D>& batch, Index i, const Lanes& s,
+  [[gnu::always_inline]] Lanes equivalent_stretch(const Batch<D>& batch, const Lanes& s,
                                                   const Lanes& drop) const {
-    const auto [q, p] = of_ends(i, batch);
-    const double own = stiffness_[std::size_t(i)];
-    const Lanes stiffness([&](int l) { return own + stiffness_[std::size_t(batch.partner[l])]; });
+    const Lanes q = sum_of_ends(q_.data(), batch), p = sum_of_ends(p_.data(), batch);
+    const Lanes stiffness = sum_of_ends(stiffness_.data(), batch);
     Lanes whole = batch.weight;
     if (!twins_.empty()) {
       whole = Lanes([&](int l) { return l < batch.count ? whole_of(batch.first + l) : 0.0; });
@@ -457,24 +442,40 @@ class StateKernels {
         });
   }
 
+  /// g of bonds of a run.
+  [[gnu::always_inline]] Lanes share_of(const RunBonds<D>& batch, const RunDamage* damage) const {
+    Lanes share = batch.weight;
+    if (!damage || !damage->any()) return share;
+    if (const unsigned damaged = damage->damaged(batch.number())) {
+      for (int l = 0; l < batch.count; ++l) {
+        if (!(damaged >> l & 1u)) continue;
+        const Index i = batch.run.first + batch.first + l;
+        share.set(l, share[l] * left_of(*buffers_.bonds.find(i, i + batch.run.ahead)));
+      }
+    }
+    const unsigned broken = damage->broken(batch.number());
+    return broken ? chosen(mask_of(broken), 0.0, share) : share;
+  }
+
   /// g of the bonds of a batch.
-  [[gnu::always_inline]] Lanes share_of(const Batch<D>& batch) const {
+  [[gnu::always_inline]] Lanes share_of(const Batch<D>& batch,
+                                        const RunDamage* /*none*/ = nullptr) const {
     return integrity_.empty() ? batch.weight
                               : batch.weight * Lanes(&integrity_[std::size_t(batch.first)]);
   }
 
   /// Measure of rows with the reference and the displacement, less the eigenstretch.
-  template <class E>
-  [[gnu::always_inline]] static auto strained(const Batch<D>& batch, const E& eigenstretch,
-                                              Index i) {
+  template <class AnyBatch, class E>
+  [[gnu::always_inline]] static auto strained(const AnyBatch& batch, const E& eigenstretch) {
     auto measure =
         Measure::template at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-    relieve(measure, eigenstretch, i, batch);
+    relieve(measure, eigenstretch, batch);
     return measure;
   }
 
   /// Measure of rows by pack_current.
-  [[gnu::always_inline]] static auto current(const Batch<D>& batch) {
+  template <class AnyBatch>
+  [[gnu::always_inline]] static auto current(const AnyBatch& batch) {
     if constexpr (bends) {
       return Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
     } else {
@@ -496,39 +497,26 @@ class StateKernels {
     }
   }
 
-  /// q_i + q_j and p_i + p_j of the bonds of a batch.
-  [[gnu::always_inline]] std::array<Lanes, 2> of_ends(Index i, const Batch<D>& batch) const {
-    std::array<const double*, lane_count> of_partner;
-#pragma GCC unroll 4
-    for (int l = 0; l < lane_count; ++l) of_partner[l] = &ends_[2 * std::size_t(batch.partner[l])];
-    Lanes q, p;
-    load_transposed_pairs(of_partner, q, p);
-    return {q + ends_[2 * std::size_t(i)], p + ends_[2 * std::size_t(i) + 1]};
-  }
-
   /// f moved by a share towards being no compression, in which a bond tends to turn aside.
   [[gnu::always_inline]] static Lanes projected_pull(const Lanes& pull, double projection) {
     return projection > 0.0 ? pull - projection * min(pull, Lanes(0.0)) : pull;
   }
 
-  /// Sums force(batch, g, i) of bonds: plus at the partner, minus at i.
+  /// Sums part_of(batch, g, thread) of bonds, see sum_bonds.
+  template <int width, int sign, class PartOf, class Done>
+  void sum_parts(const PartOf& part_of, const Done& done) {
+    sum_bonds<D, width, sign>(
+        buffers_, whole_,
+        [&](const auto& batch, const RunDamage* damage, int thread) __attribute__((always_inline)) {
+          return part_of(batch, share_of(batch, damage), thread);
+        },
+        done);
+  }
+
+  /// Sums force(batch, g, thread) of bonds: plus at their partners, minus at their points.
   template <class Force>
   void sum_forces(std::span<double> result, Write how, const Force& force_of) {
-    constexpr int width = vector_width(D);
-    const auto body = [&](int, RowRange range, double* sums) {
-      for (Index i = range.first; i < range.last; ++i) {
-        Vector<D, Lanes> own;
-        own.fill(Lanes(0.0));
-        for_each_bond(
-            i, [&](const Batch<D>& batch, const Lanes& share) __attribute__((always_inline)) {
-              const Vector<D, Lanes> force = force_of(batch, share, i);
-              for (int c = 0; c < D; ++c) own[c] -= force[c];
-              add_to_partners<D>(sums, batch.partner, force);
-            });
-        for (int c = 0; c < D; ++c) sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
-      }
-    };
-    buffers_.threads.template sum_rows<width>(body, [&](Index i, const double* total) {
+    sum_parts<D, -1>(force_of, [&](Index i, const double* total) {
       put<D>(how, total, &result[std::size_t(i) * D]);
     });
   }
@@ -552,11 +540,11 @@ class StateKernels {
   /// pack_current.
   template <class E, class MeasureAt>
   [[gnu::always_inline]] Matrix<D, Lanes> block_of(const Batch<D>& batch, const Lanes& share,
-                                                   Index i, MeasureAt measure,
-                                                   const E& eigenstretch, double projection) const {
-    const auto [q, p] = of_ends(i, batch);
+                                                   MeasureAt measure, const E& eigenstretch,
+                                                   double projection) const {
+    const Lanes q = sum_of_ends(q_.data(), batch), p = sum_of_ends(p_.data(), batch);
     const Vector<D, Lanes> n = measure.gradient[0];
-    relieve(measure, eigenstretch, i, batch);
+    relieve(measure, eigenstretch, batch);
     const Lanes across =
         projected_pull(share * (p + q * measure.relative_change), projection) * measure.inverse;
     const Lanes along = share * q * batch.inverse_length - across;
@@ -578,7 +566,7 @@ class StateKernels {
     pack_current(u, u);
     sum_blocks<D, Tangent::Blocks::whole>(
         buffers_, whole_,
-        [&](const Batch<D>& batch, Index i) {
+        [&](const Batch<D>& batch) {
           const Lanes share = share_of(batch);
           const auto measure = current(batch);
           for (int l = 0; l < batch.count; ++l) {
@@ -588,7 +576,7 @@ class StateKernels {
                   both * measure.gradient[0][c][l];
             }
           }
-          return block_of(batch, share, i, measure, eigenstretch, projection);
+          return block_of(batch, share, measure, eigenstretch, projection);
         },
         [&](int, Index i) { return &of_bonds.block[std::size_t(bonds.offset[i]) * D * D]; },
         [](int, Index) {}, of_points);
@@ -638,7 +626,7 @@ class StateKernels {
   const BondKinds& whole_;  // per bond kappa r
   const std::vector<BondTwin>& twins_;
   AlignedVector<double> integrity_;   // per bond T, padded by a batch; empty: none fails
-  AlignedVector<double> ends_;        // per point q = V d (d + 2) mu / M and p, side by side
+  std::vector<double> q_, p_;         // V d (d + 2) mu / M, and p of the last state
   std::vector<double> dilatational_;  // V (lambda - mu) [J]
   std::vector<double> per_moment_;    // b = d / M
   std::vector<double> stiffness_;     // V (lambda - mu) b^2

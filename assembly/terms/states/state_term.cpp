@@ -36,7 +36,8 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
         index_map_(setting.index_map),
         pattern_(setting.pattern),
         threads_(setting.workspace.threads()),
-        kernels_(setting.points, term.bonds(), term.shares(), setting.workspace) {}
+        kernels_(setting.points, term.bonds(), term.shares(), setting.workspace,
+                 setting.model.sums_along_runs()) {}
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
     const Evaluation found = find_states(at);

@@ -1,5 +1,10 @@
-"""The command `./peristat plot`; it runs as a file, without any installed package."""
+"""The command `./peristat plot`; it runs as a file, without any installed package.
 
+With `-` for the folder, it reads the folder's name from standard input when all libraries are loaded, and can be interrupted
+from then on: `./peristat run` starts it before the folder exists. Without a name there is nothing to draw.
+"""
+
+import signal
 import sys
 from pathlib import Path
 
@@ -9,4 +14,11 @@ if not __package__:
 from peristat._folder_command import guarded
 from peristat.pictures.command import main
 
-sys.exit(guarded("plot", main, sys.argv[1:]))
+words = sys.argv[1:]
+if words == ["-"]:
+    words = sys.stdin.readline().splitlines()
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGTSTP, signal.SIG_DFL)
+    if not words:
+        sys.exit()
+sys.exit(guarded("plot", main, words))

@@ -270,7 +270,8 @@ void expect_covered(const BoxBody& body, const BondRuns& runs) {
 TEST(BondRuns, CoverEveryBondOnce) {
   for (const int dimension : {1, 2, 3}) {
     const BoxBody body = cut_body(rows_of(dimension, whole));
-    expect_covered(body, BondRuns(body.points, body.model.bonds(), 0, body.points.count()));
+    expect_covered(body, BondRuns(body.points, body.model.bonds(), body.model.bonds().kind, 0,
+                                  body.points.count()));
   }
 }
 
@@ -279,7 +280,8 @@ TEST(BondRuns, HoldAllBondsOfALattice) {
   box.extent = {30, 20, 0};
   const BoxBody body(box);
   EXPECT_EQ(share_in_runs(body.points, body.model.bonds(), 3), 1.0);
-  const BondRuns runs(body.points, body.model.bonds(), 0, body.points.count());
+  const BondRuns runs(body.points, body.model.bonds(), body.model.bonds().kind, 0,
+                      body.points.count());
   EXPECT_EQ(runs.groups(), 30u);  // rows along the shorter side
 }
 
@@ -298,7 +300,8 @@ TEST(BondRuns, NeedAlikeBonds) {
 
   BoxBody owned(box);
   owned.points.owned = 10 * 20;
-  const BondRuns runs(owned.points, owned.model.bonds(), 0, owned.points.count());
+  const BondRuns runs(owned.points, owned.model.bonds(), owned.model.bonds().kind, 0,
+                      owned.points.count());
   expect_covered(owned, runs);
   for (const BondRun& run : runs.runs()) EXPECT_LE(run.last() + run.ahead, 10 * 20);
 }
