@@ -4,9 +4,12 @@ With `-` for the folder, it reads the folder's name from standard input when all
 from then on: `./peristat run` starts it before the folder exists. Without a name there is nothing to draw.
 """
 
+import os
 import signal
 import sys
 from pathlib import Path
+
+os.environ["OMP_NUM_THREADS"] = "1"  # threads of libraries would keep the pictures from being drawn in several processes
 
 if not __package__:
     sys.path[0] = str(Path(__file__).resolve().parents[2])

@@ -8,6 +8,7 @@ can't be written, 1 for a fault of the program. Needs numpy, h5py and matplotlib
 import argparse
 import io
 import re
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from .field_picture import View, draw_field, in_common
 from .figures import animate, drawings
 from .gallery import SCRIPT, Gallery, NoPlace
 from .named_values import named_values
+from .processes import results_of
 from .results_folder import NotAResultsFolder, read_results_folder
 from .steps_by_name import NAMES, steps_named
 from .style import COLUMNS, SCREEN, STYLES, Style, style_named
@@ -45,17 +47,28 @@ def draw(directory: Path, ending: str, style: Style = SCREEN) -> None:
     results = read_results_folder(directory)
     gallery = Gallery(directory)
     gallery.remove_earlier((f".{ending}", ".gif"))
+    pictures = list(drawings(results))
+    names = [*(f"{drawing.name}.{ending}" for drawing in pictures), "crack.gif"]
+
+    def with_missing(make: Callable[[], bytes | None]) -> tuple[bytes | None, list[str]]:
+        return make(), results.missing
+
+    # The animation takes the longest: it begins first.
+    tasks = [partial(animate, results), *(partial(_picture, drawing, ending, style) for drawing in pictures)]
+    found = list(results_of([partial(with_missing, task) for task in tasks]))
     drawn = []
-    for drawing in drawings(results):
-        drawn.append(f"{drawing.name}.{ending}")
-        gallery.add(drawn[-1], encoded(drawing.figure(style), ending))
-    animation = animate(results)
-    if animation:
-        drawn.append("crack.gif")
-        gallery.add(drawn[-1], animation)
+    for name, (data, missing) in zip(names, [*found[1:], found[0]], strict=True):
+        results.missing.extend(sentence for sentence in missing if sentence not in results.missing)
+        if data:
+            drawn.append(name)
+            gallery.add(name, data)
     for sentence in results.missing:
         print(f"plot: {sentence}")
     print(f"plot: {gallery.path}: {', '.join(drawn) if drawn else 'nothing could be drawn'}")
+
+
+def _picture(drawing: Drawing, ending: str, style: Style) -> bytes:
+    return encoded(drawing.figure(style), ending)
 
 
 def draw_one_field(directory: Path, ending: str, field: str, step: str, view: View, style: Style, column: str | None) -> None:
