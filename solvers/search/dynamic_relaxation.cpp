@@ -43,6 +43,7 @@ class Relaxation {
                                                 : std::vector<double>()),
         start_environment_(result.state.environment),
         partial_(std::size_t(problem.assembler.threads())),
+        density_(dofs_.size()),
         inverse_density_(dofs_.size()),
         residual_(dofs_.size()),
         last_residual_(dofs_.size()) {
@@ -66,9 +67,9 @@ class Relaxation {
       add_contacts(sums);
     }
     for (std::size_t e = 0; e < dofs_.size(); ++e) {
-      const double density = density_of(sums[dofs_[e]]);
+      density_[e] = density_of(sums[dofs_[e]]);
       // A point without an unbroken bond stays where it is.
-      inverse_density_[e] = density > 0.0 ? 1.0 / density : 0.0;
+      inverse_density_[e] = density_[e] > 0.0 ? 1.0 / density_[e] : 0.0;
     }
   }
 
@@ -132,10 +133,10 @@ class Relaxation {
       if (inverse_density_[e] == 0.0) return;
       const double before = velocity_[e];
       const double after = keep * before + gain * residual_[e] * inverse_density_[e];
-      const double mean = 0.5 * (before + after), density = 1.0 / inverse_density_[e];
+      const double mean = 0.5 * (before + after);
       velocity_[e] = after;
-      s[0] += c * density * mean * mean;
-      s[1] += 0.5 * density * after * after;
+      s[0] += c * density_[e] * mean * mean;
+      s[1] += 0.5 * density_[e] * after * after;
     });
     if (options_.damping == Damping::kinetic && sums[1] < kinetic_energy_) {
       // The kinetic energy has passed its peak: the motion before this acceleration stops, and a
@@ -155,7 +156,7 @@ class Relaxation {
   double energy_of_motion() {
     return sum([&](std::size_t e, FourSums& s) {
       if (inverse_density_[e] == 0.0) return;
-      s[0] += 0.5 * velocity_[e] * (velocity_[e] / inverse_density_[e] + residual_[e]);
+      s[0] += 0.5 * velocity_[e] * (velocity_[e] * density_[e] + residual_[e]);
     })[0];
   }
 
@@ -265,7 +266,9 @@ class Relaxation {
       const double of_contacts = of_contacts_[dofs_[e]];
       if (!(of_contacts > 0.0)) continue;
       const double density = density_of(row_sums_[dofs_[e]] + of_contacts);
-      inverse_density_[e] = std::min(inverse_density_[e], 1.0 / density);
+      if (!(density > density_[e])) continue;
+      density_[e] = density;
+      inverse_density_[e] = 1.0 / density;
     }
   }
 
@@ -371,10 +374,10 @@ class Relaxation {
   Trial& at_;
   const std::vector<double> start_;  // displacement; empty without friction
   const SharedEnvironment start_environment_;
-  std::vector<FourSums> partial_;        // per thread
-  std::vector<double> inverse_density_;  // 1/lambda; 0 where nothing resists
-  std::vector<double> row_sums_;         // of the bonds; empty: there are no contacts
-  std::vector<double> of_contacts_;      // row sums of contacts at the present displacement
+  std::vector<FourSums> partial_;                  // per thread
+  std::vector<double> density_, inverse_density_;  // lambda and 1/lambda; 0 where nothing resists
+  std::vector<double> row_sums_;                   // of the bonds; empty: there are no contacts
+  std::vector<double> of_contacts_;  // row sums of contacts at the present displacement
   std::vector<double> residual_, last_residual_;  // F^n, F^(n-1)
   std::vector<Index> held_;                       // prescribed ones that count on this rank
   std::vector<double> last_reaction_;             // dE/dx there

@@ -78,11 +78,14 @@ class StateKernels {
   template <class E>
   Evaluation find_states(Span u, const E& eigenstretch) {
     buffers_.template pack<D>(buffers_.points.reference, u);
-    std::vector<Lanes> shortest(std::size_t(threads()), std::numeric_limits<double>::infinity());
+    struct alignas(64) OfThread {  // threads write to cache lines of their own
+      Lanes least = std::numeric_limits<double>::infinity();
+    };
+    std::vector<OfThread> shortest(static_cast<std::size_t>(threads()));
     sum_parts<2, 1>(
         [&](const auto& batch, const Lanes& share, int thread) __attribute__((always_inline)) {
           const auto measure = strained(batch, eigenstretch);
-          Lanes& least = shortest[std::size_t(thread)];
+          Lanes& least = shortest[std::size_t(thread)].least;
           least =
               min(least, within(batch, measure.current, std::numeric_limits<double>::infinity()));
           const Lanes part = share * measure.relative_change * lengths_of(batch);
@@ -103,7 +106,7 @@ class StateKernels {
     Evaluation found;
     for (const double energy : energy_) found.energy += energy;
     found.degenerate = !std::isfinite(found.energy);
-    for (const Lanes& least : shortest) found.degenerate |= !(smallest(least) > 0.0);
+    for (const OfThread& one : shortest) found.degenerate |= !(smallest(one.least) > 0.0);
     return found;
   }
 
