@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -56,9 +57,11 @@ std::vector<std::string> describe_interactions(const Body& body) {
                                 storage.fits() ? "stored" : "found anew in every pass",
                                 bytes_text(storage.needed), bytes_text(storage.room)));
   }
-  const double on_horizon =
-      share_on_horizon(body.model.bonds(), body.setting,
-                       [&](Index i, Index j) { return norm_in_setting(body, i, j); });
+  const bool is_by_length =
+      body.setting.shape == HorizonShape::ball && body.points.horizons.empty();
+  std::function<double(Index, Index)> norm;
+  if (!is_by_length) norm = [&](Index i, Index j) { return norm_in_setting(body, i, j); };
+  const double on_horizon = share_on_horizon(body.model.bonds(), body.setting, norm);
   if (on_horizon > least_shell) {
     lines.push_back(
         fmt::format("{:.2g} % of the bonds are exactly as long as the horizon, so round-off "

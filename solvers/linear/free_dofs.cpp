@@ -14,13 +14,18 @@ FreeDofs::FreeDofs(const std::vector<char>& prescribed, int dimension_of_points)
   }
 }
 
-void FreeDofs::restrict_to_free(std::span<const double> full, std::span<double> free) const {
+void FreeDofs::restrict_to_free(std::span<const double> full, std::span<double> free,
+                                int threads) const {
+#pragma omp parallel for num_threads(threads) schedule(static)
   for (std::size_t e = 0; e < dof.size(); ++e) free[e] = full[dof[e]];
 }
 
-void FreeDofs::extend_by_zero(std::span<const double> free, std::span<double> full) const {
-  std::fill(full.begin(), full.end(), 0.0);
-  for (std::size_t e = 0; e < dof.size(); ++e) full[dof[e]] = free[e];
+void FreeDofs::extend_by_zero(std::span<const double> free, std::span<double> full,
+                              int threads) const {
+#pragma omp parallel for num_threads(threads) schedule(static)
+  for (std::size_t k = 0; k < full.size(); ++k) {
+    full[k] = equation[k] == none ? 0.0 : free[std::size_t(equation[k])];
+  }
 }
 
 }  // namespace peristat

@@ -22,9 +22,10 @@ struct FreeDofs {
   [[nodiscard]] Index count() const { return static_cast<Index>(dof.size()); }
 
   /// free[e] = full[dof of e]
-  void restrict_to_free(std::span<const double> full, std::span<double> free) const;
+  void restrict_to_free(std::span<const double> full, std::span<double> free,
+                        int threads = 1) const;
   /// full[dof of e] = free[e], zero elsewhere
-  void extend_by_zero(std::span<const double> free, std::span<double> full) const;
+  void extend_by_zero(std::span<const double> free, std::span<double> full, int threads = 1) const;
 };
 
 }  // namespace peristat

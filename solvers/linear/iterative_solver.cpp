@@ -103,11 +103,11 @@ LinearOutcome IterativeSolver::factorize(const TangentOperator& tangent, FactorU
 }
 
 void IterativeSolver::multiply(std::span<const double> v, std::span<double> product) {
-  free_->extend_by_zero(v, full_);
+  free_->extend_by_zero(v, full_, tangent_->threads());
   std::vector<double>& result = tangent_->multiplies_in_place() ? full_ : full_result_;
   result.resize(full_.size());
   tangent_->multiply(full_, result);
-  free_->restrict_to_free(result, product);
+  free_->restrict_to_free(result, product, tangent_->threads());
 }
 
 LinearOutcome IterativeSolver::iterate(std::span<const double> b, std::span<double> x,

@@ -65,7 +65,8 @@ Observation::Stretches& Observation::stretches() {
   if (!stretches_) {
     stretches_.emplace();
     stretches_->of_points.resize(body_.points.volume.size());
-    stretches_->largest = point_stretches(body_.points, body_.model, at_, stretches_->of_points);
+    stretches_->largest = point_stretches(body_.points, body_.model, at_, stretches_->of_points,
+                                          assembler_.threads());
     stretches_->of_points.resize(std::size_t(points_.count()));
   }
   return *stretches_;

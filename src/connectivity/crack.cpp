@@ -332,12 +332,13 @@ std::vector<std::int64_t> bonds_met_by_each(const std::vector<Crack>& cracks,
 }
 
 CutBonds cut_bonds(Bonds& bonds, const Points& points, const std::vector<Crack>& of_body) {
+  CutBonds removed{std::vector<double>(points.volume.size(), 0.0), {}};
+  if (of_body.empty() && !points.interior) return removed;
   const std::vector<Crack> cracks = with_images(of_body, points.images);
   std::vector<Box> boxes;
   for (const Crack& crack : cracks) {
     boxes.push_back(std::visit([](const auto& kind) { return box_around(kind); }, crack));
   }
-  CutBonds removed{std::vector<double>(points.volume.size(), 0.0), {}};
   bonds.remove_if([&](Index i, Offset bond) {
     const Index j = bonds.partner[bond];
     // Orders the ends by position, so that ranks, which number points differently, cut alike.

@@ -88,13 +88,13 @@ Fragments find_fragments(const Points& points, const Bonds& bonds, std::span<con
   std::vector<RigidMotions> motions = free.motions(cores);
   number_pieces(cores, motions, points, index_map, fragments);
 
-  std::vector<Support> support = supports_of(web, points.count(), held, holding.handles);
-  const std::vector<char> is_loose = strip_loose_points(web, support, index_map);
   const Index own = std::min(index_map.owned(), points.count());
-  for (Index i = 0; i < own; ++i) {
-    if (is_loose[i]) fragments.loose.push_back(i);
-  }
-  if (any_of_all(index_map.ranks(), !fragments.loose.empty())) {
+  if (any_of_all(index_map.ranks(), !hold_all(web, own, held, holding.handles))) {
+    std::vector<Support> support = supports_of(web, points.count(), held, holding.handles);
+    const std::vector<char> is_loose = strip_loose_points(web, support, index_map);
+    for (Index i = 0; i < own; ++i) {
+      if (is_loose[i]) fragments.loose.push_back(i);
+    }
     pin_loose_points(web, fragments.loose, holding.handles, std::move(support), index_map,
                      fragments.pinned);
     cores = cores_of(web, points, bonds, is_loose, holding, index_map);

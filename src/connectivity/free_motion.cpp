@@ -20,16 +20,20 @@ Components connected_components(const Bonds& bonds, std::span<const char> broken
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
-  const auto join = [&](Index i, Index j) {
-    const Index a = root(i), b = root(j);
-    parent[std::max(a, b)] = std::min(a, b);
+  /// @return the root of both
+  const auto join = [&](Index root_of_i, Index j) {
+    if (parent[j] == root_of_i) return root_of_i;
+    const Index b = root(j), joined = std::min(root_of_i, b);
+    parent[std::max(root_of_i, b)] = joined;
+    return joined;
   };
   for (Index i = 0; i < bonds.points(); ++i) {
+    Index top = root(i);
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      if (broken.empty() || !broken[bond]) join(i, bonds.partner[bond]);
+      if (broken.empty() || !broken[bond]) top = join(top, bonds.partner[bond]);
     }
   }
-  for (const auto& [i, j] : links) join(i, j);
+  for (const auto& [i, j] : links) join(root(i), j);
   Components components;
   components.of_point.resize(parent.size());
   for (Index i = 0; i < bonds.points(); ++i) {

@@ -214,25 +214,89 @@ LooseWeb gather_loose_points(const Web& web, const std::vector<Index>& loose,
 
 }  // namespace
 
+namespace {
+
+/// The support of a point without its bonds.
+Support support_by_itself(const Web& web, Index i, const std::vector<char>& prescribed) {
+  const int d = web.dimension();
+  Support support{};
+  for (int c = 0; c < 3; ++c) {
+    if (c >= d || prescribed[std::size_t(i) * d + c]) support[c][c] += 1.0;
+  }
+  return support;
+}
+
+/// Subtracts the direction in which a handle lets its member slide.
+void let_slide(const FreeHandle& handle, Support& support) {
+  const Coordinates& along = handle.moved_by.along;
+  const Eigen::Vector3d slide(along[0], along[1], along[2]);
+  matrix(support) -= slide * slide.transpose();
+}
+
+/// A lower bound of the smallest eigenvalue of a support: the product of the other two is at most
+/// the square of half the trace.
+double least_eigenvalue_bound(const Eigen::Matrix3d& support) {
+  const double half_trace = 0.5 * support.trace();
+  return support.determinant() / (half_trace * half_trace);
+}
+
+/// True if upper bonds of a point hold it whatever its other bonds are.
+bool is_held_from_above(const Web& web, Index i, Support support) {
+  // More directions only add to an eigenvalue. They raise the threshold, but not up to this.
+  constexpr double plenty = 0.01;
+  int bonds = 0, next_look = 4;
+  bool is_held = false;
+  web.for_each_above_while(i, [&](Index j) {
+    matrix(support) += direction(web, i, j);
+    if (++bonds < next_look) return true;
+    next_look *= 2;
+    is_held = least_eigenvalue_bound(matrix(support)) > plenty;
+    return !is_held;
+  });
+  return is_held;
+}
+
+}  // namespace
+
+bool hold_all(const Web& web, Index own, const std::vector<char>& prescribed,
+              const std::vector<FreeHandle>& handles) {
+  std::vector<char> slides(std::size_t(own), 0);
+  for (const FreeHandle& handle : handles) {
+    if (handle.is_slide && handle.moved_by.member < own) slides[handle.moved_by.member] = 1;
+  }
+  constexpr Index none = -1;
+  std::vector<Index> number(std::size_t(own), none);  // of a point that needs all of its bonds
+  std::vector<Support> support;
+  for (Index i = 0; i < own; ++i) {
+    const Support itself = support_by_itself(web, i, prescribed);
+    if (!slides[i] && is_held_from_above(web, i, itself)) continue;
+    number[i] = Index(support.size());
+    support.push_back(itself);
+  }
+  web.for_each_bond([&](Index i, Index j, Offset) {
+    for (const Index end : {i, j}) {
+      if (end >= own || number[end] == none) continue;
+      matrix(support[number[end]]) += direction(web, i, j);
+    }
+  });
+  for (const FreeHandle& handle : handles) {
+    const Index member = handle.moved_by.member;
+    if (handle.is_slide && member < own) let_slide(handle, support[number[member]]);
+  }
+  return std::ranges::all_of(support, [](Support& of) { return holds(matrix(of)); });
+}
+
 std::vector<Support> supports_of(const Web& web, Index count, const std::vector<char>& prescribed,
                                  const std::vector<FreeHandle>& handles) {
-  const int d = web.dimension();
   std::vector<Support> support(std::size_t(count), Support{});
+  for (Index i = 0; i < count; ++i) support[i] = support_by_itself(web, i, prescribed);
   web.for_each_bond([&](Index i, Index j, Offset) {
     const Eigen::Matrix3d along = direction(web, i, j);
     matrix(support[i]) += along;
     matrix(support[j]) += along;
   });
-  for (Index i = 0; i < count; ++i) {
-    for (int c = 0; c < 3; ++c) {
-      if (c >= d || prescribed[std::size_t(i) * d + c]) support[i][c][c] += 1.0;
-    }
-  }
   for (const FreeHandle& handle : handles) {
-    if (!handle.is_slide) continue;
-    const Coordinates& along = handle.moved_by.along;
-    const Eigen::Vector3d slide(along[0], along[1], along[2]);
-    matrix(support[handle.moved_by.member]) -= slide * slide.transpose();
+    if (handle.is_slide) let_slide(handle, support[handle.moved_by.member]);
   }
   return support;
 }

@@ -32,6 +32,15 @@ class Web {
     for (Index i = 0; i < bonds_.points(); ++i) for_each_above(i, visit);
   }
 
+  /// visit(j) for the upper points of the unbroken bonds of a point, until it returns false.
+  template <class Visit>
+  void for_each_above_while(Index i, const Visit& visit) const {
+    for (Offset bond = bonds_.offset[i]; bond < bonds_.offset[i + 1]; ++bond) {
+      const bool is_broken = !broken_.empty() && broken_[bond];
+      if (!is_broken && !visit(bonds_.partner[bond])) return;
+    }
+  }
+
   /// Prepares for_each_partner.
   void find_lower_partners();
 
@@ -62,7 +71,13 @@ class Web {
 /// dimension count as supported.
 using Support = Tensor;
 
+/// True if the first `own` points are held in all directions. Most are after a look at some of
+/// their bonds.
 /// @param prescribed per degree of freedom
+[[nodiscard]] bool hold_all(const Web& web, Index own, const std::vector<char>& prescribed,
+                            const std::vector<FreeHandle>& handles);
+
+/// @param prescribed as above
 [[nodiscard]] std::vector<Support> supports_of(const Web& web, Index count,
                                                const std::vector<char>& prescribed,
                                                const std::vector<FreeHandle>& handles);

@@ -100,4 +100,25 @@ void BondKinds::truncate(Offset count) {
   }
 }
 
+ReweighedKinds::ReweighedKinds(const BondKinds& before) : before_(before) {
+  after_.reserve(before.size());
+  if (before.numbered_) last_.resize(before.kinds_.size());
+}
+
+void ReweighedKinds::push_back(double weight) {
+  const Offset bond = Offset(after_.size());
+  const double inverse_length = before_[bond].inverse_length;
+  if (!before_.numbered_ || !after_.numbered_) {
+    after_.push_back({inverse_length, weight});
+    return;
+  }
+  Last& last = last_[before_.number(bond)];
+  if (last.weight == weight) {
+    after_.number_.push_back(last.number);
+    return;
+  }
+  after_.push_back({inverse_length, weight});
+  if (after_.numbered_) last = {weight, after_.number_.back()};
+}
+
 }  // namespace peristat

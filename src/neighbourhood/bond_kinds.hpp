@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -28,6 +29,12 @@ class BondKinds {
   [[nodiscard]] const BondKind& operator[](Offset bond) const {
     return kinds_[numbered_ ? std::size_t(number_[std::size_t(bond)]) : std::size_t(bond)];
   }
+  /// True if each kind is kept once.
+  [[nodiscard]] bool are_numbered() const { return numbered_; }
+  /// The number of a bond's kind, if they are numbered.
+  [[nodiscard]] std::uint16_t number(Offset bond) const { return number_[std::size_t(bond)]; }
+  /// The kinds by their numbers, if they are numbered.
+  [[nodiscard]] const BondKind* table() const { return kinds_.data(); }
   [[nodiscard]] std::size_t size() const { return numbered_ ? number_.size() : kinds_.size(); }
   /// Bytes that each bond takes.
   [[nodiscard]] std::size_t bytes_per_bond() const {
@@ -45,6 +52,8 @@ class BondKinds {
   void truncate(Offset count);
 
  private:
+  friend class ReweighedKinds;
+
   static constexpr std::size_t most_kinds = 65536;
 
   using Key = std::pair<std::uint64_t, std::uint64_t>;
@@ -65,6 +74,27 @@ class BondKinds {
     std::size_t number = 0;
   };
   std::array<Recent, 256> recent_;  // cache of known_, by hash
+};
+
+/// The kinds of the same bonds with other weights. Bonds of one kind mostly get one weight, which
+/// is then looked up once.
+class ReweighedKinds {
+ public:
+  explicit ReweighedKinds(const BondKinds& before);
+
+  /// Gives the next bond its weight.
+  void push_back(double weight);
+  [[nodiscard]] BondKinds take() { return std::move(after_); }
+
+ private:
+  struct Last {
+    double weight = std::numeric_limits<double>::quiet_NaN();
+    std::uint16_t number = 0;
+  };
+
+  const BondKinds& before_;
+  BondKinds after_;
+  std::vector<Last> last_;  // by the number before
 };
 
 }  // namespace peristat

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "src/core/lanes.hpp"
+
 namespace peristat {
 namespace {
 
@@ -10,11 +12,16 @@ bool is_bonded_to_next(const Bonds& bonds, Index i) {
   return bonds.offset[i] < bonds.offset[i + 1] && bonds.partner[bonds.offset[i]] == i + 1;
 }
 
+struct FoundRun : BondRun {
+  bool has_one_kind = true;
+  std::uint16_t* numbers = nullptr;  // of kinds, to be written
+};
+
 /// All maximal runs of these points, as long as they may be, in the order of their first bonds.
 /// @param ghosts the first of them: points from it on are no partners of runs
-std::vector<BondRun> runs_between(const Bonds& bonds, const BondKinds& kinds, Index first,
-                                  Index last, Index ghosts) {
-  std::vector<BondRun> found;
+std::vector<FoundRun> runs_between(const Bonds& bonds, const BondKinds& kinds, Index first,
+                                   Index last, Index ghosts) {
+  std::vector<FoundRun> found;
   std::vector<std::size_t> open, opened;  // runs of the point before and of this one, by `ahead`
   for (Index i = first; i < last; ++i, open.swap(opened)) {
     opened.clear();
@@ -24,18 +31,35 @@ std::vector<BondRun> runs_between(const Bonds& bonds, const BondKinds& kinds, In
       const Index partner = bonds.partner[bond], ahead = partner - i;
       if (partner >= ghosts) break;
       while (candidate != open.end() && found[*candidate].ahead < ahead) ++candidate;
-      const bool goes_on = candidate != open.end() && found[*candidate].ahead == ahead &&
-                           kinds[found[*candidate].first_bond(bonds)] == kinds[bond];
-      if (goes_on) {
+      const bool is_next = candidate != open.end() && found[*candidate].ahead == ahead;
+      const bool is_alike = is_next && kinds[found[*candidate].first_bond(bonds)] == kinds[bond];
+      if (is_alike || (is_next && kinds.are_numbered())) {
         opened.push_back(*candidate);
         ++found[*candidate].points;
+        found[*candidate].has_one_kind &= is_alike;
       } else {
         opened.push_back(found.size());
-        found.push_back({i, 1, ahead, Index(bond - first_bond)});
+        found.push_back({{i, 1, ahead, Index(bond - first_bond)}});
       }
     }
   }
   return found;
+}
+
+/// Room for the numbers of the kinds of the runs that have several.
+std::vector<std::uint16_t> room_for_kinds(std::vector<FoundRun>& runs) {
+  const auto padded = [](const FoundRun& run) {
+    return run.has_one_kind ? 0 : (run.points + lane_count - 1) / lane_count * lane_count;
+  };
+  std::size_t size = 0;
+  for (const FoundRun& run : runs) size += std::size_t(padded(run));
+  std::vector<std::uint16_t> room(size, 0);
+  std::uint16_t* next = room.data();
+  for (FoundRun& run : runs) {
+    if (!run.has_one_kind) run.kinds = run.numbers = next;
+    next += padded(run);
+  }
+  return room;
 }
 
 }  // namespace
@@ -57,13 +81,19 @@ BondRuns::BondRuns(const Points& points, const Bonds& bonds, const BondKinds& ki
 
 void BondRuns::add_group(const Points& points, const Bonds& bonds, const BondKinds& kinds,
                          Index first, Index last) {
-  std::vector<BondRun> runs =
+  std::vector<FoundRun> runs =
       runs_between(bonds, kinds, first, last, points.owned.value_or(points.count()));
   std::erase_if(runs, [](const BondRun& run) { return run.points < shortest; });
   std::ranges::sort(runs, {}, [](const BondRun& run) { return std::tuple(run.ahead, run.first); });
-  const std::size_t before = loose_.size();
+  std::vector<std::uint16_t> room = room_for_kinds(runs);
+  if (!room.empty()) kinds_.push_back(std::move(room));
+  const std::size_t runs_before = runs_.size(), before = loose_.size();
+  runs_.insert(runs_.end(), runs.begin(), runs.end());
   for_each_bond(
-      {first, last, runs, {}}, bonds, [](std::size_t, Index, Offset) {},
+      {first, last, std::span(runs_).subspan(runs_before), {}}, bonds,
+      [&](std::size_t r, Index i, Offset bond) {
+        if (runs[r].numbers) runs[r].numbers[i - runs[r].first] = kinds.number(bond);
+      },
       [&](Index i, Offset bond) {
         const bool goes_on =
             loose_.size() > before && loose_.back().point == i && loose_.back().last == bond;
@@ -73,7 +103,6 @@ void BondRuns::add_group(const Points& points, const Bonds& bonds, const BondKin
           loose_.push_back({i, bond, bond + 1});
         }
       });
-  runs_.insert(runs_.end(), runs.begin(), runs.end());
   ends_.push_back({last, runs_.size(), loose_.size()});
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,13 +10,14 @@
 
 namespace peristat {
 
-/// Bonds of consecutive points to partners that are as many points ahead, with one length and
-/// weight.
+/// Bonds of consecutive points to partners that are as many points ahead.
 struct BondRun {
   Index first;   ///< of the lower points
   Index points;  ///< how many
   Index ahead;   ///< from a point to its partner
   Index place;   ///< of the first bond among those of its point
+  /// Numbers of the bonds' kinds, padded by a batch; null: all are of the first one's kind.
+  const std::uint16_t* kinds = nullptr;
 
   [[nodiscard]] Index last() const { return first + points; }  ///< not part of it
   [[nodiscard]] Offset first_bond(const Bonds& bonds) const { return bonds.offset[first] + place; }
@@ -44,8 +46,10 @@ class BondRuns {
   };
 
   BondRuns() = default;
+  BondRuns(BondRuns&&) = default;  // not copied: runs point to kinds_
+  BondRuns& operator=(BondRuns&&) = default;
   /// Finds the runs of the points first .. last - 1. Bonds to ghosts are in none.
-  /// @param kinds in whose lengths and weights the bonds of a run agree
+  /// @param kinds of the bonds. Where they are not numbered, runs end where they change
   BondRuns(const Points& points, const Bonds& bonds, const BondKinds& kinds, Index first,
            Index last);
 
@@ -73,6 +77,7 @@ class BondRuns {
   std::vector<End> ends_;  // of the groups
   std::vector<BondRun> runs_;
   std::vector<LooseBonds> loose_;
+  std::vector<std::vector<std::uint16_t>> kinds_;  // of groups that have bonds of several kinds
 };
 
 template <class OnRun, class OnLoose>

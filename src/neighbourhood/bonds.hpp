@@ -63,14 +63,13 @@ struct Bonds {
   /// Gives every bond the weight weight_of(i, bond), i its lower point; called in order.
   template <class WeightOf>
   void set_weights(const WeightOf& weight_of) {
-    BondKinds weighted;
-    weighted.reserve(partner.size());
+    ReweighedKinds weighted(kind);
     for (Index i = 0; i < points(); ++i) {
       for (Offset bond = offset[i]; bond < offset[i + 1]; ++bond) {
-        weighted.push_back({inverse_length(bond), weight_of(i, bond)});
+        weighted.push_back(weight_of(i, bond));
       }
     }
-    kind = std::move(weighted);
+    kind = weighted.take();
   }
 };
 

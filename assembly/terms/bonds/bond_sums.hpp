@@ -21,21 +21,23 @@ void sum_bonds(BondWorkspace& a, const BondKinds& kinds, const PartOf& part_of, 
   const auto body = [&](int thread, RowRange range, double* all) __attribute__((flatten)) {
     const auto on_run = [&](const BondRun& run, const RunDamage* damage, RunWindow& window) {
       std::array<RunRow, width> parts;
-      const BondKind& kind = kinds[run.first_bond(a.bonds)];
-      const Lanes length = 1.0 / kind.inverse_length;
-      for_each_batch(
-          run, [&](const RunBatch& batch) __attribute__((always_inline)) {
-            const RunBonds<D> bonds{batch,
-                                    run,
-                                    kind.weight,
-                                    length,
-                                    kind.inverse_length,
-                                    difference<D>(window.vectors, 0, run, batch),
-                                    difference<D>(window.vectors, D, run, batch)};
-            const Vector<width, Lanes> part = part_of(bonds, damage, thread);
-            for (int c = 0; c < width; ++c) {
-              parts[std::size_t(c)][batch.number()] = within(batch, part[c], 0.0);
-            }
+      with_kinds(
+          a.bonds, kinds, run, [&](const auto& kinds_of_run) __attribute__((always_inline)) {
+            for_each_batch(
+                run, [&](const RunBatch& batch) __attribute__((always_inline)) {
+                  const OneKind kind = kinds_of_run.of(batch);
+                  const RunBonds<D> bonds{batch,
+                                          run,
+                                          kind.weight,
+                                          kind.length,
+                                          kind.inverse_length,
+                                          difference<D>(window.vectors, 0, run, batch),
+                                          difference<D>(window.vectors, D, run, batch)};
+                  const Vector<width, Lanes> part = part_of(bonds, damage, thread);
+                  for (int c = 0; c < width; ++c) {
+                    parts[std::size_t(c)][batch.number()] = within(batch, part[c], 0.0);
+                  }
+                });
           });
       add_to_ends<width, sign>(
           run, window.sums, [&](int c, std::size_t b) __attribute__((always_inline)) {

@@ -1,6 +1,7 @@
 #include "assembly/terms/bonds/point_stretches.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <type_traits>
 
@@ -12,9 +13,18 @@ namespace {
 
 constexpr double none = -std::numeric_limits<double>::infinity();
 
+/// Lets a number that several threads raise be at least `value`.
+void raise(double& number, double value) {
+  const std::atomic_ref<double> shared(number);
+  double before = shared.load(std::memory_order_relaxed);
+  while (before < value &&
+         !shared.compare_exchange_weak(before, value, std::memory_order_relaxed)) {
+  }
+}
+
 template <int D>
 void find_largest(const Points& points, const Model& model, const StateView& at,
-                  std::span<double> stretches) {
+                  std::span<double> stretches, int threads) {
   const std::vector<char> broken = broken_bonds(model, at.history);
   const Bonds& bonds = model.bonds();
   const std::span<const double> eigenstretch = at.eigenstretch();
@@ -25,7 +35,9 @@ void find_largest(const Points& points, const Model& model, const StateView& at,
     }
     return result;
   };
+#pragma omp parallel for num_threads(threads) schedule(static)
   for (Index i = 0; i < bonds.points(); ++i) {
+    double largest = none;
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       if (!broken.empty() && broken[bond]) continue;
       const Index j = bonds.partner[bond];
@@ -35,26 +47,27 @@ void find_largest(const Points& points, const Model& model, const StateView& at,
                                 {difference(at.displacement, i, j)})
               .relative_change -
           free;
-      stretches[i] = std::max(stretches[i], stretch);
-      stretches[j] = std::max(stretches[j], stretch);
+      largest = std::max(largest, stretch);
+      raise(stretches[j], stretch);
     }
+    raise(stretches[i], largest);
   }
 }
 
 }  // namespace
 
 double point_stretches(const Points& points, const Model& model, const StateView& at,
-                       std::span<double> stretches) {
+                       std::span<double> stretches, int threads) {
   std::fill(stretches.begin(), stretches.end(), none);
   switch (points.dimension) {
     case 1:
-      find_largest<1>(points, model, at, stretches);
+      find_largest<1>(points, model, at, stretches, threads);
       break;
     case 2:
-      find_largest<2>(points, model, at, stretches);
+      find_largest<2>(points, model, at, stretches, threads);
       break;
     default:
-      find_largest<3>(points, model, at, stretches);
+      find_largest<3>(points, model, at, stretches, threads);
   }
   const double largest = stretches.empty() ? none : std::ranges::max(stretches);
   std::replace(stretches.begin(), stretches.end(), none, 0.0);

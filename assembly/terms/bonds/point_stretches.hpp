@@ -13,7 +13,7 @@ namespace peristat {
 /// Largest stretch l/L - 1 of the unbroken bonds of each point; 0 without such a bond.
 /// @return the largest of all unbroken bonds; minus infinity without one
 double point_stretches(const Points& points, const Model& model, const StateView& at,
-                       std::span<double> stretches);
+                       std::span<double> stretches, int threads);
 
 /// Largest equivalent stretch of the unbroken bonds of each point, of images that of their source;
 /// 0 without one that is driven.

@@ -25,7 +25,7 @@ struct RunBatch {
   return Lanes([&](int l) { return l < batch.count ? own[l] + own[l + run.ahead] : 0.0; });
 }
 
-/// A batch of a run with its kind and vectors, as Batch is for bonds of one point.
+/// A batch of a run with its kinds and vectors, as Batch is for bonds of one point.
 template <int D>
 struct RunBonds : RunBatch {
   const BondRun& run;
@@ -51,6 +51,55 @@ template <class Visit>
   Index first = 0;
   for (; first + lane_count <= run.points; first += lane_count) visit(RunBatch{first, lane_count});
   if (first < run.points) visit(RunBatch{first, run.points - first});
+}
+
+/// The kind of all bonds of a run. Their energy has a common weight, which is applied to the sum.
+struct OneKind {
+  Lanes inverse_length, weight, length;
+
+  [[nodiscard, gnu::always_inline]] const OneKind& of(const RunBatch& /*batch*/) const {
+    return *this;
+  }
+  [[nodiscard, gnu::always_inline]] double common_energy_weight() const {
+    return weight[0] * length[0];
+  }
+  [[nodiscard, gnu::always_inline]] double energy_weight(const OneKind& /*kind*/) const {
+    return 1.0;
+  }
+};
+
+/// The kinds of a run's bonds where they differ.
+struct SeveralKinds {
+  const std::uint16_t* numbers;
+  const BondKind* table;
+
+  [[nodiscard, gnu::always_inline]] OneKind of(const RunBatch& batch) const {
+    const std::uint16_t* const number = numbers + batch.first;
+    std::array<const double*, lane_count> kind;
+#pragma GCC unroll 4
+    for (int l = 0; l < lane_count; ++l) kind[l] = &table[number[l]].inverse_length;
+    OneKind result;
+    load_transposed_pairs(kind, result.inverse_length, result.weight);
+    result.length = 1.0 / result.inverse_length;
+    return result;
+  }
+  [[nodiscard, gnu::always_inline]] double common_energy_weight() const { return 1.0; }
+  [[nodiscard, gnu::always_inline]] Lanes energy_weight(const OneKind& kind) const {
+    return kind.weight * kind.length;
+  }
+};
+
+/// Calls visit(OneKind or SeveralKinds) with those of a run. Each has its own loops, which choose
+/// nothing.
+template <class Visit>
+[[gnu::always_inline]] inline void with_kinds(const Bonds& bonds, const BondKinds& kinds,
+                                              const BondRun& run, const Visit& visit) {
+  if (run.kinds) {
+    visit(SeveralKinds{run.kinds, kinds.table()});
+  } else {
+    const BondKind& all = kinds[run.first_bond(bonds)];
+    visit(OneKind{all.inverse_length, all.weight, 1.0 / all.inverse_length});
+  }
 }
 
 /// The lanes of a batch; `none` past them.

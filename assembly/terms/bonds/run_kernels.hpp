@@ -101,25 +101,28 @@ class RunPass {
           squared[b] = dot<D>(current, current);
           change[b] = dot<D>(displacement, plus<D>(reference, current));
         });
-    const BondKind& kind = bonds_.kind[run.first_bond(bonds_)];
-    const Lanes inverse_length = kind.inverse_length, weight = kind.weight;
     Lanes total = 0.0, least = shortest;
-    with_densities(
-        run, damage, [&](const auto& density) __attribute__((always_inline)) {
+    double common = 0.0;
+    with_kinds_and_densities(
+        run, damage, [&](const auto& kinds, const auto& density) __attribute__((always_inline)) {
           total = 0.0;
+          common = kinds.common_energy_weight();
           for_each_batch(
               run, [&](const RunBatch& batch) __attribute__((always_inline)) {
                 const std::size_t b = batch.number();
-                auto measure = Length::from_squares(inverse_length, squared[b], change[b]);
+                const OneKind kind = kinds.of(batch);
+                auto measure = Length::from_squares(kind.inverse_length, squared[b], change[b]);
                 relieve(measure, run, batch);
                 least = min(
                     least, within(batch, measure.current, std::numeric_limits<double>::infinity()));
                 const auto phi = density(batch, measure.relative_change);
-                if constexpr (with_energy) total += within(batch, phi.value, 0.0);
-                tension[b] = within(batch, weight * phi.first * measure.inverse, 0.0);
+                if constexpr (with_energy) {
+                  total += within(batch, kinds.energy_weight(kind) * phi.value, 0.0);
+                }
+                tension[b] = within(batch, kind.weight * phi.first * measure.inverse, 0.0);
               });
         });
-    energy += sum(total) * (kind.weight / kind.inverse_length);
+    energy += sum(total) * common;
     shortest = least;
     if (!sums) return;
     add_to_ends<D, -1>(
@@ -147,18 +150,17 @@ class RunPass {
           squared[b] = dot<D>(current, current);
           product[b] = dot<D>(current, v);
         });
-    const BondKind& kind = bonds_.kind[run.first_bond(bonds_)];
-    const Lanes inverse_length = kind.inverse_length, weight = kind.weight;
-    const Lanes of_second = kind.weight * kind.inverse_length;
-    with_densities(
-        run, damage, [&](const auto& density) __attribute__((always_inline)) {
+    with_kinds_and_densities(
+        run, damage, [&](const auto& kinds, const auto& density) __attribute__((always_inline)) {
           for_each_batch(
               run, [&](const RunBatch& batch) __attribute__((always_inline)) {
                 const std::size_t b = batch.number();
-                auto measure = Length::from_square(inverse_length, squared[b]);
+                const OneKind kind = kinds.of(batch);
+                auto measure = Length::from_square(kind.inverse_length, squared[b]);
                 relieve(measure, run, batch);
                 const auto phi = density(batch, measure.relative_change);
-                InteractionEnergy<Lanes> psi{0.0, weight * phi.first, of_second * phi.second};
+                InteractionEnergy<Lanes> psi{0.0, kind.weight * phi.first,
+                                             kind.weight * kind.inverse_length * phi.second};
                 if (projection > 0.0) psi = projected(psi, projection);
                 const Lanes across = psi.first * measure.inverse;
                 of_along[b] = within(batch, across, 0.0);
@@ -180,6 +182,19 @@ class RunPass {
     if constexpr (std::is_same_v<E, Eigenstretch>) {
       measure.relative_change -= 0.5 * sum_of_ends(eigenstretch_.of_point, run, batch);
     }
+  }
+
+  /// Calls loop(kinds, density), see with_kinds and with_densities.
+  template <class Loop>
+  [[gnu::always_inline]] void with_kinds_and_densities(const BondRun& run, RunDamage* damage,
+                                                       const Loop& loop) const {
+    with_kinds(
+        bonds_, bonds_.kind, run, [&](const auto& kinds) __attribute__((always_inline)) {
+          with_densities(
+              run, damage, [&](const auto& density) __attribute__((always_inline)) {
+                loop(kinds, density);
+              });
+        });
   }
 
   /// Calls loop(density), where density(batch, stretch) is that of the bonds; again, from the

@@ -31,8 +31,15 @@ BondPotential softening(double modulus) {
 }
 BondPotential whole(double modulus) { return Harmonic{modulus}; }
 
-BoxSetting rows_of(int dimension, const std::function<BondPotential(double)>& potential) {
+struct Lattice {
+  int dimension;
+  double perturbation;  ///< of positions in spacings: every bond of a run has its own kind
+};
+
+BoxSetting rows_of(const Lattice& lattice, const std::function<BondPotential(double)>& potential) {
+  const int dimension = lattice.dimension;
   BoxSetting box = tests::small_box(dimension);
+  box.perturbation = lattice.perturbation;
   box.extent = dimension == 1   ? std::array{300, 0, 0}  // longer than a piece
                : dimension == 2 ? std::array{21, 14, 0}
                                 : std::array{14, 8, 15};
@@ -111,8 +118,14 @@ void expect_equal(const Sums& one, const Sums& other) {
   EXPECT_EQ(one.found.degenerate, other.found.degenerate);
 }
 
-class BondRunsIn : public testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Dimensions, BondRunsIn, testing::Values(1, 2, 3));
+class BondRunsIn : public testing::TestWithParam<Lattice> {};
+INSTANTIATE_TEST_SUITE_P(Lattices, BondRunsIn,
+                         testing::Values(Lattice{1, 0.0}, Lattice{2, 0.0}, Lattice{3, 0.0},
+                                         Lattice{1, 0.01}, Lattice{2, 0.01}, Lattice{3, 0.01}),
+                         [](const auto& at) {
+                           return std::to_string(at.param.dimension) + "D" +
+                                  (at.param.perturbation > 0.0 ? "_perturbed" : "");
+                         });
 
 TEST_P(BondRunsIn, SumsAreThoseOfSingleBonds) {
   for (const auto& potential : {whole, brittle, softening}) {
@@ -199,8 +212,7 @@ TEST_P(BondRunsIn, EigenstretchesAreThoseOfSingleBonds) {
 }
 
 TEST_P(BondRunsIn, LawsThatDifferFromBondToBond) {
-  const int dimension = GetParam();
-  const BoxSetting box = rows_of(dimension, whole);
+  const BoxSetting box = rows_of(GetParam(), whole);
   const BoxBody elastic(box);
   const auto laws =
       std::make_shared<BondLaws>(std::vector<AnyBondLaw>{AnyBondLaw(CriticalStretch{critical})},
@@ -236,8 +248,9 @@ TEST_P(BondRunsIn, PointsThatCoincideAreDegenerate) {
   std::vector<double> u(body.dofs(), 0.0), forces(u.size());
   const Index middle = body.points.count() / 2 + 1;
   EXPECT_FALSE(along.gradient(StateView{u}, forces).degenerate);
-  for (int c = 0; c < GetParam(); ++c) {
-    const auto at = [&](Index i) { return std::size_t(i * GetParam() + c); };
+  const int dimension = GetParam().dimension;
+  for (int c = 0; c < dimension; ++c) {
+    const auto at = [&](Index i) { return std::size_t(i * dimension + c); };
     u[at(middle)] = body.points.reference[at(middle + 1)] - body.points.reference[at(middle)];
   }
   EXPECT_TRUE(along.gradient(StateView{u}, forces).degenerate);
@@ -254,7 +267,11 @@ void expect_covered(const BoxBody& body, const BondRuns& runs) {
       EXPECT_LE(run.points, BondRuns::longest);
       for (Index i = run.first; i < run.last(); ++i) {
         const Offset bond = *bonds.find(i, i + run.ahead);
-        EXPECT_EQ(bonds.kind[bond], bonds.kind[run.first_bond(bonds)]);
+        if (run.kinds) {
+          EXPECT_EQ(bonds.kind.number(bond), run.kinds[i - run.first]);
+        } else {
+          EXPECT_EQ(bonds.kind[bond], bonds.kind[run.first_bond(bonds)]);
+        }
         ++found[std::size_t(bond)];
       }
     }
@@ -269,7 +286,7 @@ void expect_covered(const BoxBody& body, const BondRuns& runs) {
 
 TEST(BondRuns, CoverEveryBondOnce) {
   for (const int dimension : {1, 2, 3}) {
-    const BoxBody body = cut_body(rows_of(dimension, whole));
+    const BoxBody body = cut_body(rows_of({dimension, 0.0}, whole));
     expect_covered(body, BondRuns(body.points, body.model.bonds(), body.model.bonds().kind, 0,
                                   body.points.count()));
   }
@@ -285,19 +302,31 @@ TEST(BondRuns, HoldAllBondsOfALattice) {
   EXPECT_EQ(runs.groups(), 30u);  // rows along the shorter side
 }
 
-TEST(BondRuns, NeedAlikeBonds) {
+TEST(BondRuns, MayHaveBondsOfSeveralKinds) {
   BoxSetting box = tests::small_box(2);
   box.extent = {30, 20, 0};
   box.perturbation = 1e-9;
-  const BoxBody cloud(box);
-  EXPECT_EQ(share_in_runs(cloud.points, cloud.model.bonds(), 1), 0.0);
+  const BoxBody perturbed(box);
+  ASSERT_TRUE(perturbed.model.bonds().kind.are_numbered());
+  EXPECT_EQ(share_in_runs(perturbed.points, perturbed.model.bonds(), 1), 1.0);
+  const BondRuns runs(perturbed.points, perturbed.model.bonds(), perturbed.model.bonds().kind, 0,
+                      perturbed.points.count());
+  expect_covered(perturbed, runs);
+  EXPECT_TRUE(std::ranges::all_of(runs.runs(), [](const BondRun& run) { return run.kinds; }));
+}
 
-  box.perturbation = 0.0;
-  BoxBody weighted(box);
-  Bonds bonds = weighted.model.bonds();
-  bonds.set_weights([](Index i, Offset) { return 1.0 + 1e-6 * i; });
-  EXPECT_EQ(share_in_runs(weighted.points, bonds, 1), 0.0);
+TEST(BondRuns, EndWhereKindsChangeThatHaveNoNumbers) {
+  BoxSetting box = tests::small_box(2);
+  box.extent = {100, 80, 0};
+  box.perturbation = 1e-9;
+  const BoxBody perturbed(box);
+  ASSERT_FALSE(perturbed.model.bonds().kind.are_numbered());
+  EXPECT_EQ(share_in_runs(perturbed.points, perturbed.model.bonds(), 1), 0.0);
+}
 
+TEST(BondRuns, HaveNoGhosts) {
+  BoxSetting box = tests::small_box(2);
+  box.extent = {30, 20, 0};
   BoxBody owned(box);
   owned.points.owned = 10 * 20;
   const BondRuns runs(owned.points, owned.model.bonds(), owned.model.bonds().kind, 0,

@@ -1,13 +1,17 @@
 #include "cases/runner/results/files/hdf5_file.hpp"
 
 #include <algorithm>
+#include <future>
 #include <new>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
 #include <hdf5.h>
+#include <omp.h>
 
 #include "cases/runner/process/output_file.hpp"
+#include "cases/runner/results/files/compressed_chunks.hpp"
 
 namespace peristat {
 namespace {
@@ -106,14 +110,52 @@ hid_t type_of(std::int32_t) { return H5T_NATIVE_INT32; }
 hid_t type_of(std::uint8_t) { return H5T_NATIVE_UINT8; }
 hid_t type_of(std::int64_t) { return H5T_NATIVE_INT64; }
 
-/// Properties of a dataset that is stored compressed, in parts of about half a megabyte.
+/// Rows of a chunk of a compressed dataset, some half a megabyte.
+hsize_t rows_of_chunk(const Hdf5File::Shape& shape) { return std::min<hsize_t>(shape[0], 1 << 15); }
+
+/// Properties of a dataset that is stored compressed.
 void compress(hid_t creation, const Hdf5File::Shape& shape, const std::string& path) {
   std::vector<hsize_t> chunk(shape.begin(), shape.end());
-  chunk[0] = std::min<hsize_t>(chunk[0], 1 << 15);
+  chunk[0] = rows_of_chunk(shape);
   if (chunk[0] == 0) return;
   checked(H5Pset_chunk(creation, int(chunk.size()), chunk.data()), "prepare " + path);
   checked(H5Pset_shuffle(creation), "prepare " + path);
   checked(H5Pset_deflate(creation, 1), "prepare " + path);
+}
+
+/// True if these rows are whole chunks of a compressed dataset, but for the last one of all.
+bool fill_chunks(const Hdf5File::Shape& shape, std::uint64_t first, std::uint64_t rows) {
+  const hsize_t of_chunk = rows_of_chunk(shape);
+  return first % of_chunk == 0 && (rows % of_chunk == 0 || first + rows == shape[0]);
+}
+
+/// Writes whole chunks, compressed on several threads.
+template <class Value>
+void write_chunks(hid_t dataset, const std::string& path, const Hdf5File::Shape& shape,
+                  std::uint64_t values_per_row, std::uint64_t first,
+                  const std::vector<Value>& rows) {
+  const std::size_t whole = rows_of_chunk(shape) * values_per_row;
+  const auto compressed = [&](std::size_t begin) {
+    const std::size_t end = std::min(begin + whole, rows.size());
+    std::vector<Value> values(rows.begin() + std::ptrdiff_t(begin),
+                              rows.begin() + std::ptrdiff_t(end));
+    values.resize(whole);  // the last chunk has rows past the end
+    return shuffled_and_deflated(std::as_bytes(std::span(values)), sizeof(Value));
+  };
+  std::vector<hsize_t> start(shape.size(), 0);
+  start[0] = first;
+  for (std::size_t begin = 0; begin < rows.size();) {
+    std::vector<std::future<std::vector<unsigned char>>> chunks;
+    for (int k = 0; k < omp_get_max_threads() && begin < rows.size(); ++k, begin += whole) {
+      chunks.push_back(std::async(compressed, begin));
+    }
+    for (auto& chunk : chunks) {
+      const std::vector<unsigned char> bytes = chunk.get();
+      checked(H5Dwrite_chunk(dataset, H5P_DEFAULT, 0, start.data(), bytes.size(), bytes.data()),
+              "write " + path);
+      start[0] += rows_of_chunk(shape);
+    }
+  }
 }
 
 std::string column_path(const std::string& group, const Column& column) {
@@ -273,6 +315,9 @@ void Hdf5File::write_rows(const std::string& path, const Shape& shape, const Dat
   std::uint64_t values_per_row = 1;
   for (std::size_t k = 1; k < shape.size(); ++k) values_per_row *= shape[k];
   fill([&](std::uint64_t first, const std::vector<Value>& rows) {
+    if (storage == Storage::compressed && fill_chunks(shape, first, rows.size() / values_per_row)) {
+      return write_chunks(dataset, path, shape, values_per_row, first, rows);
+    }
     std::vector<hsize_t> start(shape.size(), 0), count(shape.begin(), shape.end());
     start[0] = first;
     count[0] = rows.size() / values_per_row;
