@@ -85,9 +85,8 @@ bool cuts_struts(const BodySpecification& of) {
   return cuts;
 }
 
-/// @throws InputError unless most bonds are summed along rows of points with alike ones
+/// @throws InputError unless most bonds are summed along rows of points
 void require_rows(const Body& body, int threads) {
-  constexpr double least_share = 0.5;
   const auto refuse = [](const std::string& why) {
     throw InputError("force_operator", "\"stencil\"", why + "; take \"bonds\"");
   };
@@ -96,8 +95,8 @@ void require_rows(const Body& body, int threads) {
     refuse("is for bonds and states");
   }
   const double share = share_in_runs(body.points, body.model.bonds(), threads);
-  if (share >= least_share) return;
-  refuse("is for rows of lattice points with alike bonds; of this body's bonds only " +
+  if (share >= BondRuns::least_share) return;
+  refuse("is for rows of lattice points; of this body's bonds only " +
          std::to_string(std::lround(100.0 * share)) + " % are in such rows");
 }
 

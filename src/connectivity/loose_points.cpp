@@ -8,6 +8,7 @@
 #include <set>
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 
 #include "src/connectivity/fragments.hpp"
 #include "src/dense/symmetric_spectrum.hpp"

@@ -46,6 +46,37 @@ std::vector<FoundRun> runs_between(const Bonds& bonds, const BondKinds& kinds, I
   return found;
 }
 
+/// The runs that are long enough, after others of several kinds are cut into pieces of one.
+std::vector<FoundRun> long_ones(const std::vector<FoundRun>& runs, const Bonds& bonds,
+                                const BondKinds& kinds) {
+  std::vector<FoundRun> kept;
+  const auto keep = [&](const FoundRun& run) {
+    if (run.points >= BondRuns::shortest) kept.push_back(run);
+  };
+  for (const FoundRun& run : runs) {
+    if (run.has_one_kind || run.points >= BondRuns::shortest_of_several) {
+      keep(run);
+      continue;
+    }
+    FoundRun piece = run;
+    piece.has_one_kind = true;
+    piece.points = 1;
+    for (Index i = run.first + 1; i < run.last(); ++i) {
+      const Offset bond = *bonds.find(i, i + run.ahead);
+      if (kinds[bond] == kinds[piece.first_bond(bonds)]) {
+        ++piece.points;
+      } else {
+        keep(piece);
+        piece.first = i;
+        piece.points = 1;
+        piece.place = Index(bond - bonds.offset[i]);
+      }
+    }
+    keep(piece);
+  }
+  return kept;
+}
+
 /// Room for the numbers of the kinds of the runs that have several.
 std::vector<std::uint16_t> room_for_kinds(std::vector<FoundRun>& runs) {
   const auto padded = [](const FoundRun& run) {
@@ -77,13 +108,16 @@ BondRuns::BondRuns(const Points& points, const Bonds& bonds, const BondKinds& ki
       first = end;
     }
   }
+  ends_.shrink_to_fit();
+  runs_.shrink_to_fit();
+  loose_.shrink_to_fit();
 }
 
 void BondRuns::add_group(const Points& points, const Bonds& bonds, const BondKinds& kinds,
                          Index first, Index last) {
+  const Index ghosts = points.owned.value_or(points.count());
   std::vector<FoundRun> runs =
-      runs_between(bonds, kinds, first, last, points.owned.value_or(points.count()));
-  std::erase_if(runs, [](const BondRun& run) { return run.points < shortest; });
+      long_ones(runs_between(bonds, kinds, first, last, ghosts), bonds, kinds);
   std::ranges::sort(runs, {}, [](const BondRun& run) { return std::tuple(run.ahead, run.first); });
   std::vector<std::uint16_t> room = room_for_kinds(runs);
   if (!room.empty()) kinds_.push_back(std::move(room));
@@ -112,6 +146,12 @@ BondRuns::Group BondRuns::group(std::size_t number) const {
           std::span(loose_).subspan(before.loose, end.loose - before.loose)};
 }
 
+Offset BondRuns::bonds_in_runs() const {
+  Offset bonds = 0;
+  for (const BondRun& run : runs_) bonds += run.points;
+  return bonds;
+}
+
 double share_in_runs(const Points& points, const Bonds& bonds, int threads) {
   const auto count = std::ptrdiff_t(bonds.points());
   double inside = 0.0;
@@ -119,7 +159,7 @@ double share_in_runs(const Points& points, const Bonds& bonds, int threads) {
   for (int part = 0; part < threads; ++part) {
     const BondRuns runs(points, bonds, bonds.kind, Index(count * part / threads),
                         Index(count * (part + 1) / threads));
-    for (const BondRun& run : runs.runs()) inside += double(run.points);
+    inside += double(runs.bonds_in_runs());
   }
   return bonds.count() > 0 ? inside / double(bonds.count()) : 0.0;
 }

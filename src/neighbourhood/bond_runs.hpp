@@ -35,8 +35,12 @@ class BondRuns {
  public:
   /// Most points of a group: their vectors stay in the nearest cache.
   static constexpr Index longest = 128;
-  /// Fewest points that make a run.
-  static constexpr Index shortest = 4;
+  /// Fewest points that make a run of bonds of one kind, and of several. Fewer take longer than
+  /// bond by bond, for example in a cloud of points, where runs are by chance.
+  static constexpr Index shortest = 4, shortest_of_several = 12;
+  /// Sums go bond by bond where a smaller share of the bonds is in runs: gathering points for runs
+  /// would take longer than these save.
+  static constexpr double least_share = 0.5;
 
   /// Consecutive points that are bonded one to the next, with all of their bonds.
   struct Group {
@@ -56,6 +60,8 @@ class BondRuns {
   /// True if no bond is in a run.
   [[nodiscard]] bool empty() const { return runs_.empty(); }
   [[nodiscard]] std::span<const BondRun> runs() const { return runs_; }
+  /// Number of bonds that are in runs.
+  [[nodiscard]] Offset bonds_in_runs() const;
   [[nodiscard]] std::size_t groups() const { return ends_.size(); }
   [[nodiscard]] Group group(std::size_t number) const;
 

@@ -15,8 +15,13 @@ ThreadRuns::ThreadRuns(const Points& points, const Bonds& bonds, const BondKinds
     const Index most = 2 * (one.reach + BondRuns::longest);
     one.window = RunWindow(points.dimension, std::min(range.touched_end - range.first, most));
   }
-  const auto is_loose = [](const OfThread& one) { return one.bonds.empty(); };
-  if (!std::ranges::all_of(found, is_loose)) of_threads_ = std::move(found);
+  double in_runs = 0.0, in_all = 0.0;
+  for (int t = 0; t < threads; ++t) {
+    in_runs += double(found[std::size_t(t)].bonds.bonds_in_runs());
+    const RowRange range = ranges[std::size_t(t)];
+    in_all += double(bonds.offset[range.last] - bonds.offset[range.first]);
+  }
+  if (in_runs > 0.0 && in_runs >= BondRuns::least_share * in_all) of_threads_ = std::move(found);
 }
 
 }  // namespace peristat

@@ -268,6 +268,7 @@ void expect_covered(const BoxBody& body, const BondRuns& runs) {
       for (Index i = run.first; i < run.last(); ++i) {
         const Offset bond = *bonds.find(i, i + run.ahead);
         if (run.kinds) {
+          EXPECT_GE(run.points, BondRuns::shortest_of_several);
           EXPECT_EQ(bonds.kind.number(bond), run.kinds[i - run.first]);
         } else {
           EXPECT_EQ(bonds.kind[bond], bonds.kind[run.first_bond(bonds)]);

@@ -126,7 +126,8 @@ void compress(hid_t creation, const Hdf5File::Shape& shape, const std::string& p
 /// True if these rows are whole chunks of a compressed dataset, but for the last one of all.
 bool fill_chunks(const Hdf5File::Shape& shape, std::uint64_t first, std::uint64_t rows) {
   const hsize_t of_chunk = rows_of_chunk(shape);
-  return first % of_chunk == 0 && (rows % of_chunk == 0 || first + rows == shape[0]);
+  return of_chunk > 0 && first % of_chunk == 0 &&
+         (rows % of_chunk == 0 || first + rows == shape[0]);
 }
 
 /// Writes whole chunks, compressed on several threads.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace peristat {
@@ -23,7 +24,7 @@ std::vector<Coordinates> box_corners(int dimension) {
 }
 
 /// Corners of a lattice's cell about its point [m].
-std::vector<Coordinates> lattice_corners(const Points& points) {
+std::vector<double> lattice_box(const Points& points) {
   std::vector<Coordinates> corners = box_corners(points.dimension);
   constexpr double degree = 3.14159265358979323846 / 180.0;
   const double cosine = std::cos(points.angle * degree), sine = std::sin(points.angle * degree);
@@ -35,7 +36,9 @@ std::vector<Coordinates> lattice_corners(const Points& points) {
     corner = {cosine * corner[0] - sine * corner[1], sine * corner[0] + cosine * corner[1],
               corner[2]};
   }
-  return corners;
+  std::vector<double> box;
+  for (const Coordinates& corner : corners) box.insert(box.end(), corner.begin(), corner.end());
+  return box;
 }
 
 class CellBuilder {
@@ -165,29 +168,41 @@ PointCells points_as_cells(const Points& points) {
   return made.release();
 }
 
+PointCells boxes_of_lattice(const Points& points) {
+  constexpr MeshElements::Kind kinds[] = {MeshElements::Kind::line, MeshElements::Kind::line,
+                                          MeshElements::Kind::quadrilateral,
+                                          MeshElements::Kind::hexahedron};
+  PointCells cells = points_as_cells(points);
+  cells.box = lattice_box(points);
+  std::ranges::fill(cells.kind, std::uint8_t(kinds[points.dimension]));
+  std::ranges::fill(cells.count, std::int32_t(cells.box.size() / 3));
+  return cells;
+}
+
 }  // namespace
 
+std::vector<double> boxes_about(const std::vector<double>& points, const std::vector<double>& box) {
+  std::vector<double> corners;
+  corners.reserve(points.size() / 3 * box.size());
+  for (std::size_t point = 0; point < points.size(); point += 3) {
+    for (std::size_t k = 0; k < box.size(); ++k) corners.push_back(points[point + k % 3] + box[k]);
+  }
+  return corners;
+}
+
 PointCells cells_of(const Points& points) {
-  if (points.elements.empty() && points.polygons.empty() && !points.lattice) {
-    return points_as_cells(points);
+  if (points.elements.empty() && points.polygons.empty()) {
+    return points.lattice ? boxes_of_lattice(points) : points_as_cells(points);
   }
   const Index own = points.owned.value_or(points.own());
   CellBuilder made{std::size_t(own)};
-  const std::vector<Coordinates> box =
-      points.lattice ? lattice_corners(points) : std::vector<Coordinates>{};
-  constexpr MeshElements::Kind boxes[] = {MeshElements::Kind::line, MeshElements::Kind::line,
-                                          MeshElements::Kind::quadrilateral,
-                                          MeshElements::Kind::hexahedron};
   for (Index point = 0; point < own; ++point) {
     const Coordinates at = points.position(point);
     if (!points.elements.empty()) {
       add_element(made, points.elements, std::size_t(point), points.dimension);
-    } else if (!points.polygons.empty()) {
+    } else {
       made.begin(points.dimension == 1 ? std::uint8_t(MeshElements::Kind::line) : polygon_cell);
       for (const auto& [x, y] : points.polygons.of(std::size_t(point))) made.add(at, {x, y, 0.0});
-    } else {
-      made.begin(std::uint8_t(boxes[points.dimension]));
-      for (const Coordinates& corner : box) made.add(at, corner);
     }
   }
   return made.release();
@@ -197,7 +212,9 @@ CellSizes sizes_of(const PointCells& cells, const RowGathering& gathering) {
   const Communicator& ranks = gathering.ranks();
   CellSizes sizes;
   sizes.cells = std::uint64_t(ranks.count_all(std::int64_t(cells.kind.size())).all);
-  sizes.corners = std::uint64_t(ranks.count_all(std::int64_t(cells.corners.size() / 3)).all);
+  const std::int64_t corners =
+      std::accumulate(cells.count.begin(), cells.count.end(), std::int64_t(0));
+  sizes.corners = std::uint64_t(ranks.count_all(corners).all);
   double most = 0.0, lowest = 255.0, highest = 0.0;
   for (const std::int32_t count : cells.count) most = std::max(most, double(count));
   for (const std::uint8_t kind : cells.kind) {
@@ -231,14 +248,16 @@ void write_cells(Hdf5File* file, const PointCells& cells, const CellSizes& sizes
                  const RowGathering& gathering) {
   const std::string group = "/points/cells";
   if (file) file->make_group(group);
-  const bool are_equal = sizes.corners == sizes.cells * sizes.most;
+  const bool are_boxes = !cells.box.empty();
+  const bool are_equal = are_boxes || sizes.corners == sizes.cells * sizes.most;
   const std::vector<double> padded =
       are_equal ? std::vector<double>() : in_equal_rows(cells, sizes.most);
   write_from_rows<double>(
       file, group + "/corners", {sizes.corners, 3},
       {"m", "reference positions of the corners of each point's cell, one point after another"},
-      gathering, are_equal ? cells.corners : padded, 3 * sizes.most,
-      [](const std::vector<double>& rows) {
+      gathering, are_equal ? cells.corners : padded, are_boxes ? 3 : 3 * sizes.most,
+      [&](const std::vector<double>& rows) {
+        if (are_boxes) return boxes_about(rows, cells.box);
         std::vector<double> corners;
         corners.reserve(rows.size());
         std::ranges::copy_if(rows, std::back_inserter(corners),

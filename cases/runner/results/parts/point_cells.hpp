@@ -20,7 +20,14 @@ struct PointCells {
   std::vector<std::uint8_t> kind{};   ///< per point, number in VTK
   std::vector<std::int32_t> count{};  ///< of corners, per point
   std::vector<double> corners{};  ///< x, y, z of the corners of each point, one after another [m]
+  /// x, y, z of the corners of any cell about its point [m]; then `corners` are the points alone.
+  std::vector<double> box{};
 };
+
+/// Corners of cells with a common box.
+/// @param points x, y, z of some points, one after another
+[[nodiscard]] std::vector<double> boxes_about(const std::vector<double>& points,
+                                              const std::vector<double>& box);
 
 /// Sizes of the cells of a whole body.
 struct CellSizes {

@@ -12,7 +12,8 @@ namespace {
 
 using Corners = std::vector<Coordinates>;
 
-Corners corners_of(const PointCells& cells, std::size_t point) {
+Corners corners_of(PointCells cells, std::size_t point) {
+  if (!cells.box.empty()) cells.corners = boxes_about(cells.corners, cells.box);
   std::size_t first = 0;
   for (std::size_t k = 0; k < point; ++k) first += std::size_t(cells.count[k]);
   Corners corners;

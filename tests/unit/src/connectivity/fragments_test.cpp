@@ -427,6 +427,56 @@ TEST(Fragments, StripTrees) {
   expect_determinate(web, fragments);
 }
 
+/// Points that are loose by a look at all bonds in every round.
+std::vector<Index> loose_by_all_bonds(const Web& web) {
+  const int d = web.points.dimension;
+  std::vector<char> is_loose(web.points.volume.size(), 0);
+  for (bool goes_on = true; goes_on;) {
+    std::vector<Eigen::Matrix3d> support(is_loose.size(), Eigen::Matrix3d::Zero());
+    tests::for_each_bond(web.bonds, [&](Index i, Index j, Offset bond) {
+      if (web.broken[bond]) return;
+      const Coordinates a = web.points.position(i), b = web.points.position(j);
+      const Eigen::Vector3d n = Eigen::Vector3d(b[0] - a[0], b[1] - a[1], b[2] - a[2]).normalized();
+      if (!is_loose[j]) support[std::size_t(i)] += n * n.transpose();
+      if (!is_loose[i]) support[std::size_t(j)] += n * n.transpose();
+    });
+    goes_on = false;
+    for (std::size_t i = 0; i < is_loose.size(); ++i) {
+      for (int c = 0; c < 3; ++c) {
+        if (c >= d || web.prescribed[i * d + c]) support[i](c, c) += 1.0;
+      }
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spectrum(support[i]);
+      if (is_loose[i] || spectrum.eigenvalues()[0] > 1e-6) continue;
+      is_loose[i] = goes_on = true;
+    }
+  }
+  std::vector<Index> loose;
+  for (std::size_t i = 0; i < is_loose.size(); ++i) {
+    if (is_loose[i]) loose.push_back(Index(i));
+  }
+  return loose;
+}
+
+TEST(Fragments, FindTheLoosePointsOfRandomNetworks) {
+  std::size_t with_loose = 0, without = 0;
+  for (const double share : {0.2, 0.5, 0.7, 0.8}) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      Web web(seed % 2 == 0 ? 2 : 3);
+      web.add_block(seed % 2 == 0 ? std::array{9, 6, 1} : std::array{5, 4, 4}).bond(2.3);
+      tests::Random random(seed);
+      web.break_if([&](const Coordinates&, const Coordinates&) {
+        return std::abs(random.number()) < share;
+      });
+      web.hold(Index(seed % 7), 0).hold({Index(3 * seed % 50)});
+      const std::vector<Index> expected = loose_by_all_bonds(web);
+      EXPECT_EQ(web.find().loose, expected) << "share " << share << ", seed " << seed;
+      ++(expected.empty() ? without : with_loose);
+    }
+  }
+  EXPECT_GT(with_loose, 10u);
+  EXPECT_GT(without, 10u);
+}
+
 TEST(Fragments, OfAFewPointsAreHeldLikeRigidBodies) {
   for (int dimension : {1, 2, 3}) {
     const int points_of_most = dimension == 1 ? 3 : 4;

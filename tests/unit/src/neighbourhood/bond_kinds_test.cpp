@@ -70,6 +70,24 @@ TEST(BondKinds, AppendedAreThoseOneAfterAnother) {
   }
 }
 
+TEST(BondKinds, ReweighedAreThoseOfTheNewWeights) {
+  for (const std::size_t count : {1000u, 40000u, 70000u}) {  // the last ones have no numbers
+    std::vector<BondKind> kinds = different(count);
+    kinds.insert(kinds.end(), kinds.begin(), kinds.begin() + 900);
+    // Few weights, and more kinds than have numbers.
+    for (const std::size_t weights : {3u, 50000u}) {
+      std::vector<BondKind> expected = kinds;
+      const BondKinds before = packed(kinds);
+      ReweighedKinds after(before);
+      for (std::size_t bond = 0; bond < kinds.size(); ++bond) {
+        expected[bond].weight = 1.0 + double(bond * 7 % weights);
+        after.push_back(expected[bond].weight);
+      }
+      expect_equal(after.take(), expected);
+    }
+  }
+}
+
 TEST(BondKinds, AreCopiedAndTruncated) {
   for (const std::size_t count : {10u, 70000u}) {
     std::vector<BondKind> kinds = different(count);
