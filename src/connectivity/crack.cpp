@@ -332,8 +332,8 @@ std::vector<std::int64_t> bonds_met_by_each(const std::vector<Crack>& cracks,
 }
 
 CutBonds cut_bonds(Bonds& bonds, const Points& points, const std::vector<Crack>& of_body) {
+  if (of_body.empty() && !points.interior) return {};
   CutBonds removed{std::vector<double>(points.volume.size(), 0.0), {}};
-  if (of_body.empty() && !points.interior) return removed;
   const std::vector<Crack> cracks = with_images(of_body, points.images);
   std::vector<Box> boxes;
   for (const Crack& crack : cracks) {

@@ -66,7 +66,7 @@ void check_crack(const Crack& crack, int dimension, const std::string& table);
 
 /// Bonds that cracks have cut.
 struct CutBonds {
-  std::vector<double> weight;  ///< per point, sum over its cut bonds [m6]
+  std::vector<double> weight;  ///< per point, sum over its cut bonds [m6]; empty: nothing can cut
   std::vector<BondEnds> ends;  ///< end points of each cut bond
 };
 

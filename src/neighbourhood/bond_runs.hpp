@@ -57,8 +57,6 @@ class BondRuns {
   BondRuns(const Points& points, const Bonds& bonds, const BondKinds& kinds, Index first,
            Index last);
 
-  /// True if no bond is in a run.
-  [[nodiscard]] bool empty() const { return runs_.empty(); }
   [[nodiscard]] std::span<const BondRun> runs() const { return runs_; }
   /// Number of bonds that are in runs.
   [[nodiscard]] Offset bonds_in_runs() const;

@@ -18,14 +18,14 @@ constexpr int row_width(int dimension) { return dimension == 3 ? 8 : 4; }
 
 /// Buffers of the passes over bonds.
 struct BondWorkspace {
-  /// @param alike sums go along runs of bonds that agree in these kinds; null: bond by bond
+  /// @param kinds of the bonds, whose sums go along runs; null: they go bond by bond
   BondWorkspace(const Points& of, const Bonds& with, Workspace& shared,
-                const BondKinds* alike = nullptr)
+                const BondKinds* kinds = nullptr)
       : points(of),
         bonds(with),
         threads(shared),
         rows(std::size_t(of.count()) * row_width(of.dimension)) {
-    if (alike) runs = ThreadRuns(of, with, *alike, shared.ranges);
+    if (kinds) runs = ThreadRuns(of, with, *kinds, shared.ranges);
   }
 
   const Points& points;
