@@ -56,7 +56,7 @@ class Stencil(Folder):
         self.assert_as_one_by_one('material={kinematics="linear", youngs_modulus=1e9}', "solver.mode=newton", breaks=False)
 
     def assert_as_one_by_one(self, *changes, breaks=True):
-        """Points that are moved by a billionth of the spacing have bonds of many kinds, and short runs of them none."""
+        """Bonds of points moved by a billionth of the spacing all differ: they go by number of kind, or one by one."""
         rows = self.results(PLATE, *changes, name="rows").steps[-1]
         single = self.results(PLATE, *changes, 'solver.operator="bonds"', "lattice.perturbation=1e-9", name="single").steps[-1]
         if breaks:
