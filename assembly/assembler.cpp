@@ -444,6 +444,10 @@ void Assembler::product(const StateView& at, std::span<const double> v, std::spa
       [&](TermPasses& term, Write how) { term.product(at, v, projection, product, how); });
 }
 
+bool Assembler::has_single_products() const {
+  return std::ranges::any_of(terms_, [](const auto& term) { return term->has_single_products(); });
+}
+
 std::optional<Tangent> Assembler::sum_of_blocks(const StateView& at) {
   const bool couples_points = std::ranges::any_of(model_.terms(), [](const auto& term) {
     return term->tangent_kind() <= TangentKind::stored && !term->couplings().partner.empty();

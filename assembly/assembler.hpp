@@ -106,6 +106,7 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
                Write how = Write::over) override;
   void product(const StateView& at, std::span<const double> v, std::span<double> product,
                double projection = 0.0) override;
+  [[nodiscard]] bool has_single_products() const override;
   void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                      std::span<double> diagonal) override;
   [[nodiscard]] double most_over_visited() const override;

@@ -36,6 +36,8 @@ class Energy {
   /// @param projection other than 0 only with TangentKind::visited or products
   virtual void product(const StateView& at, std::span<const double> v, std::span<double> product,
                        double projection) = 0;
+  /// True if products are faster where single precision is allowed, see Precision.
+  [[nodiscard]] virtual bool has_single_products() const { return false; }
 };
 
 }  // namespace peristat

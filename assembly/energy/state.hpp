@@ -28,6 +28,10 @@ struct State {
 /// and they follow their secants. Both agree in a state in which `growth` is zero.
 enum class Damage { grows, held };
 
+/// Of a product with the tangent: `single` allows terms to compute the parts of their interactions
+/// in single precision. Differences between points and sums stay in double precision.
+enum class Precision { full, single };
+
 /// Where energy, gradient, tangent and product are evaluated: a view of a displacement and of the
 /// history before it, both of which must outlive the view, and the loading data that the energy
 /// depends on.
@@ -49,7 +53,8 @@ struct StateView {
   /// For the predictor of a step: the displacement that it is expected to lead to. A contact that
   /// touches here, or is closed there, is then a linear spring. Empty: contacts follow their law.
   std::span<const double> foreseen{};
-  bool has_contacts = true;  ///< false: without the energy of contacts
+  bool has_contacts = true;               ///< false: without the energy of contacts
+  Precision precision = Precision::full;  ///< of products
 
   /// Eigenstretch per point, or empty.
   [[nodiscard]] std::span<const double> eigenstretch() const {

@@ -159,12 +159,14 @@ void ConstrainedProduct::linearise(Energy& energy, const StateView& at, double p
   }
 }
 
-void ConstrainedProduct::multiply(std::span<const double> v, std::span<double> result) const {
+template <class Multiply>
+void ConstrainedProduct::multiply_by(const Multiply& multiply, std::span<const double> v,
+                                     std::span<double> result) const {
   moved_.assign(v.begin(), v.end());
   index_map_.update_ghosts(moved_);
   constraints_.extend(displacement_, moved_);
   const std::size_t of_points = points_.reference.size();
-  whole_->multiply(std::span<const double>(moved_).first(of_points), result.first(of_points));
+  multiply(std::span<const double>(moved_).first(of_points), result.first(of_points));
   const auto d = std::size_t(dimension);
   for (Index i = 0; i < points_.count(); ++i) {
     if (!points_.owns(i)) std::fill_n(result.begin() + std::ptrdiff_t(i) * dimension, d, 0.0);
@@ -182,6 +184,21 @@ void ConstrainedProduct::multiply(std::span<const double> v, std::span<double> r
   for (std::size_t k = 0; k < follows.size(); ++k) {
     if (follows[k]) result[k] = 0.0;
   }
+}
+
+void ConstrainedProduct::multiply(std::span<const double> v, std::span<double> result) const {
+  const auto multiply = [&](std::span<const double> moved, std::span<double> product) {
+    whole_->multiply(moved, product);
+  };
+  multiply_by(multiply, v, result);
+}
+
+void ConstrainedProduct::multiply_in_single(std::span<const double> v,
+                                            std::span<double> result) const {
+  const auto multiply = [&](std::span<const double> moved, std::span<double> product) {
+    whole_->multiply_in_single(moved, product);
+  };
+  multiply_by(multiply, v, result);
 }
 
 void ConstrainedProduct::for_each_row(const RowVisitor&) const {

@@ -29,6 +29,10 @@ struct ConstrainedProduct final : TangentOperator {
   [[nodiscard]] std::vector<double> positions() const override;
   void linearise(Energy& energy, const StateView& at, double projection) override;
   void multiply(std::span<const double> v, std::span<double> result) const override;
+  [[nodiscard]] bool multiplies_in_single() const override {
+    return whole_->multiplies_in_single();
+  }
+  void multiply_in_single(std::span<const double> v, std::span<double> result) const override;
   /// True if K has rows; those of K_q can't be visited.
   [[nodiscard]] bool has_rows() const override { return whole_->has_rows(); }
   /// @throws std::logic_error
@@ -38,6 +42,11 @@ struct ConstrainedProduct final : TangentOperator {
   [[nodiscard]] bool is_symmetric() const override { return whole_->is_symmetric(); }
 
  private:
+  /// J^T multiply(J v) and the rest of K_q.
+  template <class Multiply>
+  void multiply_by(const Multiply& multiply, std::span<const double> v,
+                   std::span<double> result) const;
+
   /// A block of K between two points that follow masters of several ranks: the numbers of both
   /// followers, and the block times the points' factors (see SharedDependence).
   struct SharedBlock {

@@ -4,7 +4,8 @@
 
 namespace peristat {
 
-MatrixFreeTangent::MatrixFreeTangent(Energy& energy) : OperatorOfEnergy(energy, energy.pattern()) {
+MatrixFreeTangent::MatrixFreeTangent(Energy& energy, Precision precision)
+    : OperatorOfEnergy(energy, energy.pattern()), precision_(precision) {
   if (!energy.forms().visits) {
     throw std::logic_error("the tangent of this energy must be stored");
   }
@@ -14,6 +15,17 @@ void MatrixFreeTangent::linearise(Energy& energy, const StateView& at, double pr
   keep(energy, at, projection);
   energy.forms().visits->visit_tangent(
       at, projection, [](int, Index, std::span<const double>) {}, diagonal);
+}
+
+bool MatrixFreeTangent::multiplies_in_single() const {
+  return precision_ == Precision::single && energy_->has_single_products();
+}
+
+void MatrixFreeTangent::multiply_in_single(std::span<const double> v,
+                                           std::span<double> result) const {
+  StateView at = at_.view();
+  at.precision = precision_;
+  energy_->product(at, v, result, projection_);
 }
 
 void MatrixFreeTangent::for_each_row(const RowVisitor& visit) const {

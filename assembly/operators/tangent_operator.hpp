@@ -43,6 +43,14 @@ struct TangentOperator {
   virtual void multiply(std::span<const double> v, std::span<double> result) const = 0;
   [[nodiscard]] virtual bool multiplies_in_place() const { return false; }
 
+  /// True if multiply_in_single is faster than multiply.
+  [[nodiscard]] virtual bool multiplies_in_single() const { return false; }
+  /// As `multiply`, with parts that are rounded to single precision: result = (K + R) v, where R is
+  /// of the size of 1e-7 K.
+  virtual void multiply_in_single(std::span<const double> v, std::span<double> result) const {
+    multiply(v, result);
+  }
+
   /// True if there are rows to visit: products by convolutions have none.
   [[nodiscard]] virtual bool has_rows() const { return true; }
   /// Visits all rows, in parallel; each thread visits its own in ascending order.

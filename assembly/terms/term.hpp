@@ -74,6 +74,8 @@ class TermPasses {
   /// d2E/dx2 v [N]
   virtual void product(const StateView& at, std::span<const double> v, double projection,
                        std::span<double> product, Write how) = 0;
+  /// True if products are faster where single precision is allowed, see Precision.
+  [[nodiscard]] virtual bool has_single_products() const { return false; }
 
   /// An equal share of its interactions' energy for each of their points [J].
   virtual void point_energies(const StateView& at, std::span<double> energies, Write how) = 0;

@@ -102,11 +102,16 @@ LinearOutcome IterativeSolver::factorize(const TangentOperator& tangent, FactorU
   return build();
 }
 
-void IterativeSolver::multiply(std::span<const double> v, std::span<double> product) {
+void IterativeSolver::multiply(std::span<const double> v, std::span<double> product,
+                               Precision precision) {
   free_->extend_by_zero(v, full_, tangent_->threads());
   std::vector<double>& result = tangent_->multiplies_in_place() ? full_ : full_result_;
   result.resize(full_.size());
-  tangent_->multiply(full_, result);
+  if (precision == Precision::single) {
+    tangent_->multiply_in_single(full_, result);
+  } else {
+    tangent_->multiply(full_, result);
+  }
   free_->restrict_to_free(result, product, tangent_->threads());
 }
 
@@ -119,11 +124,17 @@ LinearOutcome IterativeSolver::iterate(std::span<const double> b, std::span<doub
   options.max_iterations = max_iterations_;
   options.restart = restart_;
   options.ranks = &ranks_;
+  const auto products_in = [&](Precision precision) {
+    return [this, size, precision](const double* v, double* product) {
+      multiply({v, size}, {product, size}, precision);
+    };
+  };
+  if (method_ == KrylovMethod::conjugate_gradients &&
+      ranks_.max(double(tangent_->multiplies_in_single())) > 0.0) {
+    options.rough_matrix = products_in(Precision::single);
+  }
   const KrylovResult result = solve_krylov(
-      int(size),
-      [&](const double* v, double* product) {
-        multiply({v, size}, {product, size});
-      },
+      int(size), products_in(Precision::full),
       [&](const double* v, double* product) {
         preconditioner_->apply({v, size}, {product, size});
       },

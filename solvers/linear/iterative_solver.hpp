@@ -44,7 +44,7 @@ class IterativeSolver : public LinearSolver {
   [[nodiscard]] bool is_empty(std::size_t equations) const;
   LinearOutcome build();
   LinearOutcome iterate(std::span<const double> b, std::span<double> x, double tolerance);
-  void multiply(std::span<const double> v, std::span<double> product);
+  void multiply(std::span<const double> v, std::span<double> product, Precision precision);
 
   KrylovMethod method_;
   std::unique_ptr<Preconditioner> preconditioner_;

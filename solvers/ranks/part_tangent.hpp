@@ -17,7 +17,9 @@ namespace peristat {
 template <class Operator>
 struct PartTangent final : Operator {
   /// @throws std::logic_error if the energy is that of a whole body
-  explicit PartTangent(Assembler& energy) : Operator(energy), index_map_(energy.index_map()) {
+  template <class... Options>
+  explicit PartTangent(Assembler& energy, Options... options)
+      : Operator(energy, options...), index_map_(energy.index_map()) {
     if (index_map_.is_whole()) throw std::logic_error("PartTangent: of a whole body");
     this->reference = energy.points().reference;
     factor_.resize(this->reference.size());
@@ -25,13 +27,21 @@ struct PartTangent final : Operator {
 
   /// Ignores entries of v for ghosts; those of the result are meaningless.
   void multiply(std::span<const double> v, std::span<double> result) const override {
-    std::copy(v.begin(), v.end(), factor_.begin());
-    index_map_.update_ghosts(factor_);
+    update_ghosts(v);
     Operator::multiply(factor_, result);
+  }
+  void multiply_in_single(std::span<const double> v, std::span<double> result) const override {
+    update_ghosts(v);
+    Operator::multiply_in_single(factor_, result);
   }
   [[nodiscard]] bool multiplies_in_place() const override { return true; }
 
  private:
+  void update_ghosts(std::span<const double> v) const {
+    std::copy(v.begin(), v.end(), factor_.begin());
+    index_map_.update_ghosts(factor_);
+  }
+
   const IndexMap& index_map_;
   mutable std::vector<double> factor_;  // with the ghosts' values
 };

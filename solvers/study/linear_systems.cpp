@@ -317,6 +317,7 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Model& mo
     systems.chosen = make_linear_solver(linear, problem, std::move(tell));
   }
   systems.is_stored = problem.is_stored;
+  systems.precision = options.precision;
   if (problem.box) linear.preconditioner = PreconditionerKind::sines;
   systems.bytes = estimate.bytes(systems.chosen.is_direct, systems.is_stored, linear);
   const double bytes_of_vector = 8.0 * estimate.size.points * estimate.size.dimension;
@@ -382,10 +383,10 @@ LinearSystems choose_linear_systems(const StudyOptions& options, const Body& bod
 namespace {
 
 /// Operator of the points of this rank, with the values of ghosts where the body is partitioned.
-template <class Operator>
-std::unique_ptr<TangentOperator> make_plain(Assembler& assembler) {
-  if (assembler.index_map().is_whole()) return std::make_unique<Operator>(assembler);
-  return std::make_unique<PartTangent<Operator>>(assembler);
+template <class Operator, class... Options>
+std::unique_ptr<TangentOperator> make_plain(Assembler& assembler, Options... options) {
+  if (assembler.index_map().is_whole()) return std::make_unique<Operator>(assembler, options...);
+  return std::make_unique<PartTangent<Operator>>(assembler, options...);
 }
 
 }  // namespace
@@ -404,12 +405,13 @@ std::unique_ptr<TangentOperator> LinearSystems::make_tangent(Assembler& assemble
     if (is_stored) {
       plain = std::make_unique<Tangent>(assembler);
     } else {
-      plain = std::make_unique<MatrixFreeTangent>(assembler);
+      plain = std::make_unique<MatrixFreeTangent>(assembler, precision);
     }
     return std::make_unique<ConstrainedProduct>(std::move(plain), assembler.points(), constraints,
                                                 index_map);
   }
-  return is_stored ? make_plain<Tangent>(assembler) : make_plain<MatrixFreeTangent>(assembler);
+  if (is_stored) return make_plain<Tangent>(assembler);
+  return make_plain<MatrixFreeTangent>(assembler, precision);
 }
 
 }  // namespace peristat

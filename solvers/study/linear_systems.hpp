@@ -16,7 +16,8 @@ struct LinearSystems {
   bool is_stored = true;  ///< the tangent is stored
   /// For a part of a body: its tangent has rows that preconditioners can read, as well as products.
   bool has_rows = true;
-  double bytes = 0.0;  ///< estimated for the whole run
+  Precision precision = Precision::full;  ///< see StudyOptions
+  double bytes = 0.0;                     ///< estimated for the whole run
 
   /// What the assembler of the tangent has the pattern of.
   [[nodiscard]] Assembler::PatternOf pattern_of() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "assembly/energy/state.hpp"
 #include "solvers/drivers/load_stepping_options.hpp"
 #include "solvers/linear/make_linear_solver.hpp"
 #include "solvers/search/newton.hpp"
@@ -13,6 +14,9 @@ struct StudyOptions {
   /// A named preconditioner is used: `automatic` then means conjugate gradients.
   LinearSolverOptions linear{};
   TangentStorage tangent = TangentStorage::automatic;
+  /// Of matrix-free products inside conjugate gradients; their true residuals are in full
+  /// precision.
+  Precision precision = Precision::single;
   int threads = 0;  ///< 0: as many as OpenMP takes by itself
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace peristat {
 
@@ -14,22 +15,33 @@ inline constexpr int lane_count = 4;
 
 namespace lanes_detail {
 
-using Quad = double __attribute__((vector_size(4 * sizeof(double))));
-using Pair = double __attribute__((vector_size(2 * sizeof(double))));
-using QuadInMemory __attribute__((aligned(8), may_alias)) = Quad;  // at any address of doubles
-using Order = long long __attribute__((vector_size(4 * sizeof(long long))));
+template <class Number, int count>
+struct Register {
+  // Typedefs: GCC ignores the attributes of an alias of a dependent type.
+  typedef Number Row __attribute__((vector_size(count * sizeof(Number))));
+  typedef Row RowInMemory __attribute__((aligned(sizeof(Number)), may_alias));  // at any address
+  /// Of a comparison: all bits of an entry set, or none.
+  using Truths = decltype(Row() < Row());
+};
+
+using Quad = Register<double, 4>::Row;
+using Pair = Register<double, 2>::Row;
+using Order = Register<long long, 4>::Row;
 
 }  // namespace lanes_detail
 
-/// Truth values of four lanes: all bits of a lane set, or none.
-struct LaneMask {
-  lanes_detail::Order bits;
+/// Truth values of lanes: all bits of a lane set, or none.
+template <class Real, int count>
+struct MaskOf {
+  typename lanes_detail::Register<Real, count>::Truths bits;
 
   [[nodiscard]] bool operator[](int l) const { return bits[l] != 0; }
-  friend LaneMask operator!(const LaneMask& a) { return {~a.bits}; }
-  friend LaneMask operator&&(const LaneMask& a, const LaneMask& b) { return {a.bits & b.bits}; }
-  friend LaneMask operator||(const LaneMask& a, const LaneMask& b) { return {a.bits | b.bits}; }
+  friend MaskOf operator!(const MaskOf& a) { return {~a.bits}; }
+  friend MaskOf operator&&(const MaskOf& a, const MaskOf& b) { return {a.bits & b.bits}; }
+  friend MaskOf operator||(const MaskOf& a, const MaskOf& b) { return {a.bits | b.bits}; }
 };
+
+using LaneMask = MaskOf<double, lane_count>;
 
 /// A bit for each lane, that of lane 0 the lowest.
 inline unsigned bits_of(const LaneMask& a) {
@@ -45,59 +57,84 @@ inline LaneMask mask_of(unsigned bits) {
   return {(lanes_detail::Order{all, all, all, all} & lanes_detail::Order{1, 2, 4, 8}) != 0};
 }
 inline bool any_of(const LaneMask& a) { return bits_of(a) != 0; }
-inline bool none_of(const LaneMask& a) { return !any_of(a); }
+template <class Real, int count>
+bool any_of(const MaskOf<Real, count>& a) {
+  for (int l = 0; l < count; ++l) {
+    if (a[l]) return true;
+  }
+  return false;
+}
+template <class Real, int count>
+bool none_of(const MaskOf<Real, count>& a) {
+  return !any_of(a);
+}
 
-/// One double per interaction of a batch, in a vector register. Measures and potentials are
+/// One number per interaction of a batch, in a vector register. Measures and potentials are
 /// templates over their scalar: the kernels call them with Lanes, tests and single interactions
 /// with double. (<experimental/simd> does the same, and takes a second to compile in every file.)
-class Lanes {
+template <class Real, int number>
+class LanesOf {
+  using Register = lanes_detail::Register<Real, number>;
+
  public:
-  Lanes() = default;
+  using Row = typename Register::Row;
+  using Mask = MaskOf<Real, number>;
+  static constexpr int count = number;
+
+  LanesOf() = default;
   /// One number in all lanes.
-  Lanes(double all) : row_{all, all, all, all} {}
-  explicit Lanes(const lanes_detail::Quad& row) : row_(row) {}
-  /// Four numbers in a row.
-  explicit Lanes(const double* from)
-      : row_(*reinterpret_cast<const lanes_detail::QuadInMemory*>(from)) {}
+  LanesOf(double all) : LanesOf([all](int) { return all; }) {}
+  explicit LanesOf(const Row& row) : row_(row) {}
+  /// Numbers in a row.
+  explicit LanesOf(const Real* from)
+      : row_(*reinterpret_cast<const typename Register::RowInMemory*>(from)) {}
   /// of_lane(l) in lane l.
   template <class OfLane>
   requires requires(const OfLane& of_lane) { double(of_lane(0)); }
-  explicit Lanes(const OfLane& of_lane)
-      : row_{double(of_lane(0)), double(of_lane(1)), double(of_lane(2)), double(of_lane(3))} {}
+  explicit LanesOf(const OfLane& of_lane)
+      : LanesOf(of_lane, std::make_integer_sequence<int, number>()) {}
 
   /// A store of the whole register: memcpy would be compiled to two halves.
-  void copy_to(double* to) const { *reinterpret_cast<lanes_detail::QuadInMemory*>(to) = row_; }
-  [[nodiscard]] const lanes_detail::Quad& row() const { return row_; }
+  void copy_to(Real* to) const { *reinterpret_cast<typename Register::RowInMemory*>(to) = row_; }
+  [[nodiscard]] const Row& row() const { return row_; }
 
-  [[nodiscard]] double operator[](int l) const { return row_[l]; }
-  void set(int l, double value) { row_[l] = value; }
+  [[nodiscard]] Real operator[](int l) const { return row_[l]; }
+  void set(int l, Real value) { row_[l] = value; }
 
-  Lanes operator-() const { return Lanes(-row_); }
-  friend Lanes operator+(const Lanes& a, const Lanes& b) { return Lanes(a.row_ + b.row_); }
-  friend Lanes operator-(const Lanes& a, const Lanes& b) { return Lanes(a.row_ - b.row_); }
-  friend Lanes operator*(const Lanes& a, const Lanes& b) { return Lanes(a.row_ * b.row_); }
-  friend Lanes operator/(const Lanes& a, const Lanes& b) { return Lanes(a.row_ / b.row_); }
-  Lanes& operator+=(const Lanes& b) { return *this = *this + b; }
-  Lanes& operator-=(const Lanes& b) { return *this = *this - b; }
-  Lanes& operator*=(const Lanes& b) { return *this = *this * b; }
-  Lanes& operator/=(const Lanes& b) { return *this = *this / b; }
+  LanesOf operator-() const { return LanesOf(-row_); }
+  friend LanesOf operator+(const LanesOf& a, const LanesOf& b) { return LanesOf(a.row_ + b.row_); }
+  friend LanesOf operator-(const LanesOf& a, const LanesOf& b) { return LanesOf(a.row_ - b.row_); }
+  friend LanesOf operator*(const LanesOf& a, const LanesOf& b) { return LanesOf(a.row_ * b.row_); }
+  friend LanesOf operator/(const LanesOf& a, const LanesOf& b) { return LanesOf(a.row_ / b.row_); }
+  LanesOf& operator+=(const LanesOf& b) { return *this = *this + b; }
+  LanesOf& operator-=(const LanesOf& b) { return *this = *this - b; }
+  LanesOf& operator*=(const LanesOf& b) { return *this = *this * b; }
+  LanesOf& operator/=(const LanesOf& b) { return *this = *this / b; }
 
-  friend LaneMask operator<(const Lanes& a, const Lanes& b) { return {a.row_ < b.row_}; }
-  friend LaneMask operator>(const Lanes& a, const Lanes& b) { return {a.row_ > b.row_}; }
-  friend LaneMask operator<=(const Lanes& a, const Lanes& b) { return {a.row_ <= b.row_}; }
-  friend LaneMask operator>=(const Lanes& a, const Lanes& b) { return {a.row_ >= b.row_}; }
+  friend Mask operator<(const LanesOf& a, const LanesOf& b) { return {a.row_ < b.row_}; }
+  friend Mask operator>(const LanesOf& a, const LanesOf& b) { return {a.row_ > b.row_}; }
+  friend Mask operator<=(const LanesOf& a, const LanesOf& b) { return {a.row_ <= b.row_}; }
+  friend Mask operator>=(const LanesOf& a, const LanesOf& b) { return {a.row_ >= b.row_}; }
+
+  /// a where the mask is set, b elsewhere.
+  friend LanesOf chosen(const Mask& mask, const LanesOf& a, const LanesOf& b) {
+    return LanesOf(Row(mask.bits ? a.row_ : b.row_));
+  }
+  friend LanesOf min(const LanesOf& a, const LanesOf& b) { return chosen(b < a, b, a); }
+  friend LanesOf max(const LanesOf& a, const LanesOf& b) { return chosen(a < b, b, a); }
 
  private:
-  lanes_detail::Quad row_;
+  template <class OfLane, int... lanes>
+  LanesOf(const OfLane& of_lane, std::integer_sequence<int, lanes...>)
+      : row_{Real(of_lane(lanes))...} {}
+
+  Row row_;
 };
 
-/// a where the mask is set, b elsewhere.
-inline Lanes chosen(const LaneMask& mask, const Lanes& a, const Lanes& b) {
-  return Lanes(mask.bits ? a.row() : b.row());
-}
+using Lanes = LanesOf<double, lane_count>;
+/// Twice as many numbers in a register, for what need not be more accurate.
+using SingleLanes = LanesOf<float, 2 * lane_count>;
 
-inline Lanes min(const Lanes& a, const Lanes& b) { return chosen(b < a, b, a); }
-inline Lanes max(const Lanes& a, const Lanes& b) { return chosen(a < b, b, a); }
 inline Lanes abs(const Lanes& a) {
   using namespace lanes_detail;
   const Order sign = Order(Quad{-0.0, -0.0, -0.0, -0.0});
@@ -108,6 +145,34 @@ inline Lanes sqrt(const Lanes& a) {
   return Lanes(__builtin_ia32_sqrtpd256(a.row()));  // GCC would take two halves
 #else
   return Lanes([&](int l) { return std::sqrt(a[l]); });
+#endif
+}
+
+inline SingleLanes sqrt(const SingleLanes& a) {
+#ifdef __AVX__
+  return SingleLanes(__builtin_ia32_sqrtps256(a.row()));
+#else
+  return SingleLanes([&](int l) { return std::sqrt(a[l]); });
+#endif
+}
+
+/// Two registers, rounded to one.
+inline SingleLanes rounded(const Lanes& low, const Lanes& high) {
+  using Half = lanes_detail::Register<float, lane_count>::Row;
+  return SingleLanes(__builtin_shufflevector(__builtin_convertvector(low.row(), Half),
+                                             __builtin_convertvector(high.row(), Half), 0, 1, 2, 3,
+                                             4, 5, 6, 7));
+}
+/// One half of the lanes in double precision.
+template <int half>
+Lanes half_of(const SingleLanes& a) {
+  constexpr int first = half * lane_count;
+  const auto row =
+      __builtin_shufflevector(a.row(), a.row(), first, first + 1, first + 2, first + 3);
+#ifdef __AVX__
+  return Lanes(__builtin_ia32_cvtps2pd256(row));  // GCC would take two halves
+#else
+  return Lanes(__builtin_convertvector(row, lanes_detail::Quad));
 #endif
 }
 

@@ -80,7 +80,8 @@ std::vector<FoundRun> long_ones(const std::vector<FoundRun>& runs, const Bonds& 
 /// Room for the numbers of the kinds of the runs that have several.
 std::vector<std::uint16_t> room_for_kinds(std::vector<FoundRun>& runs) {
   const auto padded = [](const FoundRun& run) {
-    return run.has_one_kind ? 0 : (run.points + lane_count - 1) / lane_count * lane_count;
+    constexpr Index batch = SingleLanes::count;  // the longest
+    return run.has_one_kind ? 0 : (run.points + batch - 1) / batch * batch;
   };
   std::size_t size = 0;
   for (const FoundRun& run : runs) size += std::size_t(padded(run));

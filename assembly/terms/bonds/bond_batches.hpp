@@ -388,8 +388,9 @@ inline Lanes share_of_owned(const Points& points, Index i,
 
 /// A bond's Hessian psi'' n n^T + psi'/l (I - n n^T) moved by a share towards its positive
 /// semidefinite part: its eigenvalues are psi'' and psi'/l.
-inline InteractionEnergy<Lanes> projected(const InteractionEnergy<Lanes>& psi, double share) {
-  const Lanes zero = 0.0;
+template <class Real>
+InteractionEnergy<Real> projected(const InteractionEnergy<Real>& psi, double share) {
+  const Real zero = 0.0;
   return {psi.value, psi.first - share * min(psi.first, zero),
           psi.second - share * min(psi.second, zero)};
 }

@@ -149,7 +149,7 @@ struct BondKernels {
   template <class P, class E>
   static void product(BondWorkspace& a, const P& potential, const E& eigenstretch,
                       Span displacement, const double* largest_stretch, Span v, double projection,
-                      std::span<double> result, Write how) {
+                      Precision precision, std::span<double> result, Write how) {
     a.pack<D>(displacement, v);
     constexpr int row = row_width(D);
     const Index count = a.points.count();
@@ -164,9 +164,10 @@ struct BondKernels {
     const auto body = [&](int thread, RowRange range, double* sums) {
       DamageGrowth none;
       const auto on_run = [&](const BondRun& run, RunDamage* damage, RunWindow& window) {
-        with_pass<D>(
-            a, window, potential, eigenstretch, largest_stretch, none,
-            [&](const auto& pass) { pass.add_products(run, damage, projection, window.sums); });
+        with_pass<D>(a, window, potential, eigenstretch, largest_stretch, none,
+                     [&](const auto& pass) {
+                       pass.add_products(run, damage, projection, precision, window.sums);
+                     });
       };
       const auto on_loose = [&](const LooseBonds& loose, double* to) {
         const Index i = loose.point;

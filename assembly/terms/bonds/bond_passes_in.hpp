@@ -32,6 +32,7 @@ class BondPassesIn : public TermPasses, BlockTangent, RowVisits {
                      std::span<double> diagonal) override;
   void product(const StateView& at, std::span<const double> v, double projection,
                std::span<double> product, Write how) override;
+  [[nodiscard]] bool has_single_products() const override { return workspace_.runs.in_use(); }
   void point_energies(const StateView& at, std::span<double> energies, Write how) override;
   [[nodiscard]] bool shares_energy() const override { return true; }
   void add_virials(const StateView& at, std::span<double> virials) override;
@@ -192,7 +193,7 @@ void BondPassesIn<dimension>::product(const StateView& at, std::span<const doubl
                                       double projection, std::span<double> product, Write how) {
   dispatch(at, [&](const auto& law, const double* largest_stretch, const auto& eigenstretch) {
     Kernels::product(workspace_, law, eigenstretch, at.displacement, largest_stretch, v, projection,
-                     product, how);
+                     at.precision, product, how);
   });
 }
 

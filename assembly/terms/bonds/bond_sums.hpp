@@ -25,7 +25,7 @@ void sum_bonds(BondWorkspace& a, const BondKinds& kinds, const PartOf& part_of, 
           a.bonds, kinds, run, [&](const auto& kinds_of_run) __attribute__((always_inline)) {
             for_each_batch(
                 run, [&](const RunBatch& batch) __attribute__((always_inline)) {
-                  const OneKind kind = kinds_of_run.of(batch);
+                  const OneKind<Lanes> kind = kinds_of_run.of(batch);
                   const RunBonds<D> bonds{batch,
                                           run,
                                           kind.weight,

@@ -17,7 +17,7 @@ class PointColumns {
  public:
   PointColumns() = default;
   PointColumns(int components, Index points)
-      : stride_(staggered(std::size_t(points) + lane_count)),
+      : stride_(staggered(std::size_t(points) + SingleLanes::count)),
         values_(std::size_t(components) * stride_, 0.0) {}
 
   /// Point of the first entry from now on.

@@ -103,14 +103,14 @@ class RunPass {
         });
     Lanes total = 0.0, least = shortest;
     double common = 0.0;
-    with_kinds_and_densities(
+    with_kinds_and_densities<Lanes>(
         run, damage, [&](const auto& kinds, const auto& density) __attribute__((always_inline)) {
           total = 0.0;
           common = kinds.common_energy_weight();
           for_each_batch(
               run, [&](const RunBatch& batch) __attribute__((always_inline)) {
                 const std::size_t b = batch.number();
-                const OneKind kind = kinds.of(batch);
+                const OneKind<Lanes> kind = kinds.of(batch);
                 auto measure = Length::from_squares(kind.inverse_length, squared[b], change[b]);
                 relieve(measure, run, batch);
                 least = min(
@@ -134,15 +134,27 @@ class RunPass {
   /// Adds the tangent's product with v; the columns are positions and v. A bond adds psi'' n (n.v)
   /// + psi'/l (v - n (n.v)).
   /// @param damage as above
-  [[gnu::noinline]] void add_products(const BondRun& run, RunDamage* damage, double projection,
-                                      PointColumns& sums) const {
-    Vector<D, RunRow> arm, along;
-    RunRow squared, product, of_arm, of_along;
-    for_each_batch(
-        run, [&](const RunBatch& batch) __attribute__((always_inline)) {
+  /// @param precision of the bonds' parts where none is damaged; differences between points and
+  ///        sums are in double precision
+  void add_products(const BondRun& run, RunDamage* damage, double projection, Precision precision,
+                    PointColumns& sums) const {
+    const bool in_single = precision == Precision::single && !(damage && damage->any());
+    if (in_single && add_products_in<SingleLanes>(run, damage, projection, sums)) return;
+    add_products_in<Lanes>(run, damage, projection, sums);
+  }
+
+ private:
+  /// @return false if a bond needs double precision; nothing has then been added
+  template <class L>
+  [[gnu::noinline]] bool add_products_in(const BondRun& run, RunDamage* damage, double projection,
+                                         PointColumns& sums) const {
+    Vector<D, RunRowOf<L>> arm, along;
+    RunRowOf<L> squared, product, of_arm, of_along;
+    for_each_batch<L>(
+        run, [&](const RunBatchOf<L>& batch) __attribute__((always_inline)) {
           const std::size_t b = batch.number();
-          const Vector<D, Lanes> current = difference<D>(columns_, 0, run, batch),
-                                 v = difference<D>(columns_, D, run, batch);
+          const Vector<D, L> current = difference<D>(columns_, 0, run, batch),
+                             v = difference<D>(columns_, D, run, batch);
           for (int c = 0; c < D; ++c) {
             arm[c][b] = current[c];
             along[c][b] = v[c];
@@ -150,68 +162,77 @@ class RunPass {
           squared[b] = dot<D>(current, current);
           product[b] = dot<D>(current, v);
         });
-    with_kinds_and_densities(
+    const bool holds = with_kinds_and_densities<L>(
         run, damage, [&](const auto& kinds, const auto& density) __attribute__((always_inline)) {
-          for_each_batch(
-              run, [&](const RunBatch& batch) __attribute__((always_inline)) {
+          for_each_batch<L>(
+              run, [&](const RunBatchOf<L>& batch) __attribute__((always_inline)) {
                 const std::size_t b = batch.number();
-                const OneKind kind = kinds.of(batch);
+                const OneKind<L> kind = kinds.of(batch);
                 auto measure = Length::from_square(kind.inverse_length, squared[b]);
                 relieve(measure, run, batch);
                 const auto phi = density(batch, measure.relative_change);
-                InteractionEnergy<Lanes> psi{0.0, kind.weight * phi.first,
-                                             kind.weight * kind.inverse_length * phi.second};
+                InteractionEnergy<L> psi{0.0, kind.weight * phi.first,
+                                         kind.weight * kind.inverse_length * phi.second};
                 if (projection > 0.0) psi = projected(psi, projection);
-                const Lanes across = psi.first * measure.inverse;
+                const L across = psi.first * measure.inverse;
                 of_along[b] = within(batch, across, 0.0);
                 of_arm[b] = within(
                     batch, (psi.second - across) * (measure.inverse * measure.inverse) * product[b],
                     0.0);
               });
         });
-    add_to_ends<D, -1>(
+    if (!holds) return false;
+    add_to_ends<D, -1, L>(
         run, sums, [&](int c, std::size_t b) __attribute__((always_inline)) {
           return of_arm[b] * arm[c][b] + of_along[b] * along[c][b];
         });
+    return true;
   }
 
  private:
-  template <class MeasureAt>
+  template <class MeasureAt, class L>
   [[gnu::always_inline]] void relieve(MeasureAt& measure, const BondRun& run,
-                                      const RunBatch& batch) const {
+                                      const RunBatchOf<L>& batch) const {
     if constexpr (std::is_same_v<E, Eigenstretch>) {
       measure.relative_change -= 0.5 * sum_of_ends(eigenstretch_.of_point, run, batch);
     }
   }
 
   /// Calls loop(kinds, density), see with_kinds and with_densities.
-  template <class Loop>
-  [[gnu::always_inline]] void with_kinds_and_densities(const BondRun& run, RunDamage* damage,
+  template <class L, class Loop>
+  [[gnu::always_inline]] bool with_kinds_and_densities(const BondRun& run, RunDamage* damage,
                                                        const Loop& loop) const {
-    with_kinds(
+    bool holds = true;
+    with_kinds<L>(
         bonds_, bonds_.kind, run, [&](const auto& kinds) __attribute__((always_inline)) {
-          with_densities(
+          holds = with_densities<L>(
               run, damage, [&](const auto& density) __attribute__((always_inline)) {
                 loop(kinds, density);
               });
         });
+    return holds;
   }
 
   /// Calls loop(density), where density(batch, stretch) is that of the bonds; again, from the
   /// start, if a bond fails that it has taken for undamaged.
-  template <class Loop>
-  [[gnu::always_inline]] void with_densities(const BondRun& run, RunDamage* damage,
+  /// @return false if it had to, and L is too rough for bonds that fail
+  template <class L, class Loop>
+  [[gnu::always_inline]] bool with_densities(const BondRun& run, RunDamage* damage,
                                              const Loop& loop) const {
     if (!damage || !damage->any()) {
-      Lanes largest = -std::numeric_limits<double>::infinity();
-      loop([&](const RunBatch& batch, const Lanes& stretch) __attribute__((always_inline)) {
+      L largest = -std::numeric_limits<double>::infinity();
+      loop([&](const RunBatchOf<L>& batch, const L& stretch) __attribute__((always_inline)) {
         largest = max(largest, within(batch, stretch, -std::numeric_limits<double>::infinity()));
         return whole_(stretch);
       });
-      if (!damage || none_of(largest > damage->free_below)) return;
+      if (!damage || none_of(largest > damage->free_below)) return true;
     }
-    loop([&](const RunBatch& batch, const Lanes& stretch)
-             __attribute__((always_inline)) { return density(run, *damage, batch, stretch); });
+    if constexpr (std::is_same_v<L, Lanes>) {
+      loop([&](const RunBatch& batch, const Lanes& stretch)
+               __attribute__((always_inline)) { return density(run, *damage, batch, stretch); });
+      return true;
+    }
+    return false;
   }
 
   [[nodiscard, gnu::always_inline]] PotentialDensity<Lanes> density(const BondRun& run,

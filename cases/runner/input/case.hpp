@@ -85,6 +85,7 @@ struct SolverSpecification {
   LinearMethod linear = LinearMethod::automatic;
   PreconditionerKind preconditioner = PreconditionerKind::automatic;
   TangentStorage tangent = TangentStorage::automatic;
+  Precision precision = Precision::single;              ///< see StudyOptions
   ForceOperator force_operator = ForceOperator::bonds;  ///< see BodySpecification
   Projection projection = Projection::automatic;
   Predictor predictor = Predictor::consistent;

@@ -170,6 +170,14 @@ Table<SolverSpecification> solver_keys() {
            .written_if(searches)
            .then(check_tangent)
            .on_ranks(),
+       K("precision", &Spec::precision,
+         choice<Precision>({{"single", Precision::single}, {"double", Precision::full}}),
+         "of matrix-free products of bonds along rows of a lattice inside conjugate gradients. "
+         "`\"single\"`: parts of the bonds are rounded to single precision, which nearly halves "
+         "the time; the residual of every solution is computed in double precision, and iterations "
+         "go on until it is small enough; `\"double\"`: nothing is rounded")
+           .written_if(searches)
+           .on_ranks(),
        K("operator", &Spec::force_operator,
          choice<ForceOperator>({{"auto", ForceOperator::automatic},
                                 {"bonds", ForceOperator::bonds},

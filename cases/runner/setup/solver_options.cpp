@@ -9,6 +9,7 @@ StudyOptions study_options(const Case& from, int threads) {
   options.linear.method = from.solver.linear;
   options.linear.preconditioner = from.solver.preconditioner;
   options.tangent = from.solver.tangent;
+  options.precision = from.solver.precision;
   options.threads = threads;
   return options;
 }

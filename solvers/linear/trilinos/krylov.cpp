@@ -320,6 +320,10 @@ Run run_belos(const RCP<const Map>& rows, const VectorMap& matrix, const VectorM
   return run;
 }
 
+/// Share of a residual down to which a run with the rough matrix goes. Further down its own
+/// residual is no longer that of A.
+constexpr double most_rough_gain = 1e-5;
+
 /// Runs Belos until the true residual is small enough, or until another run doesn't help.
 KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& preconditioner,
                     const double* b, double* x, const KrylovOptions& options) {
@@ -340,12 +344,14 @@ KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& precondi
   const auto any = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
   const RCP<const Map> rows = rcp(new Map(
       any, std::size_t(size), 0, teuchos_communicator(options.ranks ? *options.ranks : sole)));
+  bool is_rough = options.rough_matrix != nullptr;
   while (true) {
     const double before = residual.norm;
     RCP<Vector> correction;
-    const Run run =
-        run_belos(rows, matrix, preconditioner, std::move(residual.values), before, target,
-                  options.max_iterations - result.iterations, options, correction);
+    const Run run = run_belos(rows, is_rough ? options.rough_matrix : matrix, preconditioner,
+                              std::move(residual.values), before,
+                              is_rough ? std::max(target, most_rough_gain * before) : target,
+                              options.max_iterations - result.iterations, options, correction);
     result.iterations += run.iterations;
     std::vector<double> candidate(x, x + size);
     {
@@ -366,12 +372,19 @@ KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& precondi
       result.outcome = KrylovOutcome::converged;
       return result;
     }
-    if (run.outcome != KrylovOutcome::converged) return result;
-    if (result.iterations >= options.max_iterations) {
+    if (run.outcome == KrylovOutcome::iteration_limit ||
+        result.iterations >= options.max_iterations) {
       result.outcome = KrylovOutcome::iteration_limit;
       return result;
     }
-    if (!(residual.norm <= 0.5 * before)) {
+    const bool has_helped = residual.norm <= 0.5 * before;
+    if (is_rough && (run.outcome != KrylovOutcome::converged || !has_helped)) {
+      is_rough = false;
+      if (!improved) residual.update(x);
+      continue;
+    }
+    if (run.outcome != KrylovOutcome::converged) return result;
+    if (!has_helped) {
       result.outcome = KrylovOutcome::breakdown;
       return result;
     }

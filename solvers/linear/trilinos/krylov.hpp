@@ -24,6 +24,9 @@ enum class KrylovOutcome {
               ///< residual that no longer falls
 };
 
+/// result = A v; both have one entry per equation and do not overlap.
+using VectorMap = std::function<void(const double* v, double* result)>;
+
 struct KrylovOptions {
   KrylovMethod method = KrylovMethod::conjugate_gradients;
   double tolerance = 1e-10;   ///< of ||b - A x|| / ||b||
@@ -31,6 +34,9 @@ struct KrylovOptions {
   int restart = 50;           ///< vectors that GMRES keeps; the other methods keep a fixed number
   /// Ranks that each have a part of the equations, perhaps none; null: this rank has all of them.
   const Communicator* ranks = nullptr;
+  /// A faster map that is A to single precision, for conjugate gradients; empty: none. If they fail
+  /// with it, they go on with A itself.
+  VectorMap rough_matrix{};
 };
 
 struct KrylovResult {
@@ -39,9 +45,6 @@ struct KrylovResult {
   /// ||b - A x|| / ||b||, computed from the solution and not by the method's recursion.
   double relative_residual = 0.0;
 };
-
-/// result = A v; both have one entry per equation and do not overlap.
-using VectorMap = std::function<void(const double* v, double* result)>;
 
 /// Solves A x = b from x = 0 by Belos, until ||b - A x|| <= tolerance ||b|| (2-norm).
 ///
