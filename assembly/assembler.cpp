@@ -434,6 +434,12 @@ void Assembler::visit_tangent(const StateView& at, double projection, const RowV
   });
 }
 
+void Assembler::find_diagonal(const StateView& at, double projection, std::span<double> diagonal) {
+  for_each_term([&](TermPasses& term, Write) {
+    term.forms().visits->find_diagonal(at, projection, diagonal);
+  });
+}
+
 double Assembler::most_over_visited() const {
   return terms_.front()->forms().visits->most_over_visited();
 }

@@ -109,6 +109,7 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   [[nodiscard]] bool has_single_products() const override;
   void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                      std::span<double> diagonal) override;
+  void find_diagonal(const StateView& at, double projection, std::span<double> diagonal) override;
   [[nodiscard]] double most_over_visited() const override;
 
   [[nodiscard]] SparseRows rows(const StateView& at, RowReach reach) override;

@@ -42,7 +42,7 @@ void neighbour_search(benchmark::State& state) {
   count_bonds(state, directed);
 }
 
-enum class Pass { energy, gradient, tangent, product, stored_product };
+enum class Pass { energy, gradient, tangent, product, single_product, stored_product };
 
 /// Bonds in the rows of the lattice at once, one by one, and states.
 enum class Solid { bonds, listed_bonds, states };
@@ -72,6 +72,10 @@ void assembly(benchmark::State& state) {
       assembler.tangent(displacement, *tangent);
     } else if constexpr (pass == Pass::product) {
       assembler.product(displacement, v, result);
+    } else if constexpr (pass == Pass::single_product) {
+      StateView at(displacement);
+      at.precision = Precision::single;
+      assembler.product(at, v, result);
     } else {
       tangent->multiply(v, result);
     }
@@ -89,6 +93,7 @@ BENCHMARK(assembly<Pass::energy>)->Name("energy")->Apply(both_dimensions);
 BENCHMARK(assembly<Pass::gradient>)->Name("gradient")->Apply(both_dimensions);
 BENCHMARK(assembly<Pass::tangent>)->Name("tangent")->Apply(both_dimensions);
 BENCHMARK(assembly<Pass::product>)->Name("matrix_free_product")->Apply(both_dimensions);
+BENCHMARK(assembly<Pass::single_product>)->Name("single_product")->Apply(both_dimensions);
 BENCHMARK(assembly<Pass::energy, Solid::listed_bonds>)
     ->Name("listed_energy")
     ->Apply(both_dimensions);

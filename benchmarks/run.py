@@ -23,6 +23,7 @@ ROWS = {
     "gradient": ("bond", 1e6, "M bonds/s", None),
     "tangent": ("bond", 1e6, "M bonds/s", 80e6),
     "matrix_free_product": ("bond", 1e6, "M bonds/s", 300e6),
+    "single_product": ("bond", 1e6, "M bonds/s", None),
     "listed_energy": ("bond", 1e6, "M bonds/s", None),
     "listed_gradient": ("bond", 1e6, "M bonds/s", None),
     "listed_product": ("bond", 1e6, "M bonds/s", None),

@@ -50,6 +50,11 @@ class RowVisits {
   /// @param diagonal blocks, overwritten; empty: not wanted
   virtual void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                              std::span<double> diagonal) = 0;
+  /// The diagonal blocks alone, overwritten.
+  virtual void find_diagonal(const StateView& at, double projection, std::span<double> diagonal) {
+    visit_tangent(
+        at, projection, [](int, Index, std::span<const double>) {}, diagonal);
+  }
   /// Factor c such that c times the matrix whose rows are visited is no less than the tangent.
   [[nodiscard]] virtual double most_over_visited() const { return 1.0; }
 };

@@ -13,8 +13,7 @@ MatrixFreeTangent::MatrixFreeTangent(Energy& energy, Precision precision)
 
 void MatrixFreeTangent::linearise(Energy& energy, const StateView& at, double projection) {
   keep(energy, at, projection);
-  energy.forms().visits->visit_tangent(
-      at, projection, [](int, Index, std::span<const double>) {}, diagonal);
+  energy.forms().visits->find_diagonal(at, projection, diagonal);
 }
 
 bool MatrixFreeTangent::multiplies_in_single() const {

@@ -184,6 +184,14 @@ inline void store_upper_halves(double* blocks, int count,
   }
 }
 
+/// Writes a symmetric block of which the upper half is stored.
+template <int D>
+inline void put_whole(const double* half, double* block) {
+  for (int r = 0; r < D; ++r) {
+    for (int c = r; c < D; ++c) block[r * D + c] = block[c * D + r] = *half++;
+  }
+}
+
 /// Sums the blocks of bonds row by row.
 /// @param block_of(batch) of the bonds of a batch between their points, of packed rows
 /// @param blocks_of(thread, i) where minus the blocks of row i are written
@@ -220,12 +228,7 @@ void sum_blocks(BondWorkspace& a, const BondKinds& kinds, const BlockOf& block_o
     }
   };
   a.threads.template sum_rows<width>(body, [&](Index i, const double* total) {
-    if (diagonal.empty()) return;
-    double* block = &diagonal[std::size_t(i) * D * D];
-    int k = 0;
-    for (int r = 0; r < D; ++r) {
-      for (int c = r; c < D; ++c) block[r * D + c] = block[c * D + r] = total[k++];
-    }
+    if (!diagonal.empty()) put_whole<D>(total, &diagonal[std::size_t(i) * D * D]);
   });
 }
 

@@ -124,6 +124,20 @@ struct BondKernels {
     return a.threads.total_evaluation().growth;
   }
 
+  /// Hessians of a batch's bonds; the rows have reference positions and displacements.
+  template <class P, class E>
+  [[gnu::always_inline]] static Matrix<D, Lanes> block_of(const Batch<D>& batch, const P& potential,
+                                                          const E& eigenstretch,
+                                                          const double* largest_stretch,
+                                                          double projection) {
+    auto measure = Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
+    relieve(measure, eigenstretch, batch);
+    auto psi = interaction_energy(batch.weight, at_history(largest_stretch, potential, batch.first),
+                                  measure);
+    if (projection > 0.0) psi = projected(psi, projection);
+    return energy_hessian<0, 0>(psi, measure);
+  }
+
   /// @param blocks_of(thread, i) where the off-diagonal blocks of row i go
   /// @param done(thread, i) called after these are written
   /// @param diagonal blocks; empty: not wanted
@@ -135,15 +149,45 @@ struct BondKernels {
     sum_blocks<D, stored_as>(
         a, a.bonds.kind,
         [&](const Batch<D>& batch) __attribute__((always_inline)) {
-          auto measure =
-              Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
-          relieve(measure, eigenstretch, batch);
-          auto psi = interaction_energy(
-              batch.weight, at_history(largest_stretch, potential, batch.first), measure);
-          if (projection > 0.0) psi = projected(psi, projection);
-          return energy_hessian<0, 0>(psi, measure);
+          return block_of(batch, potential, eigenstretch, largest_stretch, projection);
         },
         blocks_of, done, diagonal);
+  }
+
+  /// Diagonal blocks of the tangent.
+  template <class P, class E>
+  static void diagonal(BondWorkspace& a, const P& potential, const E& eigenstretch,
+                       Span displacement, const double* largest_stretch, double projection,
+                       std::span<double> diagonal) {
+    a.pack<D>(a.points.reference, displacement);
+    constexpr int width = block_width(D), entries = D * (D + 1) / 2;
+    const auto body = [&](int thread, RowRange range, double* sums) {
+      DamageGrowth none;
+      const auto on_run = [&](const BondRun& run, RunDamage* damage, RunWindow& window) {
+        with_pass<D>(
+            a, window, potential, eigenstretch, largest_stretch, none,
+            [&](const auto& pass) { pass.add_diagonals(run, damage, projection, window.sums); });
+      };
+      const auto on_loose = [&](const LooseBonds& loose, double* to) {
+        std::array<Lanes, width> own;
+        own.fill(Lanes(0.0));
+        for_each_batch<D>(
+            a.bonds, a.bonds.kind, a.rows.data(),
+            loose, [&](const Batch<D>& batch) __attribute__((always_inline)) {
+              const auto half = upper_half<D>(
+                  block_of(batch, potential, eigenstretch, largest_stretch, projection));
+              for (int c = 0; c < width; ++c) own[c] += half[c];
+              add_to_partners<D>(to, batch.partner, half);
+            });
+        for (int c = 0; c < entries; ++c) {
+          to[std::ptrdiff_t(loose.point) * width + c] += sum(own[c]);
+        }
+      };
+      a.sum_range<D, width, entries>(thread, range, sums, on_run, on_loose);
+    };
+    a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
+      put_whole<D>(total, &diagonal[std::size_t(i) * D * D]);
+    });
   }
 
   template <class P, class E>

@@ -30,6 +30,7 @@ class BondPassesIn : public TermPasses, BlockTangent, RowVisits {
   void tangent(const StateView& at, Tangent& tangent, double projection, Write how) override;
   void visit_tangent(const StateView& at, double projection, const RowVisitor& visit,
                      std::span<double> diagonal) override;
+  void find_diagonal(const StateView& at, double projection, std::span<double> diagonal) override;
   void product(const StateView& at, std::span<const double> v, double projection,
                std::span<double> product, Write how) override;
   [[nodiscard]] bool has_single_products() const override { return workspace_.runs.in_use(); }
@@ -185,6 +186,15 @@ void BondPassesIn<dimension>::visit_tangent(const StateView& at, double projecti
                                                         at.displacement, largest_stretch,
                                                         projection, blocks_of, done, diagonal);
     });
+  });
+}
+
+template <int dimension>
+void BondPassesIn<dimension>::find_diagonal(const StateView& at, double projection,
+                                            std::span<double> diagonal) {
+  dispatch(at, [&](const auto& law, const double* largest_stretch, const auto& eigenstretch) {
+    Kernels::diagonal(workspace_, law, eigenstretch, at.displacement, largest_stretch, projection,
+                      diagonal);
   });
 }
 

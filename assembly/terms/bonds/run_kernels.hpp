@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <limits>
 #include <type_traits>
 
@@ -91,16 +92,7 @@ class RunPass {
                                     double& energy, Lanes& shortest) const {
     Vector<D, RunRow> arm;
     RunRow squared, change, tension;
-    for_each_batch(
-        run, [&](const RunBatch& batch) __attribute__((always_inline)) {
-          const std::size_t b = batch.number();
-          const Vector<D, Lanes> reference = difference<D>(columns_, 0, run, batch),
-                                 displacement = difference<D>(columns_, D, run, batch);
-          const Vector<D, Lanes> current = plus<D>(reference, displacement);
-          for (int c = 0; c < D; ++c) arm[c][b] = current[c];
-          squared[b] = dot<D>(current, current);
-          change[b] = dot<D>(displacement, plus<D>(reference, current));
-        });
+    find_arms(run, arm, squared, change);
     Lanes total = 0.0, least = shortest;
     double common = 0.0;
     with_kinds_and_densities<Lanes>(
@@ -131,6 +123,37 @@ class RunPass {
         });
   }
 
+  /// Adds the upper halves of the bonds' Hessians to both of their ends; the columns are as for
+  /// forces.
+  /// @param damage as above
+  [[gnu::noinline]] void add_diagonals(const BondRun& run, RunDamage* damage, double projection,
+                                       PointColumns& sums) const {
+    Vector<D, RunRow> arm;
+    RunRow squared, change, of_arms, of_unit;
+    find_arms(run, arm, squared, change);
+    with_kinds_and_densities<Lanes>(
+        run, damage, [&](const auto& kinds, const auto& density) __attribute__((always_inline)) {
+          for_each_batch(
+              run, [&](const RunBatch& batch) __attribute__((always_inline)) {
+                const std::size_t b = batch.number();
+                const OneKind<Lanes> kind = kinds.of(batch);
+                auto measure = Length::from_squares(kind.inverse_length, squared[b], change[b]);
+                relieve(measure, run, batch);
+                const auto [along, across] =
+                    stiffness(kind, density(batch, measure.relative_change), measure, projection);
+                of_unit[b] = within(batch, across, 0.0);
+                of_arms[b] =
+                    within(batch, (along - across) * (measure.inverse * measure.inverse), 0.0);
+              });
+        });
+    add_to_ends<D*(D + 1) / 2, 1>(
+        run, sums, [&](int k, std::size_t b) __attribute__((always_inline)) {
+          const auto [r, c] = of_upper_half[std::size_t(k)];
+          const Lanes entry = of_arms[b] * arm[r][b] * arm[c][b];
+          return r == c ? entry + of_unit[b] : entry;
+        });
+  }
+
   /// Adds the tangent's product with v; the columns are positions and v. A bond adds psi'' n (n.v)
   /// + psi'/l (v - n (n.v)).
   /// @param damage as above
@@ -144,6 +167,13 @@ class RunPass {
   }
 
  private:
+  struct Entry {
+    int row, column;
+  };
+  static constexpr std::array<Entry, 6> of_upper_half =
+      D == 3 ? std::array<Entry, 6>{{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}}
+             : std::array<Entry, 6>{{{0, 0}, {0, 1}, {1, 1}}};
+
   /// @return false if a bond needs double precision; nothing has then been added
   template <class L>
   [[gnu::noinline]] bool add_products_in(const BondRun& run, RunDamage* damage, double projection,
@@ -171,13 +201,10 @@ class RunPass {
                 auto measure = Length::from_square(kind.inverse_length, squared[b]);
                 relieve(measure, run, batch);
                 const auto phi = density(batch, measure.relative_change);
-                InteractionEnergy<L> psi{0.0, kind.weight * phi.first,
-                                         kind.weight * kind.inverse_length * phi.second};
-                if (projection > 0.0) psi = projected(psi, projection);
-                const L across = psi.first * measure.inverse;
+                const auto [along_bond, across] = stiffness(kind, phi, measure, projection);
                 of_along[b] = within(batch, across, 0.0);
                 of_arm[b] = within(
-                    batch, (psi.second - across) * (measure.inverse * measure.inverse) * product[b],
+                    batch, (along_bond - across) * (measure.inverse * measure.inverse) * product[b],
                     0.0);
               });
         });
@@ -190,6 +217,37 @@ class RunPass {
   }
 
  private:
+  /// Current vectors of the bonds with their squares, and these minus the squares in the reference.
+  [[gnu::always_inline]] void find_arms(const BondRun& run, Vector<D, RunRow>& arm, RunRow& squared,
+                                        RunRow& change) const {
+    for_each_batch(
+        run, [&](const RunBatch& batch) __attribute__((always_inline)) {
+          const std::size_t b = batch.number();
+          const Vector<D, Lanes> reference = difference<D>(columns_, 0, run, batch),
+                                 displacement = difference<D>(columns_, D, run, batch);
+          const Vector<D, Lanes> current = plus<D>(reference, displacement);
+          for (int c = 0; c < D; ++c) arm[c][b] = current[c];
+          squared[b] = dot<D>(current, current);
+          change[b] = dot<D>(displacement, plus<D>(reference, current));
+        });
+  }
+
+  /// Eigenvalues of the bonds' Hessians, psi'' along them and psi'/l across.
+  template <class L>
+  struct Stiffness {
+    L along, across;
+  };
+  template <class L, class MeasureAt>
+  [[gnu::always_inline]] static Stiffness<L> stiffness(const OneKind<L>& kind,
+                                                       const PotentialDensity<L>& phi,
+                                                       const MeasureAt& measure,
+                                                       double projection) {
+    InteractionEnergy<L> psi{0.0, kind.weight * phi.first,
+                             kind.weight * kind.inverse_length * phi.second};
+    if (projection > 0.0) psi = projected(psi, projection);
+    return {psi.second, psi.first * measure.inverse};
+  }
+
   template <class MeasureAt, class L>
   [[gnu::always_inline]] void relieve(MeasureAt& measure, const BondRun& run,
                                       const RunBatchOf<L>& batch) const {

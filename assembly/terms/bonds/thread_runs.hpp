@@ -16,10 +16,12 @@ namespace peristat {
 struct RunWindow {
   RunWindow() = default;
   RunWindow(int dimension, Index most)
-      : vectors(2 * dimension, most), sums(std::max(dimension, 2), most), capacity(most) {}
+      : vectors(2 * dimension, most),
+        sums(std::max(dimension * (dimension + 1) / 2, 2), most),
+        capacity(most) {}
 
   PointColumns vectors;  ///< the packed ones, components of the first one first
-  PointColumns sums;     ///< of a vector or of two numbers
+  PointColumns sums;     ///< of the upper halves of blocks, or of less
   Index capacity = 0;
   Index first = 0, last = 0;
 };

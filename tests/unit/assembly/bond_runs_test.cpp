@@ -94,6 +94,8 @@ struct Sums {
   Evaluation found;
   double energy = 0.0;
   std::vector<double> forces, product, projected;
+  std::vector<double> in_single, projected_in_single;  ///< the products
+  std::vector<double> diagonal, projected_diagonal;
 };
 
 Sums sums_of(Assembler& assembler, const StateView& at, std::size_t dofs) {
@@ -106,6 +108,17 @@ Sums sums_of(Assembler& assembler, const StateView& at, std::size_t dofs) {
   sums.projected.resize(dofs);
   assembler.product(at, v, sums.product);
   assembler.product(at, v, sums.projected, 1.0);
+  const std::size_t entries = dofs * std::size_t(assembler.points().dimension);
+  sums.diagonal.assign(entries, 7.0);
+  sums.projected_diagonal.assign(entries, 7.0);
+  assembler.find_diagonal(at, 0.0, sums.diagonal);
+  assembler.find_diagonal(at, 1.0, sums.projected_diagonal);
+  StateView roughly = at;
+  roughly.precision = Precision::single;
+  sums.in_single.resize(dofs);
+  sums.projected_in_single.resize(dofs);
+  assembler.product(roughly, v, sums.in_single);
+  assembler.product(roughly, v, sums.projected_in_single, 1.0);
   return sums;
 }
 
@@ -115,6 +128,11 @@ void expect_equal(const Sums& one, const Sums& other) {
   EXPECT_LT(difference(one.forces, other.forces), 1e-12);
   EXPECT_LT(difference(one.product, other.product), 1e-12);
   EXPECT_LT(difference(one.projected, other.projected), 1e-12);
+  EXPECT_LT(difference(one.diagonal, other.diagonal), 1e-12);
+  EXPECT_LT(difference(one.projected_diagonal, other.projected_diagonal), 1e-12);
+  EXPECT_LT(difference(one.in_single, other.product), 1e-6);
+  EXPECT_LT(difference(one.projected_in_single, other.projected), 1e-6);
+  EXPECT_EQ(other.in_single, other.product);
   EXPECT_EQ(one.found.degenerate, other.found.degenerate);
 }
 
@@ -183,6 +201,25 @@ TEST_P(BondRunsIn, DamageIsThatOfSingleBonds) {
     expect_equal(sums_of(along, {u, fresh}, u.size()), sums_of(single, {u, fresh}, u.size()));
     expect_equal(sums_of(along, {u, one}, u.size()), sums_of(single, {u, other}, u.size()));
   }
+}
+
+TEST_P(BondRunsIn, ProductsMayBeInSinglePrecision) {
+  const BoxBody body = cut_body(rows_of(GetParam(), softening));
+  const Model list = one_by_one(body.model);
+  Assembler along(body.points, body.model, 2), single(body.points, list, 2);
+  EXPECT_TRUE(along.has_single_products());
+  EXPECT_FALSE(single.has_single_products());
+  const std::vector<double> u = stretched(body.points, 5, 0.01);
+  const History history = along.initial_history();
+  const Sums sums = sums_of(along, {u, history}, u.size());
+  EXPECT_GT(difference(sums.in_single, sums.product), 1e-9);
+  // Rigid motions cost nothing: differences are in double precision, at whatever distance.
+  const std::vector<double> ones(u.size(), 1e6);
+  std::vector<double> product(u.size());
+  StateView roughly{u, history};
+  roughly.precision = Precision::single;
+  along.product(roughly, ones, product);
+  EXPECT_EQ(tests::largest(product), 0.0);
 }
 
 /// As in mode path, and where release breaks a bond.

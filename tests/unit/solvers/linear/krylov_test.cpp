@@ -191,6 +191,62 @@ TEST_P(Krylov, RefinesWhatTheRecursionMissed) {
   EXPECT_GT(solved.result.iterations, solve(GetParam(), map_of(matrix)).result.iterations);
 }
 
+struct RoughSolve : Solve {
+  int products = 0;  ///< with the matrix itself
+};
+
+RoughSolve solve_roughly(const MatrixXd& matrix, const VectorMap& rough, int max_iterations = 200) {
+  RoughSolve solved;
+  const VectorMap counting = [&](const double* v, double* result) {
+    ++solved.products;
+    map_of(matrix)(v, result);
+  };
+  KrylovOptions options{KrylovMethod::conjugate_gradients, 1e-12, max_iterations, size};
+  options.rough_matrix = rough;
+  solved.result =
+      solve_krylov(size, counting, {}, right_hand_side().data(), solved.x.data(), options);
+  return solved;
+}
+
+TEST(ConjugateGradients, RefineWhatARoughMatrixFinds) {
+  const MatrixXd matrix = symmetric_matrix(0);
+  const MatrixXd rough = matrix.cast<float>().cast<double>();
+  const RoughSolve solved = solve_roughly(matrix, map_of(rough));
+  EXPECT_EQ(solved.result.outcome, KrylovOutcome::converged);
+  EXPECT_LE(true_residual(matrix, solved.x), 1.01e-12);
+  EXPECT_DOUBLE_EQ(solved.result.relative_residual, true_residual(matrix, solved.x));
+  EXPECT_LE(solved.products, 3);  // one after each run
+}
+
+TEST(ConjugateGradients, GoOnWithTheMatrixWhereARoughOneFails) {
+  const MatrixXd matrix = symmetric_matrix(0);
+  const MatrixXd negative = -matrix, half = 0.5 * matrix, broken = nan * matrix,
+                 far = symmetric_matrix(0) + 30.0 * MatrixXd::Identity(size, size);
+  for (const MatrixXd* rough : {&negative, &half, &broken, &far}) {
+    const RoughSolve solved = solve_roughly(matrix, map_of(*rough));
+    EXPECT_EQ(solved.result.outcome, KrylovOutcome::converged);
+    EXPECT_LE(true_residual(matrix, solved.x), 1.01e-12);
+    EXPECT_GT(solved.products, 10);
+  }
+}
+
+TEST(ConjugateGradients, TellNegativeCurvatureOfTheMatrixAlone) {
+  const MatrixXd indefinite = symmetric_matrix(5), definite = symmetric_matrix(0);
+  EXPECT_EQ(solve_roughly(indefinite, map_of(definite)).result.outcome,
+            KrylovOutcome::negative_curvature);
+  EXPECT_EQ(solve_roughly(definite, map_of(indefinite)).result.outcome, KrylovOutcome::converged);
+}
+
+TEST(ConjugateGradients, CountTheIterationsWithARoughMatrix) {
+  const MatrixXd matrix = symmetric_matrix(0);
+  for (const int most : {1, 5, 12}) {
+    const RoughSolve solved = solve_roughly(matrix, map_of(matrix), most);
+    EXPECT_EQ(solved.result.outcome, KrylovOutcome::iteration_limit);
+    EXPECT_EQ(solved.result.iterations, most);
+    EXPECT_LT(true_residual(matrix, solved.x), 1.0);
+  }
+}
+
 TEST(Minres, SolvesIndefiniteSystems) {
   const MatrixXd matrix = symmetric_matrix(7);
   const MatrixXd scaling = VectorXd::LinSpaced(size, 0.5, 2.0).asDiagonal();
