@@ -33,7 +33,7 @@ class SingleFactor {
 
   std::vector<Supernode> nodes_;
   std::vector<Index> order_, row_;
-  /// Of the supernodes' columns, diagonals inverted.
+  /// Of the supernodes' columns, their triangles inverted.
   std::vector<float> entry_;
   std::vector<float> x_, part_;  // solution in the factor's order; rows of a supernode
 };
