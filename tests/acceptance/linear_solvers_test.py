@@ -73,6 +73,24 @@ class LinearSolvers(Folder):
         for one, other in zip(first["probes"]["tip"], second["probes"]["tip"]):
             self.assertAlmostEqual(one, other, delta=1e-9 * abs(first["probes"]["tip"][1]))
 
+    def test_products_in_single_precision_give_the_same_solution(self):
+        beam = (BEAM, *SMALL, "solver.linear=pcg", "solver.tangent=matrix_free")
+        plate = (PLATE, "lattice.spacing=5e-4", "loading.steps=1", "solver.linear=pcg", "solver.tangent=matrix_free")
+        # The residual of Newton's last iteration; then a system solved to many digits at once.
+        for case in (beam, plate, (*beam, "solver.linear_tolerance=1e-11")):
+            with self.subTest(case=case):
+                found = {}
+                for precision in ("double", "single"):
+                    results = self.results(*case, f"solver.precision={precision}")
+                    rows = self.iterations()
+                    found[precision] = (results.summary, float(rows[-1]["relative_residual"]), rows[1]["residual"])
+                (double, exact, one), (single, rough, other) = found["double"], found["single"]
+                self.assertLess(max(exact, rough), 1e-10)
+                self.assertNotEqual(one, other)  # the key has an effect
+                self.assertLessEqual(single["newton_iterations"], double["newton_iterations"] + 1)
+                self.assertLessEqual(single["linear_iterations"], 1.3 * double["linear_iterations"])
+                self.assertAlmostEqual(single["max_displacement"] / double["max_displacement"], 1.0, delta=1e-9)
+
     def test_auto_says_what_it_chooses_and_why(self):
         told = self.command("check", BEAM).output
         self.assertRegex(told, r"solver +conjugate gradients preconditioned by rigid pieces \(auto: a factorisation "
