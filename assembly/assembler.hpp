@@ -20,9 +20,10 @@ namespace peristat {
 /// Energy, gradient, tangent and matrix-free product of the discrete energy E(u) of a model, the
 /// sum over its terms, each of which visits its interactions once, on several threads.
 ///
-/// All arrays are points x dimension, row major. No call but visit_tangent and commit allocates.
-/// For a given number of threads every result is reproducible to the last bit. A model whose bonds
-/// can be damaged needs a history (initial_history), which only `commit` changes.
+/// All arrays are points x dimension, row major. No call allocates but visit_tangent,
+/// find_diagonal, commit. For a given number of threads every result is reproducible to the last
+/// bit. A model whose bonds can be damaged needs a history (initial_history), which only `commit`
+/// changes.
 class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
  public:
   /// Whose pattern the assembler has: the tangent's blocks, or the rows that are visited instead

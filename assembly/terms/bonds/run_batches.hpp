@@ -102,6 +102,7 @@ template <class L>
 struct SeveralKinds {
   const std::uint16_t* numbers;
   const BondKind* table;
+  double modulus;  ///< that the weights are multiplied by, in single precision
 
   [[nodiscard, gnu::always_inline]] OneKind<L> of(const RunBatchOf<L>& batch) const {
     OneKind<L> result;
@@ -113,7 +114,7 @@ struct SeveralKinds {
         read(batch.first + h * lane_count, inverse_lengths[h], weights[h]);
       }
       result.inverse_length = rounded(inverse_lengths[0], inverse_lengths[1]);
-      result.weight = rounded(weights[0], weights[1]);
+      result.weight = rounded(modulus * weights[0], modulus * weights[1]);
     }
     result.length = 1.0 / result.inverse_length;
     return result;
@@ -135,14 +136,18 @@ struct SeveralKinds {
 
 /// Calls visit(OneKind or SeveralKinds) with those of a run. Each has its own loops, which choose
 /// nothing.
+/// @param modulus that weights in single precision are multiplied by: the range of single precision
+///        holds neither products of small volumes nor the modulus of a small horizon
 template <class L = Lanes, class Visit>
 [[gnu::always_inline]] inline void with_kinds(const Bonds& bonds, const BondKinds& kinds,
-                                              const BondRun& run, const Visit& visit) {
+                                              const BondRun& run, const Visit& visit,
+                                              double modulus = 1.0) {
   if (run.kinds) {
-    visit(SeveralKinds<L>{run.kinds, kinds.table()});
+    visit(SeveralKinds<L>{run.kinds, kinds.table(), modulus});
   } else {
     const BondKind& all = kinds[run.first_bond(bonds)];
-    visit(OneKind<L>{all.inverse_length, all.weight, 1.0 / all.inverse_length});
+    const double weight = std::is_same_v<L, Lanes> ? all.weight : modulus * all.weight;
+    visit(OneKind<L>{all.inverse_length, weight, 1.0 / all.inverse_length});
   }
 }
 

@@ -256,18 +256,28 @@ class RunPass {
     }
   }
 
+  /// The potential of undamaged bonds; in single precision its modulus is among the weights.
+  template <class L>
+  [[nodiscard, gnu::always_inline]] Whole whole() const {
+    Whole result = whole_;
+    if constexpr (!std::is_same_v<L, Lanes>) result.modulus = 1.0;
+    return result;
+  }
+
   /// Calls loop(kinds, density), see with_kinds and with_densities.
   template <class L, class Loop>
   [[gnu::always_inline]] bool with_kinds_and_densities(const BondRun& run, RunDamage* damage,
                                                        const Loop& loop) const {
     bool holds = true;
     with_kinds<L>(
-        bonds_, bonds_.kind, run, [&](const auto& kinds) __attribute__((always_inline)) {
+        bonds_, bonds_.kind, run,
+        [&](const auto& kinds) __attribute__((always_inline)) {
           holds = with_densities<L>(
               run, damage, [&](const auto& density) __attribute__((always_inline)) {
                 loop(kinds, density);
               });
-        });
+        },
+        whole_.modulus);
     return holds;
   }
 
@@ -281,7 +291,7 @@ class RunPass {
       L largest = -std::numeric_limits<double>::infinity();
       loop([&](const RunBatchOf<L>& batch, const L& stretch) __attribute__((always_inline)) {
         largest = max(largest, within(batch, stretch, -std::numeric_limits<double>::infinity()));
-        return whole_(stretch);
+        return whole<L>()(stretch);
       });
       if (!damage || none_of(largest > damage->free_below)) return true;
     }

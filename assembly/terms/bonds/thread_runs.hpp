@@ -16,12 +16,13 @@ namespace peristat {
 struct RunWindow {
   RunWindow() = default;
   RunWindow(int dimension, Index most)
-      : vectors(2 * dimension, most),
-        sums(std::max(dimension * (dimension + 1) / 2, 2), most),
-        capacity(most) {}
+      : vectors(2 * dimension, most), sums(widest(dimension), most), capacity(most) {}
+
+  /// Columns of sums that are kept; wider sums need others for their time.
+  static constexpr int widest(int dimension) { return std::max(dimension, 2); }
 
   PointColumns vectors;  ///< the packed ones, components of the first one first
-  PointColumns sums;     ///< of the upper halves of blocks, or of less
+  PointColumns sums;     ///< of a vector or of two numbers
   Index capacity = 0;
   Index first = 0, last = 0;
 };

@@ -348,15 +348,18 @@ KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& precondi
   while (true) {
     const double before = residual.norm;
     RCP<Vector> correction;
+    // Single precision has a short range: the system is scaled to a residual of norm 1.
+    const double unit = is_rough ? before : 1.0;
+    for (double& value : residual.values) value /= unit;
     const Run run = run_belos(rows, is_rough ? options.rough_matrix : matrix, preconditioner,
-                              std::move(residual.values), before,
-                              is_rough ? std::max(target, most_rough_gain * before) : target,
+                              std::move(residual.values), before / unit,
+                              is_rough ? std::max(target / unit, most_rough_gain) : target,
                               options.max_iterations - result.iterations, options, correction);
     result.iterations += run.iterations;
     std::vector<double> candidate(x, x + size);
     {
       const Teuchos::ArrayRCP<const double> values = correction->getData(0);
-      for (int k = 0; k < size; ++k) candidate[std::size_t(k)] += values[k];
+      for (int k = 0; k < size; ++k) candidate[std::size_t(k)] += unit * values[k];
     }
     correction = Teuchos::null;
     residual.update(candidate.data());

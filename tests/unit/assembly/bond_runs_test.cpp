@@ -222,6 +222,28 @@ TEST_P(BondRunsIn, ProductsMayBeInSinglePrecision) {
   EXPECT_EQ(tests::largest(product), 0.0);
 }
 
+/// Neither small cells and large moduli nor small vectors leave the range of single precision.
+TEST_P(BondRunsIn, ProductsInSinglePrecisionMayHaveAnyUnit) {
+  for (const double spacing : {1e-9, 1e-6, 1e3}) {
+    BoxSetting box = rows_of(GetParam(), whole);
+    box.spacing = spacing;
+    box.youngs_modulus = 2e11;
+    const BoxBody body(box);
+    Assembler assembler(body.points, body.model, 2);
+    const std::vector<double> u = stretched(body.points, 5, 0.01);
+    StateView roughly{u};
+    roughly.precision = Precision::single;
+    for (const double size : {1.0, 1e-12}) {
+      const std::vector<double> v = Random(3).vector(u.size(), size);
+      std::vector<double> product(u.size()), in_single(u.size());
+      assembler.product(StateView{u}, v, product);
+      assembler.product(roughly, v, in_single);
+      EXPECT_LT(difference(in_single, product), 1e-6) << spacing << ' ' << size;
+      EXPECT_GT(difference(in_single, product), 1e-9) << spacing << ' ' << size;
+    }
+  }
+}
+
 /// As in mode path, and where release breaks a bond.
 TEST_P(BondRunsIn, BondsMayBeBrokenAtTheirOnset) {
   const BoxBody body = cut_body(rows_of(GetParam(), brittle));

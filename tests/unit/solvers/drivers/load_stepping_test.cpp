@@ -329,7 +329,9 @@ void expect_no_healing(const Followed& followed) {
       ASSERT_GE(followed.histories[k][b], followed.histories[k - 1][b]) << "step " << k;
     }
     EXPECT_GE(followed.steps[k].broken_bonds, followed.steps[k - 1].broken_bonds);
-    EXPECT_GE(followed.steps[k].dissipated_energy, followed.steps[k - 1].dissipated_energy);
+    // A sum over bonds at displacements that have the round-off of a factorisation.
+    const double before = followed.steps[k - 1].dissipated_energy;
+    EXPECT_GE(followed.steps[k].dissipated_energy, before * (1.0 - 1e-10));
   }
   for (std::size_t k = 0; k < followed.histories.size(); ++k) {
     const std::vector<double>& history = followed.histories[k];

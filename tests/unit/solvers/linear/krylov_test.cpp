@@ -195,7 +195,8 @@ struct RoughSolve : Solve {
   int products = 0;  ///< with the matrix itself
 };
 
-RoughSolve solve_roughly(const MatrixXd& matrix, const VectorMap& rough, int max_iterations = 200) {
+RoughSolve solve_roughly(const MatrixXd& matrix, const VectorMap& rough, int max_iterations = 200,
+                         const std::vector<double>& b = right_hand_side()) {
   RoughSolve solved;
   const VectorMap counting = [&](const double* v, double* result) {
     ++solved.products;
@@ -203,8 +204,7 @@ RoughSolve solve_roughly(const MatrixXd& matrix, const VectorMap& rough, int max
   };
   KrylovOptions options{KrylovMethod::conjugate_gradients, 1e-12, max_iterations, size};
   options.rough_matrix = rough;
-  solved.result =
-      solve_krylov(size, counting, {}, right_hand_side().data(), solved.x.data(), options);
+  solved.result = solve_krylov(size, counting, {}, b.data(), solved.x.data(), options);
   return solved;
 }
 
@@ -216,6 +216,22 @@ TEST(ConjugateGradients, RefineWhatARoughMatrixFinds) {
   EXPECT_LE(true_residual(matrix, solved.x), 1.01e-12);
   EXPECT_DOUBLE_EQ(solved.result.relative_residual, true_residual(matrix, solved.x));
   EXPECT_LE(solved.products, 3);  // one after each run
+}
+
+TEST(ConjugateGradients, MultiplyByARoughMatrixWithinTheRangeOfSinglePrecision) {
+  const MatrixXd matrix = symmetric_matrix(0);
+  const VectorMap in_single = [&](const double* v, double* result) {
+    const Eigen::VectorXf single = Eigen::Map<const VectorXd>(v, size).cast<float>();
+    Eigen::Map<VectorXd>(result, size) = (matrix.cast<float>() * single).cast<double>();
+  };
+  for (const double scale : {1e-60, 1e60}) {
+    std::vector<double> b = right_hand_side();
+    for (double& entry : b) entry *= scale;
+    const RoughSolve solved = solve_roughly(matrix, in_single, 200, b);
+    EXPECT_EQ(solved.result.outcome, KrylovOutcome::converged);
+    EXPECT_LE(true_residual(matrix, solved.x / scale), 1.01e-12);
+    EXPECT_LE(solved.products, 3);
+  }
 }
 
 TEST(ConjugateGradients, GoOnWithTheMatrixWhereARoughOneFails) {
