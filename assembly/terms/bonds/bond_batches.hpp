@@ -184,13 +184,14 @@ inline void store_upper_halves(double* blocks, int count,
   }
 }
 
-/// Writes a symmetric block of which the upper half is stored.
+/// Rows and columns of the entries of the upper half of a block, in their order.
+struct BlockEntry {
+  int row, column;
+};
 template <int D>
-inline void put_whole(const double* half, double* block) {
-  for (int r = 0; r < D; ++r) {
-    for (int c = r; c < D; ++c) block[r * D + c] = block[c * D + r] = *half++;
-  }
-}
+constexpr std::array<BlockEntry, 6> entries_of_upper_half =
+    D == 3 ? std::array<BlockEntry, 6>{{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}}
+           : std::array<BlockEntry, 6>{{{0, 0}, {0, 1}, {1, 1}}};
 
 /// Sums the blocks of bonds row by row.
 /// @param block_of(batch) of the bonds of a batch between their points, of packed rows
@@ -228,7 +229,12 @@ void sum_blocks(BondWorkspace& a, const BondKinds& kinds, const BlockOf& block_o
     }
   };
   a.threads.template sum_rows<width>(body, [&](Index i, const double* total) {
-    if (!diagonal.empty()) put_whole<D>(total, &diagonal[std::size_t(i) * D * D]);
+    if (diagonal.empty()) return;
+    double* block = &diagonal[std::size_t(i) * D * D];
+    int k = 0;
+    for (int r = 0; r < D; ++r) {
+      for (int c = r; c < D; ++c) block[r * D + c] = block[c * D + r] = total[k++];
+    }
   });
 }
 

@@ -154,40 +154,52 @@ struct BondKernels {
         blocks_of, done, diagonal);
   }
 
-  /// Diagonal blocks of the tangent.
+  /// Diagonal blocks of the tangent, D entries of their upper halves in each pass: these fit into
+  /// the sums of forces.
   template <class P, class E>
   static void diagonal(BondWorkspace& a, const P& potential, const E& eigenstretch,
                        Span displacement, const double* largest_stretch, double projection,
                        std::span<double> diagonal) {
     a.pack<D>(a.points.reference, displacement);
-    constexpr int width = block_width(D), entries = D * (D + 1) / 2;
-    const auto body = [&](int thread, RowRange range, double* sums) {
-      DamageGrowth none;
-      const auto on_run = [&](const BondRun& run, RunDamage* damage, RunWindow& window) {
-        with_pass<D>(
-            a, window, potential, eigenstretch, largest_stretch, none,
-            [&](const auto& pass) { pass.add_diagonals(run, damage, projection, window.sums); });
+    constexpr int width = vector_width(D), all = D * (D + 1) / 2;
+    for (int first = 0; first < all; first += D) {
+      const auto body = [&](int thread, RowRange range, double* sums) {
+        DamageGrowth none;
+        const auto on_run = [&](const BondRun& run, RunDamage* damage, RunWindow& window) {
+          with_pass<D>(a, window, potential, eigenstretch, largest_stretch, none,
+                       [&](const auto& pass) {
+                         pass.add_diagonals(run, damage, projection, first, window.sums);
+                       });
+        };
+        const auto on_loose = [&](const LooseBonds& loose, double* to) {
+          Vector<D, Lanes> own, part;
+          own.fill(Lanes(0.0));
+          for_each_batch<D>(
+              a.bonds, a.bonds.kind, a.rows.data(),
+              loose, [&](const Batch<D>& batch) __attribute__((always_inline)) {
+                const Matrix<D, Lanes> block =
+                    block_of(batch, potential, eigenstretch, largest_stretch, projection);
+                for (int k = 0; k < D; ++k) {
+                  const auto [r, c] = entries_of_upper_half<D>[std::size_t(first + k)];
+                  part[k] = block[r][c];
+                  own[k] += part[k];
+                }
+                add_to_partners<D>(to, batch.partner, part);
+              });
+          for (int k = 0; k < D; ++k) {
+            to[std::ptrdiff_t(loose.point) * width + k] += sum(own[k]);
+          }
+        };
+        a.sum_range<D, width>(thread, range, sums, on_run, on_loose);
       };
-      const auto on_loose = [&](const LooseBonds& loose, double* to) {
-        std::array<Lanes, width> own;
-        own.fill(Lanes(0.0));
-        for_each_batch<D>(
-            a.bonds, a.bonds.kind, a.rows.data(),
-            loose, [&](const Batch<D>& batch) __attribute__((always_inline)) {
-              const auto half = upper_half<D>(
-                  block_of(batch, potential, eigenstretch, largest_stretch, projection));
-              for (int c = 0; c < width; ++c) own[c] += half[c];
-              add_to_partners<D>(to, batch.partner, half);
-            });
-        for (int c = 0; c < entries; ++c) {
-          to[std::ptrdiff_t(loose.point) * width + c] += sum(own[c]);
+      a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
+        double* const block = &diagonal[std::size_t(i) * D * D];
+        for (int k = 0; k < D && first + k < all; ++k) {
+          const auto [r, c] = entries_of_upper_half<D>[std::size_t(first + k)];
+          block[r * D + c] = block[c * D + r] = total[k];
         }
-      };
-      a.sum_range<D, width, entries>(thread, range, sums, on_run, on_loose);
-    };
-    a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
-      put_whole<D>(total, &diagonal[std::size_t(i) * D * D]);
-    });
+      });
+    }
   }
 
   template <class P, class E>

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "assembly/terms/bonds/thread_runs.hpp"
@@ -65,9 +64,6 @@ struct BondWorkspace {
     }
     ThreadRuns::OfThread& one = runs.of(thread);
     RunWindow& window = one.window;
-    constexpr bool are_wide = columns > RunWindow::widest(D);
-    PointColumns narrow;
-    if (are_wide) narrow = std::exchange(window.sums, PointColumns(columns, window.capacity));
     window.first = window.last = range.first;
     RunDamage* damage = one.damage.empty() ? nullptr : one.damage.data();
     for (std::size_t g = 0; g < one.bonds.groups(); ++g) {
@@ -80,7 +76,6 @@ struct BondWorkspace {
       for (const LooseBonds& loose : group.loose) on_loose(loose, sums);
     }
     add_sums<columns, width>(window, sums);
-    if (are_wide) window.sums = std::move(narrow);
   }
 
  private:

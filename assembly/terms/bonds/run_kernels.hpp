@@ -123,11 +123,12 @@ class RunPass {
         });
   }
 
-  /// Adds the upper halves of the bonds' Hessians to both of their ends; the columns are as for
-  /// forces.
+  /// Adds D entries of the upper halves of the bonds' Hessians to both of their ends; the columns
+  /// are as for forces.
   /// @param damage as above
+  /// @param first entry
   [[gnu::noinline]] void add_diagonals(const BondRun& run, RunDamage* damage, double projection,
-                                       PointColumns& sums) const {
+                                       int first, PointColumns& sums) const {
     Vector<D, RunRow> arm;
     RunRow squared, change, of_arms, of_unit;
     find_arms(run, arm, squared, change);
@@ -146,9 +147,9 @@ class RunPass {
                     within(batch, (along - across) * (measure.inverse * measure.inverse), 0.0);
               });
         });
-    add_to_ends<D*(D + 1) / 2, 1>(
+    add_to_ends<D, 1>(
         run, sums, [&](int k, std::size_t b) __attribute__((always_inline)) {
-          const auto [r, c] = of_upper_half[std::size_t(k)];
+          const auto [r, c] = entries_of_upper_half<D>[std::size_t(first + k)];
           const Lanes entry = of_arms[b] * arm[r][b] * arm[c][b];
           return r == c ? entry + of_unit[b] : entry;
         });
@@ -167,13 +168,6 @@ class RunPass {
   }
 
  private:
-  struct Entry {
-    int row, column;
-  };
-  static constexpr std::array<Entry, 6> of_upper_half =
-      D == 3 ? std::array<Entry, 6>{{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}}
-             : std::array<Entry, 6>{{{0, 0}, {0, 1}, {1, 1}}};
-
   /// @return false if a bond needs double precision; nothing has then been added
   template <class L>
   [[gnu::noinline]] bool add_products_in(const BondRun& run, RunDamage* damage, double projection,

@@ -16,10 +16,7 @@ namespace peristat {
 struct RunWindow {
   RunWindow() = default;
   RunWindow(int dimension, Index most)
-      : vectors(2 * dimension, most), sums(widest(dimension), most), capacity(most) {}
-
-  /// Columns of sums that are kept; wider sums need others for their time.
-  static constexpr int widest(int dimension) { return std::max(dimension, 2); }
+      : vectors(2 * dimension, most), sums(std::max(dimension, 2), most), capacity(most) {}
 
   PointColumns vectors;  ///< the packed ones, components of the first one first
   PointColumns sums;     ///< of a vector or of two numbers
