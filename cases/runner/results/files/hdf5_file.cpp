@@ -276,6 +276,7 @@ void Hdf5File::close_columns() {
 void Hdf5File::close() {
   close_columns();
   checked(H5Fflush(id_, H5F_SCOPE_LOCAL), "write a file to the disk");
+  checked(H5garbage_collect(), "free what HDF5 keeps of written rows");
   checked(H5Fclose(std::exchange(id_, -1)), "close a file");
 }
 
