@@ -3,7 +3,7 @@
   ./peristat build && /usr/bin/python3 -m benchmarks.precision [--threads N] [--repeat 2]
 
 Runs go in turns; of the repetitions the least seconds count. The difference is that of the displacements, over the
-largest one.
+largest one. A second table counts the iterations of one system to 1e-8, for the bodies of docs/linear-solvers.md.
 """
 
 import argparse
@@ -17,6 +17,7 @@ import h5py
 import numpy
 
 from tests.reference.program import PROGRAM, ROOT, settings
+from tests.verification.printed_numbers_test import LinearSolvers
 
 PCG = ["solver.linear='pcg'", "solver.tangent='matrix_free'"]
 BLOCK = ["lattice.spacing=0.02", "lattice.shape[0].min=[0,-0.5,-0.5]", "lattice.shape[0].max=[1,0.5,0.5]",
@@ -59,6 +60,25 @@ def run(case, changes, precision, threads, folder):
     }, displacement  # fmt: skip
 
 
+def iterations_of_one_system(body, preconditioner, precision, work):
+    extent, more = LinearSolvers.BODIES[body]
+    case = work / "system.toml"
+    case.write_text(LinearSolvers.CASE.format(extent=extent, more=more))
+    run(case, [f"solver.preconditioner='{preconditioner}'"], precision, 1, work / "out")
+    with (work / "out/iterations.csv").open() as file:
+        return list(csv.DictReader(file))[1]["linear_iterations"]
+
+
+def print_iterations_of_one_system(work):
+    preconditioners = ("jacobi", "block_jacobi", "rigid_pieces", "surrogate", "multigrid", "sines")
+    print("\n| one system, double / single | " + " | ".join(preconditioners) + " |")
+    print("|---" * (len(preconditioners) + 1) + "|")
+    for body in LinearSolvers.BODIES:
+        cells = [" / ".join(iterations_of_one_system(body, preconditioner, precision, work)
+                            for precision in ("double", "single")) for preconditioner in preconditioners]  # fmt: skip
+        print("| " + " | ".join([body, *cells]) + " |", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--threads", type=int, default=1)
@@ -84,6 +104,7 @@ def main():
                               ("total", "{:.2f}")):  # fmt: skip
                 cells += [text.format(double[key]), text.format(single[key])]
             print("| " + " | ".join([*cells, f"{difference:.1e}"]) + " |", flush=True)
+        print_iterations_of_one_system(pathlib.Path(work))
 
 
 if __name__ == "__main__":

@@ -88,6 +88,14 @@ class TrueResidual {
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = b_[k] - values[k];
     norm = trilinos::norm(values, ranks_);
   }
+  /// Takes what is known from elsewhere.
+  /// @param scale that it has to be multiplied by
+  void take(const Vector& known, double scale) {
+    const Teuchos::ArrayRCP<const double> entries = known.getData(0);
+    values.assign(entries.begin(), entries.end());
+    for (double& value : values) value *= scale;
+    norm = trilinos::norm(values, ranks_);
+  }
 
  private:
   const VectorMap& matrix_;
@@ -118,6 +126,8 @@ class StoppingRule : public Belos::StatusTest<double, Vector, Operator> {
 
   [[nodiscard]] bool at_limit() const { return at_limit_; }
   [[nodiscard]] bool not_finite() const { return not_finite_; }
+  /// True if the residual of the iteration is b - A x itself.
+  [[nodiscard]] virtual bool has_true_residual() const { return false; }
 
  protected:
   /// True if the present state is good enough, or can't become so.
@@ -141,6 +151,55 @@ class StoppingRule : public Belos::StatusTest<double, Vector, Operator> {
 
   int max_iterations_;
   bool stops_ = false, at_limit_ = false, not_finite_ = false;
+};
+
+/// Conjugate gradients whose products are rounded. Their residual drifts away from b - A x, which
+/// replaces it from time to time and decides in the end. Directions stay as they are, so that
+/// convergence goes on without a restart (van der Vorst and Ye, SIAM J. Sci. Comput. 22, 2000).
+///
+/// A run is given up where b - A x does not follow, and where the residual falls by less than a
+/// decade in `iterations_per_decade`, but for a first decade: such systems are so ill-conditioned
+/// that rounding costs more iterations (up to twice as many) than it saves time.
+class RoughStoppingRule : public StoppingRule {
+ public:
+  /// @param matrix A, not rounded
+  /// @param start 2-norm of b
+  RoughStoppingRule(const VectorMap& matrix, double start, double target, int max_iterations)
+      : StoppingRule(target, max_iterations), matrix_(matrix), start_(start), last_(start) {}
+
+  [[nodiscard]] bool has_true_residual() const override { return has_true_residual_; }
+
+ private:
+  static constexpr double iterations_per_decade = 8.0;
+  /// Share of a true residual at which the next one is computed. Rarer ones save hardly any time,
+  /// and cost slender bodies iterations.
+  static constexpr double gain = 1e-2;
+
+  [[nodiscard]] bool satisfied(const Iteration& iteration, double residual) override {
+    has_true_residual_ = residual <= std::max(target_, gain * last_);
+    if (!has_true_residual_) {
+      const double decades = iteration.getNumIters() / iterations_per_decade;
+      return residual > start_ * std::pow(10.0, 1.0 - decades);
+    }
+    const double before = std::exchange(last_, replace_residual(iteration));
+    return last_ <= target_ || last_ > 0.5 * before;
+  }
+
+  /// Returns the 2-norm of b - A x, the iteration's residual from now on.
+  [[nodiscard]] double replace_residual(const Iteration& iteration) const {
+    const Problem& problem = iteration.getProblem();
+    const auto residual = Teuchos::rcp_const_cast<Vector>(iteration.getNativeResiduals(nullptr));
+    matrix_(problem.getLHS()->getData(0).getRawPtr(), residual->getDataNonConst(0).getRawPtr());
+    residual->update(1.0, *problem.getRHS(), -1.0);
+    std::vector<double> norms(1);
+    residual->norm2(norms);
+    return norms[0];
+  }
+
+  const VectorMap& matrix_;
+  double start_;
+  double last_;  ///< 2-norm of b - A x where it was last computed
+  bool has_true_residual_ = false;
 };
 
 /// MINRES computes its residual only in the norm of the preconditioner, sqrt(r.M r). Once that has
@@ -183,6 +242,7 @@ void leave_if_several(const Problem& problem) {
 struct Run {
   KrylovOutcome outcome = KrylovOutcome::breakdown;
   int iterations = 0;
+  RCP<const Vector> true_residual{};  ///< null: not known
 };
 
 Run outcome_of(const StoppingRule& rule, int iterations) {
@@ -195,8 +255,7 @@ RCP<Belos::OutputManager<double>> silence() {
   return rcp(new Belos::OutputManager<double>(Belos::Errors, rcp(new Teuchos::oblackholestream)));
 }
 
-Run run_conjugate_gradients(const RCP<Problem>& problem, double target, int max_iterations) {
-  const RCP<StoppingRule> rule = rcp(new StoppingRule(target, max_iterations));
+Run run_conjugate_gradients(const RCP<Problem>& problem, const RCP<StoppingRule>& rule) {
   Teuchos::ParameterList parameters;
   Belos::PseudoBlockCGIter<double, Vector, Operator> iteration(problem, silence(), rule,
                                                                parameters);
@@ -220,7 +279,9 @@ Run run_conjugate_gradients(const RCP<Problem>& problem, double target, int max_
     leave_if_several(*problem);
     return {KrylovOutcome::breakdown, iteration.getNumIters()};
   }
-  return outcome_of(*rule, iteration.getNumIters());
+  Run run = outcome_of(*rule, iteration.getNumIters());
+  if (rule->has_true_residual()) run.true_residual = iteration.getNativeResiduals(nullptr);
+  return run;
 }
 
 Run run_minres(const RCP<Problem>& problem, double start_norm, double target, int max_iterations) {
@@ -284,11 +345,14 @@ Run run_gmres(const RCP<Problem>& problem, double relative_target, int max_itera
 }
 
 /// Solves for the correction of a solution with the given residual.
+/// @param is_rough if the matrix is rounded
 /// @param residual freed before Belos allocates its own memory
-Run run_belos(const RCP<const Map>& rows, const VectorMap& matrix, const VectorMap& preconditioner,
-              std::vector<double> residual, double residual_norm, double target, int max_iterations,
-              const KrylovOptions& options, RCP<Vector>& correction) {
-  const RCP<MapOperator> matrix_operator = rcp(new MapOperator(rows, matrix));
+Run run_belos(const RCP<const Map>& rows, const VectorMap& exact, bool is_rough,
+              const VectorMap& preconditioner, std::vector<double> residual, double residual_norm,
+              double target, int max_iterations, const KrylovOptions& options,
+              RCP<Vector>& correction) {
+  const RCP<MapOperator> matrix_operator =
+      rcp(new MapOperator(rows, is_rough ? options.rough_matrix : exact));
   const RCP<Vector> d = rcp(new Vector(rows, 1)), r = rcp(new Vector(rows, 1));
   std::copy(residual.begin(), residual.end(), r->getDataNonConst(0).begin());
   residual = std::vector<double>();
@@ -309,20 +373,21 @@ Run run_belos(const RCP<const Map>& rows, const VectorMap& matrix, const VectorM
     run = run_gmres(problem, target / residual_norm, max_iterations, options.restart);
   } else {
     problem->setLSIndex({0});
-    run = options.method == KrylovMethod::minres
-              ? run_minres(problem, residual_norm, target, max_iterations)
-          : options.method == KrylovMethod::bicgstab
-              ? run_bicgstab(problem, target, max_iterations)
-              : run_conjugate_gradients(problem, target, max_iterations);
+    if (options.method == KrylovMethod::minres) {
+      run = run_minres(problem, residual_norm, target, max_iterations);
+    } else if (options.method == KrylovMethod::bicgstab) {
+      run = run_bicgstab(problem, target, max_iterations);
+    } else if (is_rough) {
+      run = run_conjugate_gradients(
+          problem, rcp(new RoughStoppingRule(exact, residual_norm, target, max_iterations)));
+    } else {
+      run = run_conjugate_gradients(problem, rcp(new StoppingRule(target, max_iterations)));
+    }
     problem->setCurrLS();
   }
   correction = d;
   return run;
 }
-
-/// Share of a residual down to which a run with the rough matrix goes. Further down its own
-/// residual is no longer that of A.
-constexpr double most_rough_gain = 1e-5;
 
 /// Runs Belos until the true residual is small enough, or until another run doesn't help.
 KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& preconditioner,
@@ -344,17 +409,16 @@ KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& precondi
   const auto any = Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid();
   const RCP<const Map> rows = rcp(new Map(
       any, std::size_t(size), 0, teuchos_communicator(options.ranks ? *options.ranks : sole)));
-  bool is_rough = options.rough_matrix != nullptr;
+  bool is_rough = options.rough_matrix != nullptr;  // of the first run
   while (true) {
     const double before = residual.norm;
     RCP<Vector> correction;
     // Single precision has a short range: the system is scaled to a residual of norm 1.
     const double unit = is_rough ? before : 1.0;
     for (double& value : residual.values) value /= unit;
-    const Run run = run_belos(rows, is_rough ? options.rough_matrix : matrix, preconditioner,
-                              std::move(residual.values), before / unit,
-                              is_rough ? std::max(target / unit, most_rough_gain) : target,
-                              options.max_iterations - result.iterations, options, correction);
+    Run run =
+        run_belos(rows, matrix, is_rough, preconditioner, std::move(residual.values), before / unit,
+                  target / unit, options.max_iterations - result.iterations, options, correction);
     result.iterations += run.iterations;
     std::vector<double> candidate(x, x + size);
     {
@@ -362,7 +426,12 @@ KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& precondi
       for (int k = 0; k < size; ++k) candidate[std::size_t(k)] += unit * values[k];
     }
     correction = Teuchos::null;
-    residual.update(candidate.data());
+    if (run.true_residual.is_null()) {
+      residual.update(candidate.data());
+    } else {
+      residual.take(*run.true_residual, unit);
+      run.true_residual = Teuchos::null;
+    }
 
     // A failed run may end with a worse solution than it started from, or one that is not finite.
     const bool improved = residual.norm < before;
@@ -380,13 +449,13 @@ KrylovResult refine(int size, const VectorMap& matrix, const VectorMap& precondi
       result.outcome = KrylovOutcome::iteration_limit;
       return result;
     }
-    const bool has_helped = residual.norm <= 0.5 * before;
-    if (is_rough && (run.outcome != KrylovOutcome::converged || !has_helped)) {
+    if (is_rough) {
       is_rough = false;
       if (!improved) residual.update(x);
       continue;
     }
     if (run.outcome != KrylovOutcome::converged) return result;
+    const bool has_helped = residual.norm <= 0.5 * before;
     if (!has_helped) {
       result.outcome = KrylovOutcome::breakdown;
       return result;

@@ -35,7 +35,7 @@ struct KrylovOptions {
   /// Ranks that each have a part of the equations, perhaps none; null: this rank has all of them.
   const Communicator* ranks = nullptr;
   /// A faster map that is A to single precision, for conjugate gradients; empty: none. If they fail
-  /// with it, they go on with A itself.
+  /// with it or converge slowly, they go on with A itself.
   VectorMap rough_matrix{};
 };
 
