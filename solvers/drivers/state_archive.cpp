@@ -1,6 +1,7 @@
 #include "solvers/drivers/state_archive.hpp"
 
-#include <bit>
+#include <algorithm>
+#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -105,18 +106,20 @@ void transfer_pins(StateArchive& archive, FragmentPins& pins) {
   archive.transfer("pins/pinned", pinned, Rows::dofs);
 }
 
-/// Transfers their bits, in half the memory of numbers in double precision.
+/// Transfers their bits, two in the place of one number in double precision.
 void transfer_floats(StateArchive& archive, const std::string& name, std::vector<float>& values) {
-  static_assert(sizeof(Index) == sizeof(float));
-  std::vector<Index> bits(values.size());
-  for (std::size_t k = 0; k < bits.size(); ++k) bits[k] = std::bit_cast<Index>(values[k]);
-  archive.transfer(name, bits, Rows::whole);
-  values.resize(bits.size());
-  for (std::size_t k = 0; k < bits.size(); ++k) values[k] = std::bit_cast<float>(bits[k]);
+  static_assert(sizeof(double) == 2 * sizeof(float));
+  std::int64_t size = std::int64_t(values.size());
+  std::vector<double> pairs((values.size() + 1) / 2, 0.0);
+  std::memcpy(pairs.data(), values.data(), values.size() * sizeof(float));
+  archive.transfer(name + "_size", size);
+  archive.transfer(name, pairs, Rows::whole);
+  values.resize(std::min(std::size_t(size), 2 * pairs.size()));
+  std::memcpy(values.data(), pairs.data(), values.size() * sizeof(float));
 }
 
 void transfer_known(StateArchive& archive, const std::string& name, KnownCorrections& known) {
-  std::vector<KnownCorrections::Known> all = known.latest_first();
+  std::vector<KnownCorrections::Known> all = known.take_all();
   int count = int(all.size());
   archive.transfer(name + "/count", count);
   all.resize(std::size_t(count));

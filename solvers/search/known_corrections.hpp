@@ -33,6 +33,7 @@ class KnownCorrections {
   void clear() { latest_first_.clear(); }
 
   [[nodiscard]] const std::vector<Known>& latest_first() const { return latest_first_; }
+  [[nodiscard]] std::vector<Known> take_all() { return std::exchange(latest_first_, {}); }
   void restore(std::vector<Known> latest_first) { latest_first_ = std::move(latest_first); }
 
   /// Largest number of corrections: those of some two events.

@@ -18,6 +18,7 @@
 #include "cases/runner/process/failure.hpp"
 #include "cases/runner/process/interruption.hpp"
 #include "cases/runner/process/ranks_environment.hpp"
+#include "cases/runner/process/runtime_environment.hpp"
 #include "cases/runner/results/dossier.hpp"
 #include "cases/runner/results/recorder.hpp"
 #include "cases/runner/results/results.hpp"
@@ -175,6 +176,7 @@ class CaseRun {
       body_ = ranks_.count() > 1 ? make_part_body(from_, ranks_, options_.threads)
                                  : make_body(from_, options_.threads);
     }
+    keep_freed_memory_of_small_bodies(body_->points.count());
     gathering_.emplace(*body_->index_map);
     further_ = {from_.output.stress, lines_of(from_), !from_.controls.empty(),
                 !from_.sensitivity.over.empty()};

@@ -7,6 +7,7 @@
 #include <string>
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <sched.h>
 #include <unistd.h>
 
@@ -61,6 +62,20 @@ void require_room_for_ranks(int asked_for) {
                        " processors; on several machines mpirun or srun starts them");
 }
 
+namespace {
+
+/// Freed blocks of at least this size go back to the system.
+constexpr int released_bytes = 1 << 20;
+
+}  // namespace
+
+void keep_freed_memory_of_small_bodies(std::int64_t points) {
+  const bool keeps = points <= 100'000;
+  constexpr int most_of_glibc = 1 << 25;  // of M_MMAP_THRESHOLD
+  mallopt(M_MMAP_THRESHOLD, keeps ? most_of_glibc : released_bytes);
+  mallopt(M_TRIM_THRESHOLD, keeps ? 1 << 28 : 1 << 17);  // the latter is glibc's
+}
+
 void restart_with_environment(int threads, char** arguments) {
   constexpr const char* mark = "PERISTAT_ENVIRONMENT_SET";
   if (std::getenv(mark)) {
@@ -73,7 +88,7 @@ void restart_with_environment(int threads, char** arguments) {
   setenv("OMP_THREAD_LIMIT", count.c_str(), 1);
   // With a fixed threshold, vectors of a large body go back to the system when they are freed.
   // Without it, the memory of the neighbour search stays with its threads.
-  setenv("MALLOC_MMAP_THRESHOLD_", "1048576", 0);
+  setenv("MALLOC_MMAP_THRESHOLD_", std::to_string(released_bytes).c_str(), 0);
   if (!std::getenv("OMP_WAIT_POLICY")) setenv("GOMP_SPINCOUNT", "1000", 0);
   execv("/proc/self/exe", arguments);
   unsetenv(mark);  // no /proc: the program also runs as it is, only slower

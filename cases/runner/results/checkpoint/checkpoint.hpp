@@ -15,7 +15,7 @@ namespace peristat {
 
 /// Version of the layout of checkpoints, which other programs can't read. It grows with every
 /// change of their contents or format.
-inline constexpr std::int64_t checkpoint_layout = 13;
+inline constexpr std::int64_t checkpoint_layout = 14;
 
 /// Numbers of rows of the tables of results.h5.
 struct TableRows {

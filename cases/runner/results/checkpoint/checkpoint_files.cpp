@@ -33,7 +33,8 @@ class InPlace {
       waiting_ += bytes;
       return;
     }
-    write(std::exchange(waiting_, {}));
+    write(waiting_);
+    waiting_.clear();
     write(bytes);
   }
   void end() {
@@ -45,7 +46,7 @@ class InPlace {
   }
 
  private:
-  static constexpr std::size_t part = 1 << 20;
+  static constexpr std::size_t part = 1 << 16;
 
   void write(std::string_view bytes) {
     while (!bytes.empty()) {
