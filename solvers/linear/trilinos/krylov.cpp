@@ -157,32 +157,38 @@ class StoppingRule : public Belos::StatusTest<double, Vector, Operator> {
 /// replaces it from time to time and decides in the end. Directions stay as they are, so that
 /// convergence goes on without a restart (van der Vorst and Ye, SIAM J. Sci. Comput. 22, 2000).
 ///
-/// A run is given up where b - A x does not follow, and where the residual falls by less than a
-/// decade in `iterations_per_decade`, but for a first decade: such systems are so ill-conditioned
-/// that rounding costs more iterations (up to twice as many) than it saves time.
+/// A run is given up where b - A x is twice the iteration's residual, and where the residual falls
+/// by less than a decade in `iterations_per_decade` from its largest value, but for a first decade:
+/// such systems are so ill-conditioned that rounding costs more iterations (up to twice as many)
+/// than it saves time.
 class RoughStoppingRule : public StoppingRule {
  public:
   /// @param matrix A, not rounded
   /// @param start 2-norm of b
   RoughStoppingRule(const VectorMap& matrix, double start, double target, int max_iterations)
-      : StoppingRule(target, max_iterations), matrix_(matrix), start_(start), last_(start) {}
+      : StoppingRule(target, max_iterations),
+        matrix_(matrix),
+        largest_(start),
+        largest_since_(start) {}
 
   [[nodiscard]] bool has_true_residual() const override { return has_true_residual_; }
 
  private:
   static constexpr double iterations_per_decade = 8.0;
-  /// Share of a true residual at which the next one is computed. Rarer ones save hardly any time,
-  /// and cost slender bodies iterations.
+  /// Share of the largest residual since the last true one at which the next one is computed. Rarer
+  /// ones save hardly any time, and cost slender bodies iterations.
   static constexpr double gain = 1e-2;
 
   [[nodiscard]] bool satisfied(const Iteration& iteration, double residual) override {
-    has_true_residual_ = residual <= std::max(target_, gain * last_);
+    largest_ = std::max(largest_, residual);
+    largest_since_ = std::max(largest_since_, residual);
+    has_true_residual_ = residual <= std::max(target_, gain * largest_since_);
     if (!has_true_residual_) {
       const double decades = iteration.getNumIters() / iterations_per_decade;
-      return residual > start_ * std::pow(10.0, 1.0 - decades);
+      return residual > largest_ * std::pow(10.0, 1.0 - decades);
     }
-    const double before = std::exchange(last_, replace_residual(iteration));
-    return last_ <= target_ || last_ > 0.5 * before;
+    largest_since_ = replace_residual(iteration);
+    return largest_since_ <= target_ || largest_since_ > 2.0 * std::max(target_, residual);
   }
 
   /// Returns the 2-norm of b - A x, the iteration's residual from now on.
@@ -197,8 +203,8 @@ class RoughStoppingRule : public StoppingRule {
   }
 
   const VectorMap& matrix_;
-  double start_;
-  double last_;  ///< 2-norm of b - A x where it was last computed
+  double largest_;        ///< residual so far
+  double largest_since_;  ///< b - A x was last computed
   bool has_true_residual_ = false;
 };
 
