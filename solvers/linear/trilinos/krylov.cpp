@@ -194,6 +194,7 @@ class RoughStoppingRule : public StoppingRule {
   /// Returns the 2-norm of b - A x, the iteration's residual from now on.
   [[nodiscard]] double replace_residual(const Iteration& iteration) const {
     const Problem& problem = iteration.getProblem();
+    // Belos hands out the vector that it works on.
     const auto residual = Teuchos::rcp_const_cast<Vector>(iteration.getNativeResiduals(nullptr));
     matrix_(problem.getLHS()->getData(0).getRawPtr(), residual->getDataNonConst(0).getRawPtr());
     residual->update(1.0, *problem.getRHS(), -1.0);

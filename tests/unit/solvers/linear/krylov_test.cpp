@@ -256,6 +256,26 @@ TEST(ConjugateGradients, GiveARoughMatrixUpWhereTheyConvergeSlowly) {
   EXPECT_LE(solved.result.iterations, 1.2 * usual);
 }
 
+TEST(ConjugateGradients, KeepARoughMatrixWhereTheResidualRisesFirst) {
+  // A load along soft motions, with a little of a stiff one.
+  VectorXd eigenvalues = VectorXd::LinSpaced(size, 1.0, 3.0);
+  eigenvalues[0] = 1000.0;
+  std::vector<double> b(size, 1.0);
+  b[0] = 0.3;
+  const MatrixXd matrix = eigenvalues.asDiagonal();
+  int products = 0;
+  double largest = 0.0;
+  const VectorMap watched = [&](const double* v, double* result) {
+    in_single(matrix)(v, result);
+    if (++products == 1) largest = Eigen::Map<VectorXd>(result, size).norm();
+  };
+  const RoughSolve solved = solve_roughly(matrix, watched, 200, b);
+  EXPECT_GT(largest, 20.0);  // of the first direction, the residual: of norm 1
+  EXPECT_EQ(solved.result.outcome, KrylovOutcome::converged);
+  EXPECT_GT(solved.result.iterations, 8);
+  EXPECT_EQ(solved.rough_products, solved.result.iterations);
+}
+
 TEST(ConjugateGradients, MultiplyByARoughMatrixWithinTheRangeOfSinglePrecision) {
   const MatrixXd matrix = symmetric_matrix(0);
   for (const double scale : {1e-60, 1e60}) {
