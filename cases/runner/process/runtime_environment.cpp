@@ -70,6 +70,8 @@ constexpr int released_bytes = 1 << 20;
 }  // namespace
 
 void keep_freed_memory_of_small_bodies(std::int64_t points) {
+  const char* const set = std::getenv("MALLOC_MMAP_THRESHOLD_");
+  if (set && set != std::to_string(released_bytes)) return;
   const bool keeps = points <= 100'000;
   constexpr int most_of_glibc = 1 << 25;  // of M_MMAP_THRESHOLD
   mallopt(M_MMAP_THRESHOLD, keeps ? most_of_glibc : released_bytes);

@@ -38,6 +38,7 @@ void restart_with_environment(int threads, char** arguments);
 /// Chooses what becomes of the memory of freed vectors. In a small body (up to 100 000 points) it
 /// stays with the process: steps are quick, and the system would take a tenth of the time of a path
 /// to give it out again. In a large one it goes back to the system, which saves 4 % of the peak.
+/// Does nothing if the user has set MALLOC_MMAP_THRESHOLD_.
 void keep_freed_memory_of_small_bodies(std::int64_t points);
 
 }  // namespace peristat
