@@ -235,11 +235,9 @@ std::vector<UtilisedBond> utilised_bonds(Assembler& body, const StateView& at,
                                          std::span<const double> borne, double least) {
   std::vector<std::vector<UtilisedBond>> parts(static_cast<std::size_t>(body.threads()));
   for_each_driven(body, at, borne, {}, [&](int thread, Index i, Offset bond, const auto& drive) {
-    const double stretch = driving(drive);
-    const double utilisation = stretch / borne[std::size_t(bond)];
-    if (utilisation >= least) {
-      parts[std::size_t(thread)].push_back({bond, i, utilisation, stretch});
-    }
+    const double stretch = driving(drive), strength = borne[std::size_t(bond)];
+    if (stretch < least * strength) return;
+    parts[std::size_t(thread)].push_back({bond, i, stretch / strength, stretch});
   });
   std::vector<UtilisedBond> found;
   for (const auto& part : parts) found.insert(found.end(), part.begin(), part.end());

@@ -67,6 +67,11 @@ double work_error_of_contacts(Assembler& body, const StateView& from, const Stat
 /// Begin of the segment of the programme that a stage is in.
 double segment_begin(double stage) { return LoadingProgramme::next_entry(stage) - 1.0; }
 
+/// The largest utilisation of listed bonds; 0 if there are none.
+double largest_of(std::span<const UtilisedBond> most_utilised_first) {
+  return most_utilised_first.empty() ? 0.0 : most_utilised_first.front().utilisation;
+}
+
 /// True if bonds have softened along a law that this mode replaces by a saw-tooth.
 bool has_softened_smoothly(Path& path) {
   const PathState& state = path.state();
@@ -104,8 +109,9 @@ Advance EventStepping::next() {
   }
   if (events.at_strength) {
     tells_ = false;  // reported before the state was accepted
-    Settled settled =
-        ahead_ ? std::move(*ahead_) : settle(path_.state().accepted, path_.state().ledger);
+    Settled settled = ahead_ ? std::move(*ahead_)
+                             : settle(path_.state().accepted, path_.state().ledger,
+                                      utilised_near(path_.state().accepted));
     tells_ = true;
     ahead_.reset();
     if (!settled.has_converged()) {
@@ -156,13 +162,18 @@ double EventStepping::utilisation(const State& at, std::span<const double> borne
   return largest_utilisation(body, StateView(at, Damage::held), borne);
 }
 
-std::vector<UtilisedBond> EventStepping::batch_of(const State& at) const {
-  Assembler& body = path_.damaged();
-  const double tolerance = path_.options().events.tolerance;
+double EventStepping::least_utilisation() const {
   // Leaves room for the gap that ends the batch. The most utilised bond is at its strength.
-  const double least = (1.0 - tie) * (1.0 - std::max(1.5 * tolerance, 1e-3));
-  std::vector<UtilisedBond> all = utilised_bonds(body, StateView(at, Damage::held), borne_, least);
-  const double most = all.empty() ? 0.0 : all.front().utilisation;
+  return (1.0 - tie) * (1.0 - std::max(1.5 * path_.options().events.tolerance, 1e-3));
+}
+
+std::vector<UtilisedBond> EventStepping::utilised_near(const State& at) const {
+  return utilised_bonds(path_.damaged(), StateView(at, Damage::held), borne_, least_utilisation());
+}
+
+std::vector<UtilisedBond> EventStepping::batch_of(std::vector<UtilisedBond> all) const {
+  const double tolerance = path_.options().events.tolerance;
+  const double most = largest_of(all);
   std::size_t count = 1;
   while (count < all.size() && (all[count].utilisation >= (1.0 - tolerance) * most ||
                                 all[count - 1].utilisation - all[count].utilisation <= tie)) {
@@ -238,9 +249,10 @@ Attempt EventStepping::settle_downhill(const State& at, double relative_toleranc
   return to_attempt(std::move(found), load_point(at));
 }
 
-EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& ledger) {
+EventStepping::Settled EventStepping::settle(const State& at, const PathLedger& ledger,
+                                             std::vector<UtilisedBond> utilised) {
   Assembler& body = path_.damaged();
-  const std::vector<UtilisedBond> batch = batch_of(at);
+  const std::vector<UtilisedBond> batch = batch_of(std::move(utilised));
   BondDrops dropped = drop(body, StateView(at, Damage::held), borne_, batch);
   Settled settled;
   settled.dropping = Index(batch.size());
@@ -348,6 +360,7 @@ StrengthStep EventStepping::strength_step() const {
   StrengthStep step;
   step.borne = borne_;
   step.least_scale = share_of_scale * state.events.largest_scale;
+  step.listed = least_utilisation();
   if (state.events.longest > 0.0) step.longest = state.events.longest;
   if (path_.is_preloading()) {
     step.preloads = true;
@@ -381,6 +394,7 @@ EventStepping::Step EventStepping::search() {
       search_strength(path_.problem(), tangent(), from, asked, held(),
                       [this](const IterationRecord& row) { return path_.iterated(row); });
   step.end = found.end;
+  step.utilised = std::move(found.utilised);
   const LoadPoint reached = asked.point(found.stage);
   step.attempted = Increment::length(load_point(from), reached);
   step.attempt = to_attempt(std::move(found.newton), reached);
@@ -401,7 +415,7 @@ EventStepping::Step EventStepping::run_avalanche() {
     return step;
   }
   for (;; ++passes) {
-    Settled settled = settle(state.accepted, state.ledger);
+    Settled settled = settle(state.accepted, state.ledger, utilised_near(state.accepted));
     step.attempt = settled.attempt;
     step.attempt.outcome = settled.outcome;
     step.fault = settled.fault;
@@ -422,7 +436,7 @@ EventStepping::Step EventStepping::run_avalanche() {
 
 bool EventStepping::is_above_strength(const Step& step) const {
   return step.end == StrengthEnd::on_the_way &&
-         utilisation(state_of(step.attempt), borne_) > share_at_strength * (1.0 + tie);
+         largest_of(*step.utilised) > share_at_strength * (1.0 + tie);
 }
 
 void EventStepping::pass_over(Step& step) {
@@ -527,8 +541,8 @@ Advance EventStepping::accept(Step step, PathState before) {
   const bool needs_tangent = tangent().touches() || touches(reached);
   const bool is_known = !needs_tangent || tangent().refresh(reached) == LinearOutcome::solved;
   events.tangent = tangent().reference();
-  const double most = utilisation(reached, borne_);
-  events.at_strength = most >= 1.0 - tie;
+  if (!step.utilised) step.utilised = utilised_near(reached);
+  events.at_strength = largest_of(*step.utilised) >= 1.0 - tie;
   std::string how =
       step.how.empty() ? std::to_string(step.attempt.iterations) + " iterations" : step.how;
   record.stability = is_known ? stability_of_elastic_body() : Stability::not_judged;
@@ -537,7 +551,7 @@ Advance EventStepping::accept(Step step, PathState before) {
     with_step.accept(step.found.ledger,
                      path_.working_force(step.attempt.state, step.attempt.external_force),
                      step.found.energies);
-    ahead_ = settle(reached, with_step);
+    ahead_ = settle(reached, with_step, std::move(*step.utilised));
     if (ahead_->outcome == Outcome::interrupted) {  // the state's stability is not known
       step.attempt.outcome = Outcome::interrupted;
       return fail(std::move(step), std::move(before));

@@ -71,13 +71,16 @@ class EventStepping : public Driver {
     Attempt attempt;
     FoundStep found;
     StrengthEnd end = StrengthEnd::inadmissible;
+    std::optional<std::vector<UtilisedBond>> utilised;  ///< see utilised_near
     std::string fault;
     double attempted = 0.0;
     std::string how;
   };
 
   /// Carries out the next event: bonds drop at a state, and the body settles.
-  [[nodiscard]] Settled settle(const State& at, const PathLedger& ledger);
+  /// @param utilised see utilised_near
+  [[nodiscard]] Settled settle(const State& at, const PathLedger& ledger,
+                               std::vector<UtilisedBond> utilised);
   /// True if contacts press or touch.
   [[nodiscard]] bool touches(const State& at) const;
   /// Searches the equilibrium at the present load, if it is not far.
@@ -96,8 +99,12 @@ class EventStepping : public Driver {
   [[nodiscard]] bool book_event(const State& at, const PathLedger& ledger, const BondDrops& dropped,
                                 double lost, Settled& settled) const;
   [[nodiscard]] bool asks_for_interrupt() const;
-  /// Bonds that drop together in the next event.
-  [[nodiscard]] std::vector<UtilisedBond> batch_of(const State& at) const;
+  /// Utilisation of the bonds that may drop in an event, and of those beyond the gap that ends it.
+  [[nodiscard]] double least_utilisation() const;
+  /// These bonds of a state at its strength, most utilised first.
+  [[nodiscard]] std::vector<UtilisedBond> utilised_near(const State& at) const;
+  /// Those of them that drop together in the next event.
+  [[nodiscard]] std::vector<UtilisedBond> batch_of(std::vector<UtilisedBond> utilised) const;
   /// Makes a settled state the accepted one.
   void take_up(Settled settled);
   /// Pins fragments that have come off, which changes the equations.

@@ -18,6 +18,15 @@ using Long = SuiteSparse_long;
 /// strip by strip, those of one column after the other's.
 constexpr std::size_t group = 4, strip = 8, triangle = group * group;
 
+/// Floats of a page of memory, at whose end the processor's own prefetching stops.
+constexpr std::size_t page = 1024;
+
+/// Fetches the entries of a strip into the cache; the address need not exist.
+void fetch_strip(const float* entries) {
+  constexpr std::size_t line = 16;
+  for (std::size_t k = 0; k < group * strip; k += line) __builtin_prefetch(entries + k);
+}
+
 std::size_t strips(std::size_t rows) { return (rows + strip - 1) / strip; }
 std::size_t size_of_group(std::size_t rows_below) {
   return triangle + group * strip * strips(rows_below);
@@ -74,6 +83,7 @@ void subtract(const float* entries, const FourFloats& value, float* below, std::
   const SingleLanes a = double(value[0]), b = double(value[1]), c = double(value[2]),
                     d = double(value[3]);
   for (std::size_t k = 0; k < strips(rows); ++k, entries += group * strip, below += strip) {
+    fetch_strip(entries + page);
     const SingleLanes sum =
         (SingleLanes(entries) * a + SingleLanes(entries + strip) * b) +
         (SingleLanes(entries + 2 * strip) * c + SingleLanes(entries + 3 * strip) * d);
@@ -85,8 +95,10 @@ void subtract(const float* entries, const FourFloats& value, float* below, std::
 FourFloats products(const float* entries, const float* below, std::size_t rows) {
   std::array<std::array<SingleLanes, group>, 2> sums;
   for (auto& of_parity : sums) of_parity.fill(0.0);
+  const float* const before = entries - size_of_group(rows);  // the group that is next
   const auto add = [&](std::size_t k) {
     const SingleLanes v(below + k * strip);
+    fetch_strip(before + k * group * strip);
     for (std::size_t column = 0; column < group; ++column) {
       sums[k % 2][column] += SingleLanes(entries + (k * group + column) * strip) * v;
     }

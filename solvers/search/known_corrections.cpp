@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "src/core/vector_verbs.hpp"
+
 namespace peristat {
 namespace {
 
@@ -11,10 +13,7 @@ constexpr double least_news = 0.1;
 
 template <class One, class Other>
 double dot_of(const One& one, const Other& other) {
-  double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-  for (std::size_t k = 0; k < one.size(); ++k) sum += double(one[k]) * double(other[k]);
-  return sum;
+  return sum_of(one.size(), [&](std::size_t k) { return double(one[k]) * double(other[k]); });
 }
 
 void add_share(std::span<double> to, double share, const std::vector<float>& of) {

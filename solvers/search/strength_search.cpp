@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "assembly/borne_stretches.hpp"
 #include "solvers/search/convergence.hpp"
 #include "solvers/search/linearisation.hpp"
 #include "src/core/vector_verbs.hpp"
@@ -350,8 +349,10 @@ class StrengthSearch {
   bool ends_well() {
     if (step_.settles) return true;
     if (!is_whole_) return false;
-    const double most =
-        largest_utilisation(problem_.assembler, current_.at(Damage::held), step_.borne);
+    std::vector<UtilisedBond>& found = result_.utilised;
+    found =
+        utilised_bonds(problem_.assembler, current_.at(Damage::held), step_.borne, step_.listed);
+    const double most = found.empty() ? 0.0 : found.front().utilisation;
     watched_.clear();  // if another bond is the most utilised one, all are looked at again
     if (result_.end == StrengthEnd::at_strength) {
       return std::abs(most - share_at_strength) <= strength_tolerance;

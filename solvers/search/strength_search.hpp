@@ -2,7 +2,9 @@
 
 #include <limits>
 #include <span>
+#include <vector>
 
+#include "assembly/borne_stretches.hpp"
 #include "solvers/search/condition_rates.hpp"
 #include "solvers/search/newton.hpp"
 #include "solvers/search/updated_tangent.hpp"
@@ -22,6 +24,7 @@ struct StrengthStep {
   double stop = 0.0;              ///< stage to end at, going up, if no strength is met before
   bool settles = false;           ///< only finds equilibrium at its stage
   double least_scale = 0.0;       ///< that the residual is measured against [N]
+  double listed = 0.999;          ///< least utilisation of bonds that the result lists, below 1
   /// Largest change of the stage; no strength beyond it is searched.
   double longest = std::numeric_limits<double>::infinity();
   /// Change of the stage within which contacts that close and open are one corner of the path.
@@ -45,8 +48,9 @@ struct StrengthResult {
   NewtonResult newton;
   double stage = 0.0;
   StrengthEnd end = StrengthEnd::inadmissible;
-  bool goes_up = true;            ///< the stage increases
-  bool turns_at_contact = false;  ///< on the way: a contact closes or opens
+  std::vector<UtilisedBond> utilised;  ///< listed bonds of a converged state, see utilised_bonds
+  bool goes_up = true;                 ///< the stage increases
+  bool turns_at_contact = false;       ///< on the way: a contact closes or opens
 };
 
 /// Newton-Raphson for the equilibrium at which the next bonds reach their resistance, from an

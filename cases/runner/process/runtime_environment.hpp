@@ -31,7 +31,10 @@ void require_room_for_ranks(int asked_for);
 ///    Waiting in the kernel at once (OMP_WAIT_POLICY=passive) makes a small factorisation twice as
 ///    slow on two threads as on one; waiting actively for longer makes it hang when another program
 ///    wants the core.
-/// A waiting policy that the user has set is kept. Returns in the restarted program, or if it can't
+///  - GLIBC_TUNABLES: memory is asked for in huge pages, where the system leaves the choice to
+///    programs. A path with a direct solver gains 7 %, a million points in 3D gain 3 %.
+///  - MALLOC_MMAP_THRESHOLD_: see keep_freed_memory_of_small_bodies.
+/// What the user has set of the last three is kept. Returns in the restarted program, or if it can't
 /// be restarted.
 void restart_with_environment(int threads, char** arguments);
 

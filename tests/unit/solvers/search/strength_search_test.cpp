@@ -106,6 +106,22 @@ TEST(StrengthSearch, EndsWhereTheFirstBondIsAtItsStrength) {
   EXPECT_LT(drawn.distance_from_newton(found), 1e-8);
 }
 
+TEST(StrengthSearch, ListsTheMostUtilisedBondsOfTheStateThatItFinds) {
+  Drawn drawn;
+  StrengthStep step = drawn.step();
+  step.listed = 0.7;
+  const StrengthResult found = drawn.search(step);
+  ASSERT_EQ(found.end, StrengthEnd::at_strength);
+  const auto expected = utilised_bonds(drawn.assembler, found.newton.state.at(Damage::held),
+                                       drawn.borne, step.listed);
+  ASSERT_GT(expected.size(), 2U);
+  ASSERT_EQ(found.utilised.size(), expected.size());
+  for (std::size_t k = 0; k < expected.size(); ++k) {
+    EXPECT_EQ(found.utilised[k].bond, expected[k].bond);
+    EXPECT_EQ(found.utilised[k].utilisation, expected[k].utilisation);
+  }
+}
+
 TEST(StrengthSearch, StopsBeforeIt) {
   Drawn drawn;
   StrengthStep step = drawn.step();
