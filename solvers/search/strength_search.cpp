@@ -33,7 +33,7 @@ constexpr double corner_accuracy = 0.01;
 
 /// An iteration that leaves more than this fraction of the residual needs a new tangent: with what
 /// is known of earlier corrections a good one leaves a hundredth.
-constexpr double slow = 0.03;
+constexpr double slow = 0.05;
 
 class StrengthSearch {
  public:

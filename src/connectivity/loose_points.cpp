@@ -265,14 +265,19 @@ bool hold_all(const Web& web, Index own, const std::vector<char>& prescribed,
   for (const FreeHandle& handle : handles) {
     if (handle.is_slide && handle.moved_by.member < own) slides[handle.moved_by.member] = 1;
   }
-  constexpr Index none = -1;
-  std::vector<Index> number(std::size_t(own), none);  // of a point that needs all of its bonds
-  std::vector<Support> support;
+  std::vector<char> needs_all(std::size_t(own), 0);  // of its bonds
+#pragma omp parallel for schedule(static)
   for (Index i = 0; i < own; ++i) {
     const Support itself = support_by_itself(web, i, prescribed);
-    if (!slides[i] && is_held_from_above(web, i, itself)) continue;
+    needs_all[i] = slides[i] || !is_held_from_above(web, i, itself);
+  }
+  constexpr Index none = -1;
+  std::vector<Index> number(std::size_t(own), none);
+  std::vector<Support> support;
+  for (Index i = 0; i < own; ++i) {
+    if (!needs_all[i]) continue;
     number[i] = Index(support.size());
-    support.push_back(itself);
+    support.push_back(support_by_itself(web, i, prescribed));
   }
   web.for_each_bond([&](Index i, Index j, Offset) {
     for (const Index end : {i, j}) {

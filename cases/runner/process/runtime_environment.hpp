@@ -34,8 +34,8 @@ void require_room_for_ranks(int asked_for);
 ///  - GLIBC_TUNABLES: memory is asked for in huge pages, where the system leaves the choice to
 ///    programs. A path with a direct solver gains 7 %, a million points in 3D gain 3 %.
 ///  - MALLOC_MMAP_THRESHOLD_: see keep_freed_memory_of_small_bodies.
-/// What the user has set of the last three is kept. Returns in the restarted program, or if it can't
-/// be restarted.
+/// What the user has set of the last three is kept. Returns in the restarted program, or if it
+/// can't be restarted.
 void restart_with_environment(int threads, char** arguments);
 
 /// Chooses what becomes of the memory of freed vectors. In a small body (up to 100 000 points) it

@@ -1,5 +1,7 @@
 #include "solvers/formulations/specification/body_specification.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "solvers/formulations/specification/require.hpp"
@@ -60,8 +62,10 @@ void check_points(const Points& points) {
   require(points.reference.size() == points.volume.size() * std::size_t(points.dimension),
           "points.reference", "", "must have as many entries as the dimension for every volume");
   require_positive(points.spacing, "points.spacing");
-  for (const double at : points.reference)
-    require(std::isfinite(at), "points.reference", number_text(at), "must be finite");
+  const auto is_finite = [](double at) { return std::isfinite(at); };
+  const auto odd = std::ranges::find_if_not(points.reference, is_finite);
+  if (odd != points.reference.end())
+    throw InputError("points.reference", number_text(*odd), "must be finite");
   for (const double volume : points.volume) require_positive(volume, "points.volume");
   check_shares(points);
   for (const auto& [name, values] : points.columns) check_column(name, values, points.own());

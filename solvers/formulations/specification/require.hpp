@@ -15,9 +15,8 @@ inline void require(bool holds, const std::string& key, const std::string& value
 }
 
 inline void require_positive(const std::optional<double>& value, const std::string& key) {
-  if (!value) return;
-  require(std::isfinite(*value) && *value > 0.0, key, number_text(*value),
-          "must be positive and finite");
+  if (!value || (std::isfinite(*value) && *value > 0.0)) return;
+  throw InputError(key, number_text(*value), "must be positive and finite");
 }
 
 inline void require_absent(bool is_given, const std::string& key, const std::string& why) {
