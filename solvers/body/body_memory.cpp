@@ -58,6 +58,7 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.bonds = double(body.model.bonds().count());
   size.bytes_per_bond = double(sizeof(Index) + body.model.bonds().kind.bytes_per_bond());
   size.has_history = body.model.has_history();
+  size.has_runs = body.points.lattice && body.model.bonds().kind.are_numbered();
   const BondFailure* const failing = body.model.failing_bonds();
   // Onsets and critical stretches, as the history is kept before and after a step, and the drives.
   if (failing && failing->onsets()) {

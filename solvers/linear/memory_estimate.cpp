@@ -35,8 +35,9 @@ double body_bytes(const BodySize& size) {
   const double vectors = 11.5 * d;
   // Workspace: gathered rows and sums, see row_width and block_width. With convolutions there are
   // none, and a checkpoint determines the peak: four vectors as they are and as bytes.
-  const double gathered = size.dimension == 3 ? 8.0 + 6.0 : 4.0 + 4.0;
-  const double workspace = size.is_convolved ? 8.0 * d : gathered;
+  const double rows = size.has_runs ? 0.0 : size.dimension == 3 ? 8.0 : 4.0;
+  const double sums = size.dimension == 3 ? 6.0 : 4.0;
+  const double workspace = size.is_convolved ? 8.0 * d : rows + sums;
   const double scalars = 4.0;
   // Largest stretches, a copy of them for a step back, and flags.
   const double per_bond =

@@ -17,6 +17,7 @@ struct BodySize {
   double bytes_per_bond = 6.0;       ///< neighbour and kind of bond, see BondKinds
   bool has_history = false;          ///< bonds may be damaged
   bool is_convolved = false;         ///< its bonds are convolutions: no rows are gathered
+  bool has_runs = false;             ///< its sums go along runs: rows are gathered for a pass only
   bool has_symmetric_blocks = true;  ///< off-diagonal blocks of the tangent are symmetric
   bool is_constrained = false;       ///< degrees of freedom follow others
   double free_dofs = 0.0;

@@ -33,10 +33,11 @@ struct Batch {
 /// Calls visit(batch) for some bonds of a row, with the weights of these kinds.
 template <int D, class Visit>
 [[gnu::always_inline]] inline void for_each_batch(const Bonds& bonds, const BondKinds& kinds,
-                                                  const double* rows, const LooseBonds& of,
+                                                  const PointRows<D>& rows, const LooseBonds& of,
                                                   const Visit& visit) {
   constexpr int width = row_width(D);
-  const double* own = rows + std::size_t(of.point) * width;
+  std::array<typename PointRows<D>::Scratch, lane_count + 1> scratch;
+  const double* const own = rows.of(of.point, scratch[lane_count]);
   Batch<D> batch;
   batch.point = of.point;
   for (Offset first = of.first; first < of.last; first += lane_count) {
@@ -62,7 +63,7 @@ template <int D, class Visit>
     }
     std::array<const double*, lane_count> row;
 #pragma GCC unroll 4
-    for (int l = 0; l < lane_count; ++l) row[l] = rows + std::size_t(batch.partner[l]) * width;
+    for (int l = 0; l < lane_count; ++l) row[l] = rows.of(batch.partner[l], scratch[l]);
     Lanes columns[8];
     load_transposed(row[0], row[1], row[2], row[3], columns);
     if constexpr (D == 3) {
@@ -79,12 +80,13 @@ template <int D, class Visit>
 /// The same for all bonds of row i.
 template <int D, class Visit>
 [[gnu::always_inline]] inline void for_each_batch(const Bonds& bonds, const BondKinds& kinds,
-                                                  const double* rows, Index i, const Visit& visit) {
+                                                  const PointRows<D>& rows, Index i,
+                                                  const Visit& visit) {
   for_each_batch<D>(bonds, kinds, rows, LooseBonds{i, bonds.offset[i], bonds.offset[i + 1]}, visit);
 }
 template <int D, class Visit>
-[[gnu::always_inline]] inline void for_each_batch(const Bonds& bonds, const double* rows, Index i,
-                                                  const Visit& visit) {
+[[gnu::always_inline]] inline void for_each_batch(const Bonds& bonds, const PointRows<D>& rows,
+                                                  Index i, const Visit& visit) {
   for_each_batch<D>(bonds, bonds.kind, rows, i, visit);
 }
 
@@ -209,7 +211,7 @@ void sum_blocks(BondWorkspace& a, const BondKinds& kinds, const BlockOf& block_o
       std::array<Lanes, width> own;
       own.fill(Lanes(0.0));
       for_each_batch<D>(
-          bonds, kinds, a.rows.data(),
+          bonds, kinds, a.template rows<D>(),
           i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
             const Matrix<D, Lanes> block = block_of(batch);
             const auto half = upper_half<D>(block);
@@ -219,17 +221,22 @@ void sum_blocks(BondWorkspace& a, const BondKinds& kinds, const BlockOf& block_o
             } else {
               store_upper_halves<D>(blocks + place * (D * (D + 1) / 2), batch.count, half);
             }
+            if (!sums) return;
             for (int c = 0; c < width; ++c) own[c] += half[c];
             add_to_partners<D>(sums, batch.partner, half);
           });
-      for (int c = 0; c < D * (D + 1) / 2; ++c) {
+      for (int c = 0; sums && c < D * (D + 1) / 2; ++c) {
         sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       }
       done(thread, i);
     }
   };
+  if (diagonal.empty()) {
+    run_on_threads(a.threads.threads(),
+                   [&](int thread) { body(thread, a.threads.ranges[thread], nullptr); });
+    return;
+  }
   a.threads.template sum_rows<width>(body, [&](Index i, const double* total) {
-    if (diagonal.empty()) return;
     double* block = &diagonal[std::size_t(i) * D * D];
     int k = 0;
     for (int r = 0; r < D; ++r) {

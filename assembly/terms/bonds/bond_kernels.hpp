@@ -40,7 +40,7 @@ struct BondKernels {
                              Span displacement,
                              std::conditional_t<commits, double*, const double*> largest_stretch,
                              std::span<double> result, Write how) {
-    a.pack<D>(a.points.reference, displacement);
+    a.template take<D>({a.points.reference, displacement});
     std::vector<Evaluation>& parts = a.threads.evaluations;
     const Bonds& bonds = a.bonds;
     const bool energy_only = result.empty();
@@ -64,7 +64,7 @@ struct BondKernels {
         Vector<D, Lanes> own;
         own.fill(Lanes(0.0));
         for_each_batch<D>(
-            bonds, bonds.kind, a.rows.data(),
+            bonds, bonds.kind, a.template rows<D>(),
             loose, [&](const Batch<D>& batch) __attribute__((always_inline)) {
               auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
@@ -106,11 +106,11 @@ struct BondKernels {
   template <class P, class E>
   static DamageGrowth growth(BondWorkspace& a, const P& potential, const E& eigenstretch,
                              Span displacement, const double* largest_stretch) {
-    a.pack<D>(a.points.reference, displacement);
+    const auto packed = a.template pack<D>({a.points.reference, displacement});
     const auto body = [&](int thread, RowRange range, double*) {
       DamageGrowth found;
       for (Index i = range.first; i < range.last; ++i) {
-        for_each_batch<D>(a.bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
+        for_each_batch<D>(a.bonds, a.template rows<D>(), i, [&](const Batch<D>& batch) {
           auto measure =
               Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
           relieve(measure, eigenstretch, batch);
@@ -145,7 +145,7 @@ struct BondKernels {
   static void tangent(BondWorkspace& a, const P& potential, const E& eigenstretch,
                       Span displacement, const double* largest_stretch, double projection,
                       const BlocksOf& blocks_of, const Done& done, std::span<double> diagonal) {
-    a.pack<D>(a.points.reference, displacement);
+    const auto packed = a.template pack<D>({a.points.reference, displacement});
     sum_blocks<D, stored_as>(
         a, a.bonds.kind,
         [&](const Batch<D>& batch) __attribute__((always_inline)) {
@@ -160,7 +160,7 @@ struct BondKernels {
   static void diagonal(BondWorkspace& a, const P& potential, const E& eigenstretch,
                        Span displacement, const double* largest_stretch, double projection,
                        std::span<double> diagonal) {
-    a.pack<D>(a.points.reference, displacement);
+    a.template take<D>({a.points.reference, displacement});
     constexpr int width = vector_width(D), all = D * (D + 1) / 2;
     for (int first = 0; first < all; first += D) {
       const auto body = [&](int thread, RowRange range, double* sums) {
@@ -175,7 +175,7 @@ struct BondKernels {
           Vector<D, Lanes> own, part;
           own.fill(Lanes(0.0));
           for_each_batch<D>(
-              a.bonds, a.bonds.kind, a.rows.data(),
+              a.bonds, a.bonds.kind, a.template rows<D>(),
               loose, [&](const Batch<D>& batch) __attribute__((always_inline)) {
                 const Matrix<D, Lanes> block =
                     block_of(batch, potential, eigenstretch, largest_stretch, projection);
@@ -206,15 +206,7 @@ struct BondKernels {
   static void product(BondWorkspace& a, const P& potential, const E& eigenstretch,
                       Span displacement, const double* largest_stretch, Span v, double projection,
                       Precision precision, std::span<double> result, Write how) {
-    a.pack<D>(displacement, v);
-    constexpr int row = row_width(D);
-    const Index count = a.points.count();
-#pragma omp parallel for num_threads(a.threads.threads())
-    for (Index i = 0; i < count; ++i) {
-      for (int c = 0; c < D; ++c) {
-        a.rows[std::size_t(i) * row + c] += a.points.reference[std::size_t(i) * D + c];
-      }
-    }
+    a.template take<D>({displacement, v, a.points.reference});
     const Bonds& bonds = a.bonds;
     constexpr int width = vector_width(D);
     const auto body = [&](int thread, RowRange range, double* sums) {
@@ -230,7 +222,7 @@ struct BondKernels {
         Vector<D, Lanes> own;
         own.fill(Lanes(0.0));
         for_each_batch<D>(
-            bonds, bonds.kind, a.rows.data(),
+            bonds, bonds.kind, a.template rows<D>(),
             loose, [&](const Batch<D>& batch) __attribute__((always_inline)) {
               auto measure = Length::from_current<D, Lanes>(batch.inverse_length, {batch.vector0});
               relieve(measure, eigenstretch, batch);
@@ -255,13 +247,14 @@ struct BondKernels {
   static void point_energies(BondWorkspace& a, const P& potential, const E& eigenstretch,
                              Span displacement, const double* largest_stretch,
                              std::span<double> energies, Write how) {
-    a.pack<D>(a.points.reference, displacement);
+    const auto packed = a.template pack<D>({a.points.reference, displacement});
     const Bonds& bonds = a.bonds;
     const auto body = [&](int, RowRange range, double* sums) {
       for (Index i = range.first; i < range.last; ++i) {
         Lanes own = 0.0;
         for_each_batch<D>(
-            bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
+            bonds, a.template rows<D>(),
+            i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
               auto measure =
                   Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
               relieve(measure, eigenstretch, batch);
@@ -286,7 +279,7 @@ struct BondKernels {
   static void add_virials(BondWorkspace& a, const P& potential, const E& eigenstretch,
                           Span displacement, const double* largest_stretch,
                           std::span<double> virials) {
-    a.pack<D>(a.points.reference, displacement);
+    const auto packed = a.template pack<D>({a.points.reference, displacement});
     constexpr int width = vector_width(D);
     for (int component = 0; component < D; ++component) {
       const auto body = [&](int, RowRange range, double* sums) {
@@ -294,7 +287,8 @@ struct BondKernels {
           Vector<D, Lanes> own;
           own.fill(Lanes(0.0));
           for_each_batch<D>(
-              a.bonds, a.rows.data(), i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
+              a.bonds, a.template rows<D>(),
+              i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
                 auto measure =
                     Length::at<D, Lanes>(batch.inverse_length, {batch.vector0}, {batch.vector1});
                 relieve(measure, eigenstretch, batch);

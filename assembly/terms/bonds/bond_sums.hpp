@@ -48,7 +48,7 @@ void sum_bonds(BondWorkspace& a, const BondKinds& kinds, const PartOf& part_of, 
       Vector<width, Lanes> own;
       own.fill(Lanes(0.0));
       for_each_batch<D>(
-          a.bonds, kinds, a.rows.data(),
+          a.bonds, kinds, a.template rows<D>(),
           loose, [&](const Batch<D>& batch) __attribute__((always_inline)) {
             const RunDamage* const none = nullptr;
             const Vector<width, Lanes> part = part_of(batch, none, thread);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -16,37 +17,101 @@ namespace peristat {
 /// does not hold both.
 constexpr int row_width(int dimension) { return dimension == 3 ? 8 : 4; }
 
+/// Two vectors per point that a pass reads. The first one may be a sum.
+struct PointVectors {
+  std::span<const double> first, second;
+  std::span<const double> onto_first = {};  ///< added to the first one; empty: nothing
+
+  /// Components of the two vectors of a point.
+  template <int D>
+  [[nodiscard]] double of_first(Index i, int c) const {
+    const std::size_t at = std::size_t(i) * D + std::size_t(c);
+    return onto_first.empty() ? first[at] : first[at] + onto_first[at];
+  }
+  template <int D>
+  [[nodiscard]] double of_second(Index i, int c) const {
+    return second[std::size_t(i) * D + std::size_t(c)];
+  }
+};
+
+/// Rows of the two vectors per point, as kernels gather them: packed beforehand, or put together
+/// where they are read.
+template <int D>
+class PointRows {
+ public:
+  using Scratch = std::array<double, row_width(D)>;
+
+  PointRows(const double* packed, const PointVectors& vectors)
+      : packed_(packed), vectors_(&vectors) {}
+
+  /// @param scratch what the row may be put together in
+  [[nodiscard, gnu::always_inline]] const double* of(Index i, Scratch& scratch) const {
+    if (packed_) return packed_ + std::size_t(i) * row_width(D);
+    put_together(i, scratch);
+    return scratch.data();
+  }
+
+ private:
+  [[gnu::noinline]] void put_together(Index i, Scratch& scratch) const {
+    scratch.fill(0.0);
+    for (int c = 0; c < D; ++c) {
+      scratch[c] = vectors_->of_first<D>(i, c);
+      scratch[row_width(D) / 2 + c] = vectors_->of_second<D>(i, c);
+    }
+  }
+
+  const double* packed_;  // null: none are
+  const PointVectors* vectors_;
+};
+
 /// Buffers of the passes over bonds.
 struct BondWorkspace {
   /// @param kinds of the bonds, whose sums go along runs; null: they go bond by bond
   BondWorkspace(const Points& of, const Bonds& with, Workspace& shared,
                 const BondKinds* kinds = nullptr)
-      : points(of),
-        bonds(with),
-        threads(shared),
-        rows(std::size_t(of.count()) * row_width(of.dimension)) {
+      : points(of), bonds(with), threads(shared) {
     if (kinds) runs = ThreadRuns(of, with, *kinds, shared.ranges);
   }
 
   const Points& points;
   const Bonds& bonds;
   Workspace& threads;
-  AlignedVector<double> rows;  ///< per point, the row that kernels gather; see pack
   ThreadRuns runs;
 
-  /// Packs two vectors per point into rows, e.g. reference position and displacement.
-  template <int D>
-  void pack(std::span<const double> first, std::span<const double> second) {
-    constexpr int width = row_width(D);
-    const Index count = points.count();
-#pragma omp parallel for num_threads(threads.threads())
-    for (Index i = 0; i < count; ++i) {
-      double* row = &rows[std::size_t(i) * width];
-      for (int c = 0; c < D; ++c) {
-        row[c] = first[std::size_t(i) * D + c];
-        row[width / 2 + c] = second[std::size_t(i) * D + c];
-      }
+  /// Packed rows. At its end those of a large body are released where sums go along runs.
+  class Packed {
+   public:
+    explicit Packed(BondWorkspace& of) : of_(of) {}
+    Packed(const Packed&) = delete;
+    Packed& operator=(const Packed&) = delete;
+    ~Packed() {
+      if (of_.runs.in_use()) of_.release_rows();
     }
+
+   private:
+    BondWorkspace& of_;
+  };
+
+  /// Packs the vectors of a pass that visits bond by bond into rows: 64 bytes per point in 3D.
+  template <int D>
+  [[nodiscard]] Packed pack(const PointVectors& of) {
+    pack_rows<D>(of);
+    return Packed(*this);
+  }
+
+  /// Takes the vectors of a pass along runs, which outlive it. The few bonds that are in no run put
+  /// their rows together.
+  template <int D>
+  void take(const PointVectors& of) {
+    if (!runs.in_use()) return pack_rows<D>(of);
+    release_rows();
+    vectors_ = of;
+  }
+
+  /// Rows of the vectors that were packed or taken last.
+  template <int D>
+  [[nodiscard]] PointRows<D> rows() const {
+    return {are_packed_ ? packed_.data() : nullptr, vectors_};
   }
 
   /// Sums the bonds of a thread's rows: runs by on_run(run, damage, window), which reads and adds
@@ -79,6 +144,31 @@ struct BondWorkspace {
   }
 
  private:
+  /// Doubles from which rows are released: small bodies' passes allocate nothing.
+  static constexpr std::size_t large = std::size_t(1) << 17;
+
+  void release_rows() {
+    are_packed_ = false;
+    if (packed_.size() >= large) packed_ = AlignedVector<double>();
+  }
+
+  template <int D>
+  void pack_rows(const PointVectors& of) {
+    constexpr int width = row_width(D);
+    const Index count = points.count();
+    packed_.resize(std::size_t(count) * width);
+#pragma omp parallel for num_threads(threads.threads())
+    for (Index i = 0; i < count; ++i) {
+      double* row = &packed_[std::size_t(i) * width];
+      for (int c = 0; c < D; ++c) {
+        row[c] = of.of_first<D>(i, c);
+        row[width / 2 + c] = of.of_second<D>(i, c);
+      }
+    }
+    vectors_ = of;
+    are_packed_ = true;
+  }
+
   template <int columns, int width>
   static void add_sums(const RunWindow& window, double* sums) {
     for (Index i = window.first; i < window.last; ++i) {
@@ -86,23 +176,25 @@ struct BondWorkspace {
     }
   }
 
-  /// Lets a window start at this point, with the packed vectors and sums of zero.
+  /// Lets a window start at this point, with its vectors and sums of zero.
   template <int D>
   void move(RunWindow& window, Index first, Index end) const {
-    constexpr int width = row_width(D);
     window.first = first;
     window.last = std::min(first + window.capacity, end);
     window.vectors.start_at(first);
     window.sums.start_at(first);
     window.sums.clear();
     for (Index i = first; i < window.last; ++i) {
-      const double* const row = &rows[std::size_t(i) * width];
       for (int c = 0; c < D; ++c) {
-        window.vectors[c][i] = row[c];
-        window.vectors[D + c][i] = row[width / 2 + c];
+        window.vectors[c][i] = vectors_.of_first<D>(i, c);
+        window.vectors[D + c][i] = vectors_.of_second<D>(i, c);
       }
     }
   }
+
+  PointVectors vectors_;
+  AlignedVector<double> packed_;
+  bool are_packed_ = false;
 };
 
 }  // namespace peristat

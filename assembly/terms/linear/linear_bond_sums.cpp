@@ -47,7 +47,7 @@ struct LinearBondSums::Kernels {
   /// Sums part_of(batch, spring) of bonds, see sum_bonds.
   template <int width, int sign, class PartOf, class Done>
   void sum_parts(std::span<const double> moved, const PartOf& part_of, const Done& done) {
-    of.workspace_.template pack<D>(of.workspace_.points.reference, moved);
+    of.workspace_.template take<D>({of.workspace_.points.reference, moved});
     sum_bonds<D, width, sign>(
         of.workspace_, of.workspace_.bonds.kind,
         [&](const auto& batch, const RunDamage*, int)
@@ -92,7 +92,7 @@ struct LinearBondSums::Kernels {
 
   void rows(const RowVisitor& visit, std::span<double> diagonal) {
     BondWorkspace& a = of.workspace_;
-    a.pack<D>(a.points.reference, a.points.reference);
+    const auto packed = a.pack<D>({a.points.reference, a.points.reference});
     constexpr int width = block_width(D);
     Offset longest = 0;
     for (Index i = 0; i < a.bonds.points(); ++i) {
@@ -102,7 +102,7 @@ struct LinearBondSums::Kernels {
       std::vector<double> blocks(std::size_t(longest) * D * D);
       for (Index i = range.first; i < range.last; ++i) {
         const Offset begin = a.bonds.offset[i];
-        for_each_batch<D>(a.bonds, a.rows.data(), i, [&](const Batch<D>& batch) {
+        for_each_batch<D>(a.bonds, a.rows<D>(), i, [&](const Batch<D>& batch) {
           const Spring bond = spring(batch);
           Matrix<D, Lanes> block;
           for (int r = 0; r < D; ++r) {

@@ -77,7 +77,7 @@ class StateKernels {
   /// energies, and whether a bond has no length.
   template <class E>
   Evaluation find_states(Span u, const E& eigenstretch) {
-    buffers_.template pack<D>(buffers_.points.reference, u);
+    buffers_.template take<D>({buffers_.points.reference, u});
     struct alignas(64) OfThread {  // threads write to cache lines of their own
       Lanes least = std::numeric_limits<double>::infinity();
     };
@@ -127,7 +127,7 @@ class StateKernels {
   template <class E>
   void write_product(Span u, const E& eigenstretch, Span v, double projection,
                      std::span<double> product, Write how) {
-    pack_current(u, v);
+    buffers_.template take<D>(current_and(u, v));
     sum_parts<1, 1>(
         [&](const auto& batch, const Lanes& share, int) __attribute__((always_inline)) {
           return Vector<1, Lanes>{share * dot<D>(current(batch).gradient[0], batch.vector1)};
@@ -159,7 +159,8 @@ class StateKernels {
   /// uniform in a neighbourhood, after find_states of the same field: each end of a bond takes
   /// g (p_i + q_i s) n (x) xi.
   template <class E>
-  void add_virials(const E& eigenstretch, std::span<double> virials) {
+  void add_virials(Span u, const E& eigenstretch, std::span<double> virials) {
+    const auto packed = buffers_.template pack<D>({buffers_.points.reference, u});
     constexpr int width = vector_width(D);
     for (int row = 0; row < D; ++row) {
       const auto body = [&](int, RowRange range, double* sums) {
@@ -231,7 +232,7 @@ class StateKernels {
   template <class E>
   void visit_bonds(Span u, const E& eigenstretch, const RowVisitor& visit,
                    std::span<double> diagonal) {
-    pack_current(u, u);
+    const auto packed = buffers_.template pack<D>(current_and(u, u));
     visit_rows<D>(buffers_, visit, [&](const auto& blocks_of, const auto& done) {
       sum_blocks<D, Tangent::Blocks::whole>(
           buffers_, whole_,
@@ -249,7 +250,7 @@ class StateKernels {
   template <class P, class E, class Visit>
   DamageGrowth growth_by_release(Span u, const P& law, const E& eigenstretch, const double* history,
                                  const Visit& visit) {
-    buffers_.template pack<D>(buffers_.points.reference, u);
+    const auto packed = buffers_.template pack<D>({buffers_.points.reference, u});
     const auto body = [&](int thread, RowRange range, double*) {
       DamageGrowth found;
       for (Index i = range.first; i < range.last; ++i) {
@@ -439,7 +440,7 @@ class StateKernels {
   template <class Visit>
   [[gnu::always_inline]] void for_each_bond(Index i, const Visit& visit) const {
     for_each_batch<D>(
-        buffers_.bonds, whole_, buffers_.rows.data(),
+        buffers_.bonds, whole_, buffers_.template rows<D>(),
         i, [&](const Batch<D>& batch) __attribute__((always_inline)) {
           visit(batch, share_of(batch));
         });
@@ -476,7 +477,7 @@ class StateKernels {
     return measure;
   }
 
-  /// Measure of rows by pack_current.
+  /// Measure of rows with current_and.
   template <class AnyBatch>
   [[gnu::always_inline]] static auto current(const AnyBatch& batch) {
     if constexpr (bends) {
@@ -486,18 +487,9 @@ class StateKernels {
     }
   }
 
-  /// Packs the vectors that directions follow from, and v.
-  void pack_current(Span u, Span v) {
-    buffers_.template pack<D>(buffers_.points.reference, v);
-    if constexpr (!bends) return;
-    const Index count = buffers_.points.count();
-#pragma omp parallel for num_threads(threads())
-    for (Index i = 0; i < count; ++i) {
-      for (int c = 0; c < D; ++c) {
-        buffers_.rows[std::size_t(i) * row_width(D) + std::size_t(c)] +=
-            u[std::size_t(i) * D + std::size_t(c)];
-      }
-    }
+  /// The vectors that directions follow from, and v.
+  [[nodiscard]] PointVectors current_and(Span u, Span v) const {
+    return {buffers_.points.reference, v, bends ? u : Span()};
   }
 
   /// f moved by a share towards being no compression, in which a bond tends to turn aside.
@@ -540,7 +532,7 @@ class StateKernels {
   }
 
   /// Block of bonds alone, g (q_i + q_j) / r n n^T + f / l (I - n n^T), from a measure by
-  /// pack_current.
+  /// `current`.
   template <class E, class MeasureAt>
   [[gnu::always_inline]] Matrix<D, Lanes> block_of(const Batch<D>& batch, const Lanes& share,
                                                    MeasureAt measure, const E& eigenstretch,
@@ -566,7 +558,7 @@ class StateKernels {
     BondBlocks of_bonds{std::vector<double>(std::size_t(bonds.count()) * D),
                         std::vector<double>(std::size_t(bonds.count()) * D * D)};
     std::vector<double> of_points(diagonal.size());
-    pack_current(u, u);
+    const auto packed = buffers_.template pack<D>(current_and(u, u));
     sum_blocks<D, Tangent::Blocks::whole>(
         buffers_, whole_,
         [&](const Batch<D>& batch) {

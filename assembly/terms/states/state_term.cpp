@@ -160,7 +160,8 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
 
   void add_virials(const StateView& at, std::span<double> virials) override {
     find_states(at);
-    with_eigenstretch(at, [&](const auto& relief) { kernels_.add_virials(relief, virials); });
+    with_eigenstretch(
+        at, [&](const auto& relief) { kernels_.add_virials(at.displacement, relief, virials); });
   }
 
  private:
