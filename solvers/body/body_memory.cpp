@@ -31,6 +31,8 @@ double expected_bonds(double points, int dimension, double horizon_ratio) {
   return points * std::min(bonds_per_point(dimension, horizon_ratio), 0.5 * points);
 }
 
+bool is_small(const Points& points) { return points.count() <= 100'000; }
+
 BodySize size_of(const Points& points) {
   BodySize size;
   size.dimension = points.dimension;
@@ -58,7 +60,8 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.bonds = double(body.model.bonds().count());
   size.bytes_per_bond = double(sizeof(Index) + body.model.bonds().kind.bytes_per_bond());
   size.has_history = body.model.has_history();
-  size.has_runs = body.points.lattice && body.model.bonds().kind.are_numbered();
+  size.has_runs =
+      !is_small(body.points) && body.points.lattice && body.model.bonds().kind.are_numbered();
   const BondFailure* const failing = body.model.failing_bonds();
   // Onsets and critical stretches, as the history is kept before and after a step, and the drives.
   if (failing && failing->onsets()) {

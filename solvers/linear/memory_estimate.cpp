@@ -42,19 +42,21 @@ double body_bytes(const BodySize& size) {
   // Largest stretches, a copy of them for a step back, and flags.
   const double per_bond =
       size.bytes_per_bond + (size.has_history && !size.is_convolved ? 19.0 : 0.0);
-  const double run = per_bond * size.bonds + 8.0 * size.points * (vectors + workspace + scalars);
-  // The neighbour search holds the bonds of its parts and the gathered ones.
-  const double search =
-      2.0 * size.bytes_per_bond * size.bonds + 8.0 * size.points * (2.0 * d + 5.0);
-  return base_bytes + std::max(run, search);
+  return base_bytes + per_bond * size.bonds + 8.0 * size.points * (vectors + workspace + scalars);
 }
 
-/// Krylov vectors and block Jacobi.
+/// Memory of the neighbour search, which holds the bonds of its parts and the gathered ones.
+double search_bytes(const BodySize& size) {
+  return base_bytes + 2.0 * size.bytes_per_bond * size.bonds +
+         8.0 * size.points * (2.0 * size.dimension + 5.0);
+}
+
+/// Krylov vectors, and one over all degrees of freedom.
 double krylov_bytes(const BodySize& size, bool is_gmres) {
   const double d = size.dimension;
   // GMRES keeps a vector per iteration, some 25 of them where its preconditioner is good.
   const double vectors = is_gmres ? 31.0 : 6.0;
-  return 8.0 * size.points * (vectors * d + d + 0.5 * d * (d + 1.0));
+  return 8.0 * size.points * (vectors * d + d);
 }
 
 /// Coarse level of rigid pieces.
@@ -216,6 +218,7 @@ MemoryEstimate estimate_memory(const BodySize& size) {
   }
 
   const double block = size.has_symmetric_blocks ? 0.5 * d * (d + 1.0) : d * d;
+  estimate.search_bytes = search_bytes(size);
   estimate.body_bytes = body_bytes(size) + 8.0 * size.points * d * (d + 1.0);
   estimate.tangent_bytes = 8.0 * blocks * block;
   // The reduced tangent in whole blocks, the places of its blocks, and its pattern.
@@ -233,6 +236,8 @@ double MemoryEstimate::iterative_bytes(const LinearSolverOptions& options) const
   double bytes = linear_algebra_bytes + trilinos_bytes +
                  krylov_bytes(size, options.method == LinearMethod::gmres);
   const double d = size.dimension;
+  const bool has_sines = options.preconditioner == PreconditionerKind::sines;
+  if (!has_sines) bytes += 8.0 * size.points * 0.5 * d * (d + 1.0);  // block Jacobi
   switch (options.preconditioner) {
     case PreconditionerKind::jacobi:
     case PreconditionerKind::block_jacobi:

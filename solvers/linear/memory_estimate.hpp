@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "solvers/linear/make_linear_solver.hpp"
 
 namespace peristat {
@@ -17,7 +19,7 @@ struct BodySize {
   double bytes_per_bond = 6.0;       ///< neighbour and kind of bond, see BondKinds
   bool has_history = false;          ///< bonds may be damaged
   bool is_convolved = false;         ///< its bonds are convolutions: no rows are gathered
-  bool has_runs = false;             ///< its sums go along runs: rows are gathered for a pass only
+  bool has_runs = false;             ///< its sums go along runs, and rows are released
   bool has_symmetric_blocks = true;  ///< off-diagonal blocks of the tangent are symmetric
   bool is_constrained = false;       ///< degrees of freedom follow others
   double free_dofs = 0.0;
@@ -35,6 +37,7 @@ struct MemoryEstimate {
   BodySize size;
   double factor_entries = 0.0;  ///< of the Cholesky factor, or of L and U
   double factor_flops = 0.0;    ///< of one factorisation
+  double search_bytes = 0.0;    ///< of the search for neighbours, before the run
   double body_bytes = 0.0;      ///< of the run without its tangent and linear solver
   double tangent_bytes = 0.0;   ///< of a stored tangent
   double matrix_bytes = 0.0;    ///< of a direct solver without its factor
@@ -47,8 +50,12 @@ struct MemoryEstimate {
   /// tangent.
   [[nodiscard]] double bytes(bool is_direct, bool is_stored,
                              const LinearSolverOptions& options) const {
-    return body_bytes + (is_stored ? tangent_bytes : 0.0) +
-           (is_direct ? direct_bytes(options.method) : iterative_bytes(options));
+    return bytes_with(is_stored,
+                      is_direct ? direct_bytes(options.method) : iterative_bytes(options));
+  }
+  /// The same with a linear solver of so many bytes.
+  [[nodiscard]] double bytes_with(bool is_stored, double of_solver) const {
+    return std::max(search_bytes, body_bytes + (is_stored ? tangent_bytes : 0.0) + of_solver);
   }
   /// Memory of the whole run with the default iterative solver and without a stored tangent.
   [[nodiscard]] double least_bytes() const { return bytes(false, false, {}); }

@@ -128,8 +128,8 @@ LinearSystems systems_of_motion(const Body& body) {
   const TangentKind kind = body.model.tangent_kind();
   systems.is_stored = needs_no_storage(kind) ? is_followed : kind != TangentKind::products;
   systems.has_rows = has_rows_of_part(body);
-  systems.bytes = estimate.body_bytes + (systems.is_stored ? estimate.tangent_bytes : 0.0) +
-                  8.0 * vectors_of_motion * estimate.size.points * estimate.size.dimension;
+  systems.bytes = estimate.bytes_with(
+      systems.is_stored, 8.0 * vectors_of_motion * estimate.size.points * estimate.size.dimension);
   return systems;
 }
 

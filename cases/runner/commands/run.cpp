@@ -176,7 +176,7 @@ class CaseRun {
       body_ = ranks_.count() > 1 ? make_part_body(from_, ranks_, options_.threads)
                                  : make_body(from_, options_.threads);
     }
-    keep_freed_memory_of_small_bodies(body_->points.count());
+    keep_freed_memory_of_small_bodies(is_small(body_->points));
     gathering_.emplace(*body_->index_map);
     further_ = {from_.output.stress, lines_of(from_), !from_.controls.empty(),
                 !from_.sensitivity.over.empty()};

@@ -69,13 +69,12 @@ constexpr int released_bytes = 1 << 20;
 
 }  // namespace
 
-void keep_freed_memory_of_small_bodies(std::int64_t points) {
+void keep_freed_memory_of_small_bodies(bool is_small) {
   const char* const set = std::getenv("MALLOC_MMAP_THRESHOLD_");
   if (set && set != std::to_string(released_bytes)) return;
-  const bool keeps = points <= 100'000;
   constexpr int most_of_glibc = 1 << 25;  // of M_MMAP_THRESHOLD
-  mallopt(M_MMAP_THRESHOLD, keeps ? most_of_glibc : released_bytes);
-  mallopt(M_TRIM_THRESHOLD, keeps ? 1 << 28 : 1 << 17);  // the latter is glibc's
+  mallopt(M_MMAP_THRESHOLD, is_small ? most_of_glibc : released_bytes);
+  mallopt(M_TRIM_THRESHOLD, is_small ? 1 << 28 : 1 << 17);  // the latter is glibc's
 }
 
 void restart_with_environment(int threads, char** arguments) {

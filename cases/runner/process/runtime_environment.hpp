@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 namespace peristat {
 
 /// Opens /dev/null in place of each standard stream that the program was started without: otherwise
@@ -38,10 +36,10 @@ void require_room_for_ranks(int asked_for);
 /// can't be restarted.
 void restart_with_environment(int threads, char** arguments);
 
-/// Chooses what becomes of the memory of freed vectors. In a small body (up to 100 000 points) it
-/// stays with the process: steps are quick, and the system would take a tenth of the time of a path
-/// to give it out again. In a large one it goes back to the system, which saves 4 % of the peak.
-/// Does nothing if the user has set MALLOC_MMAP_THRESHOLD_.
-void keep_freed_memory_of_small_bodies(std::int64_t points);
+/// Chooses what becomes of the memory of freed vectors. In a small body it stays with the process:
+/// steps are quick, and the system would take a tenth of the time of a path to give it out again.
+/// In a large one it goes back to the system, which saves 4 % of the peak. Does nothing if the user
+/// has set MALLOC_MMAP_THRESHOLD_.
+void keep_freed_memory_of_small_bodies(bool is_small);
 
 }  // namespace peristat
