@@ -30,7 +30,7 @@ void require_room_for_ranks(int asked_for);
 ///    slow on two threads as on one; waiting actively for longer makes it hang when another program
 ///    wants the core.
 ///  - GLIBC_TUNABLES: memory is asked for in huge pages, where the system leaves the choice to
-///    programs. A path with a direct solver gains 7 %, a million points in 3D gain 3 %.
+///    programs. A path with a direct solver gains 7 %.
 ///  - MALLOC_MMAP_THRESHOLD_: see keep_freed_memory_of_small_bodies.
 /// What the user has set of the last three is kept. Returns in the restarted program, or if it
 /// can't be restarted.
