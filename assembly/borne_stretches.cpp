@@ -236,7 +236,7 @@ std::vector<UtilisedBond> utilised_bonds(Assembler& body, const StateView& at,
   std::vector<std::vector<UtilisedBond>> parts(static_cast<std::size_t>(body.threads()));
   for_each_driven(body, at, borne, {}, [&](int thread, Index i, Offset bond, const auto& drive) {
     const double stretch = driving(drive), strength = borne[std::size_t(bond)];
-    if (stretch < least * strength) return;
+    if (!(stretch >= least * strength)) return;  // nor one that is not a number
     parts[std::size_t(thread)].push_back({bond, i, stretch / strength, stretch});
   });
   std::vector<UtilisedBond> found;

@@ -1,6 +1,7 @@
 #include "assembly/borne_stretches.hpp"
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -133,6 +134,18 @@ TEST(BorneStretches, TheAdmissibleRangeIsThatOfEveryBond) {
       EXPECT_NEAR(largest_utilisation(torn.assembler, torn.at(), torn.borne), most, 1e-10);
     }
   }
+}
+
+TEST(BorneStretches, ThatAreNoNumberAreNotListed) {
+  Torn torn(2, 1);
+  const auto before = utilised_bonds(torn.assembler, torn.at(), torn.borne, 0.1);
+  ASSERT_GT(before.size(), 10u);
+  const Index lost = before.front().first_point;
+  torn.displacement[std::size_t(lost) * 2] = std::numeric_limits<double>::quiet_NaN();
+  const auto after = utilised_bonds(torn.assembler, torn.at(), torn.borne, 0.1);
+  EXPECT_GT(after.size(), 0u);
+  EXPECT_LT(after.size(), before.size());
+  for (const UtilisedBond& one : after) EXPECT_GE(one.utilisation, 0.1);
 }
 
 TEST(BorneStretches, TheMostUtilisedComeFirst) {
