@@ -50,7 +50,7 @@ void keep_toughness(const Points& points, const Bonds& bonds, std::span<const do
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       if (!(stretches[std::size_t(bond)] > 0.0)) continue;
-      for (const Index point : {i, bonds.partner[bond]}) {
+      for (const Index point : {i, bonds.partner(i, bond)}) {
         auto& range = of_points[std::size_t(points.source(point))].factor;
         if (range) (*range)[1] = 1.0;
       }

@@ -212,9 +212,9 @@ BondDrops drop(Assembler& body, const StateView& at, std::span<const double> bor
       result.dissipated += volume * (law.dissipated(after) - law.dissipated(largest));
       if (!is_by_release) {
         result.energy_lost += volume * (stored.value - left.value);
+        const Index second = network.partner(one.first_point, bond);
         result.stiffness.push_back(
-            {bond, one.first_point, network.partner[bond],
-             direction(body.points(), at, one.first_point, network.partner[bond]),
+            {bond, one.first_point, second, direction(body.points(), at, one.first_point, second),
              (stored.second - left.second) * network.weight(bond) * network.inverse_length(bond),
              (stored.first - left.first) * network.weight(bond)});
       }

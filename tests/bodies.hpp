@@ -206,9 +206,25 @@ template <class Visit>
 void for_each_bond(const Bonds& bonds, const Visit& visit) {
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      visit(i, bonds.partner[bond], bond);
+      visit(i, bonds.partner(i, bond), bond);
     }
   }
+}
+
+/// Bonds without kinds. The partners of i are upper[offset[i]] .. upper[offset[i+1]-1].
+[[nodiscard]] inline Bonds bonds_between(std::vector<Offset> offset,
+                                         const std::vector<Index>& upper) {
+  Partners partners(offset, upper);
+  return {std::move(offset), std::move(partners), {}};
+}
+
+/// Upper points of all pairs, in their order.
+[[nodiscard]] inline std::vector<Index> upper_points(const Couplings& couplings) {
+  std::vector<Index> all;
+  for (Index i = 0; i < couplings.points(); ++i) {
+    for (const Index j : couplings.of(i)) all.push_back(j);
+  }
+  return all;
 }
 
 [[nodiscard]] inline std::vector<BondKind> kinds(const Bonds& bonds) {

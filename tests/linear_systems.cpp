@@ -16,7 +16,7 @@ Eigen::MatrixXd dense(const Tangent& tangent, const FreeDofs& free) {
       }
     }
     for (Offset bond = tangent.pattern.offset[i]; bond < tangent.pattern.offset[i + 1]; ++bond) {
-      const Index j = tangent.pattern.partner[bond];
+      const Index j = tangent.pattern.partner(i, bond);
       for (int r = 0; r < d; ++r) {
         for (int c = 0; c < d; ++c) {
           const double entry = tangent.entry(bond, r, c);

@@ -57,7 +57,7 @@ struct ReleaseBody {
       return points.volume[i] * d * (d + 2) * constants.mu / shares.moment[i];
     };
     bonds.set_weights([&](Index i, Offset bond) {
-      return shares.whole[bond].weight * (q(i) + q(bonds.partner[bond]));
+      return shares.whole[bond].weight * (q(i) + q(bonds.partner(i, bond)));
     });
     const BondPotential potential = potential_of(bonds);
     bond_model =

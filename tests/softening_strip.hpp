@@ -70,13 +70,13 @@ struct Strip {
     const Bonds& bonds = body.model.bonds();
     const auto crosses = [&](Index i, Offset bond) {
       const double a = body.points.position(i)[0] - 0.7,
-                   b = body.points.position(bonds.partner[bond])[0] - 0.7;
+                   b = body.points.position(bonds.partner(i, bond))[0] - 0.7;
       return a * b < 0.0;
     };
     if (middle == Middle::notched) {
       body.remove_bonds([&](Index i, Offset bond) {
         return crosses(i, bond) && body.points.position(i)[1] < 0.3 &&
-               body.points.position(bonds.partner[bond])[1] < 0.3;
+               body.points.position(bonds.partner(i, bond))[1] < 0.3;
       });
       return;
     }

@@ -5,56 +5,68 @@
 #include <utility>
 
 namespace peristat {
-namespace {
-
-bool are_same_view(const Couplings& a, const Couplings& b) {
-  return a.offset.data() == b.offset.data() && a.partner.data() == b.partner.data();
-}
-
-}  // namespace
 
 BlockPattern BlockPattern::united(const std::vector<Couplings>& terms, Index points) {
   std::vector<Couplings> different;
   for (const Couplings& couplings : terms) {
     const bool is_known =
         std::any_of(different.begin(), different.end(),
-                    [&](const Couplings& known) { return are_same_view(known, couplings); });
+                    [&](const Couplings& known) { return known.is_same_view(couplings); });
     if (!couplings.partner.empty() && !is_known) different.push_back(couplings);
   }
   if (different.size() == 1) return BlockPattern(different.front());
   // No couplings, as on a lattice by convolutions: the term's own empty rows are used.
   if (different.empty() && !terms.empty()) return BlockPattern(terms.front());
-  Rows rows;
-  rows.offset.push_back(0);
+  std::vector<Offset> offset{0};
+  PartnersBuilder partners;
+  std::vector<Index> row;
   for (Index i = 0; i < points; ++i) {
-    const auto first = std::ptrdiff_t(rows.partner.size());
+    row.clear();
     for (const Couplings& couplings : different) {
-      const std::span<const Index> row = couplings.of(i);
-      rows.partner.insert(rows.partner.end(), row.begin(), row.end());
+      for (const Index j : couplings.of(i)) row.push_back(j);
     }
-    std::sort(rows.partner.begin() + first, rows.partner.end());
-    rows.partner.erase(std::unique(rows.partner.begin() + first, rows.partner.end()),
-                       rows.partner.end());
-    rows.offset.push_back(Offset(rows.partner.size()));
+    std::sort(row.begin(), row.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
+    partners.add(row);
+    offset.push_back(offset.back() + Offset(row.size()));
   }
-  return BlockPattern(std::make_shared<const Rows>(std::move(rows)));
+  return BlockPattern(std::make_shared<const Rows>(Rows{std::move(offset), partners.take()}));
 }
 
-BlockPattern BlockPattern::of_rows(std::vector<Offset> offset, std::vector<Index> partner) {
-  return BlockPattern(std::make_shared<const Rows>(Rows{std::move(offset), std::move(partner)}));
+BlockPattern BlockPattern::of_rows(std::vector<Offset> offset, std::span<const Index> upper) {
+  Partners partners(offset, upper);
+  return BlockPattern(std::make_shared<const Rows>(Rows{std::move(offset), std::move(partners)}));
+}
+
+BlockPattern BlockPattern::kept() const {
+  if (own_) return *this;
+  PartnersBuilder partners;
+  for (Index i = 0; i < points(); ++i) partners.add(of(i));
+  return BlockPattern(
+      std::make_shared<const Rows>(Rows{{offset.begin(), offset.end()}, partners.take()}));
+}
+
+bool operator==(const BlockPattern& one, const BlockPattern& other) {
+  if (!std::ranges::equal(one.offset, other.offset)) return false;
+  for (Index i = 0; i < one.points(); ++i) {
+    if (!std::ranges::equal(one.of(i), other.of(i))) return false;
+  }
+  return true;
 }
 
 std::vector<Offset> BlockPattern::places_of(const Couplings& couplings) const {
   std::vector<Offset> places;
-  if (are_same_view(*this, couplings)) return places;
-  places.reserve(couplings.partner.size());
+  if (is_same_view(couplings)) return places;
+  places.reserve(std::size_t(couplings.partner.size()));
   for (Index i = 0; i < couplings.points(); ++i) {
-    const Index* const end = partner.data() + offset[i + 1];
-    const Index* place = partner.data() + offset[i];
+    const PartnersOfPoint mine = of(i);
+    auto place = mine.begin();
     for (const Index j : couplings.of(i)) {
-      place = std::find(place, end, j);
-      if (place == end) throw std::logic_error("a term couples points that the pattern does not");
-      places.push_back(place - partner.data());
+      place = std::find(place, mine.end(), j);
+      if (place == mine.end()) {
+        throw std::logic_error("a term couples points that the pattern does not");
+      }
+      places.push_back(offset[i] + (place - mine.begin()));
     }
   }
   return places;
@@ -72,9 +84,8 @@ std::vector<RowRange> partition_rows(const BlockPattern& pattern, int threads) {
     if (thread + 1 == threads) last = rows;
     Index reach = last;
     for (Index row = first; row < last; ++row) {
-      if (pattern.offset[row + 1] > pattern.offset[row]) {
-        reach = std::max(reach, pattern.partner[pattern.offset[row + 1] - 1] + 1);
-      }
+      const PartnersOfPoint partners = pattern.of(row);
+      if (!partners.empty()) reach = std::max(reach, partners.back() + 1);
     }
     ranges[thread] = {first, last, reach};
     first = last;

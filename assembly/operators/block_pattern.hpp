@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,19 +11,28 @@
 
 namespace peristat {
 
-/// Pairs of points that interact: the partners of i above it are partner[offset[i]] ..
-/// partner[offset[i+1]-1], ascending. A view.
+/// Pairs of points that interact: those of i with points above it are offset[i] .. offset[i+1]-1,
+/// by ascending partners. A view.
 struct Couplings {
   std::span<const Offset> offset;  ///< points + 1
-  std::span<const Index> partner;
+  PartnersView partner;            ///< partner(i, pair): upper point of a pair of point i
 
-  Couplings(std::span<const Offset> offset_of_rows, std::span<const Index> partners)
+  Couplings(std::span<const Offset> offset_of_rows, const PartnersView& partners)
       : offset(offset_of_rows), partner(partners) {}
   Couplings(const Bonds& bonds) : Couplings(bonds.offset, bonds.partner) {}
 
   [[nodiscard]] Index points() const { return static_cast<Index>(offset.size()) - 1; }
-  [[nodiscard]] std::span<const Index> of(Index i) const {
-    return partner.subspan(std::size_t(offset[i]), std::size_t(offset[i + 1] - offset[i]));
+  [[nodiscard]] PartnersOfPoint of(Index i) const {
+    return partner.between(i, offset[i], offset[i + 1]);
+  }
+  /// The pair of point i with j above it.
+  [[nodiscard]] std::optional<Offset> find(Index i, Index j) const {
+    const std::optional<Offset> place = of(i).place_of(j);
+    if (!place) return std::nullopt;
+    return offset[i] + *place;
+  }
+  [[nodiscard]] bool is_same_view(const Couplings& other) const {
+    return offset.data() == other.offset.data() && partner.is_same_view(other.partner);
   }
 };
 
@@ -37,24 +47,21 @@ class BlockPattern : public Couplings {
   /// of them.
   [[nodiscard]] static BlockPattern united(const std::vector<Couplings>& terms, Index points);
 
-  /// Pattern with rows of its own, laid out as those of Couplings.
-  [[nodiscard]] static BlockPattern of_rows(std::vector<Offset> offset, std::vector<Index> partner);
+  /// Pattern with rows of its own.
+  /// @param upper the partners of i are upper[offset[i]] .. upper[offset[i+1]-1], ascending
+  [[nodiscard]] static BlockPattern of_rows(std::vector<Offset> offset,
+                                            std::span<const Index> upper);
 
   /// Pattern of diagonal blocks alone.
   [[nodiscard]] static BlockPattern diagonal(Index points) {
     return of_rows(std::vector<Offset>(std::size_t(points) + 1, 0), {});
   }
 
-  [[nodiscard]] Offset blocks() const { return static_cast<Offset>(partner.size()); }
+  [[nodiscard]] Offset blocks() const { return partner.size(); }
 
   /// A pattern with the same rows that needs nothing else to outlive it.
-  [[nodiscard]] BlockPattern kept() const {
-    return own_ ? *this : of_rows({offset.begin(), offset.end()}, {partner.begin(), partner.end()});
-  }
-  [[nodiscard]] friend bool operator==(const BlockPattern& one, const BlockPattern& other) {
-    return std::ranges::equal(one.offset, other.offset) &&
-           std::ranges::equal(one.partner, other.partner);
-  }
+  [[nodiscard]] BlockPattern kept() const;
+  friend bool operator==(const BlockPattern& one, const BlockPattern& other);
 
   /// Positions in this pattern of the blocks of one of its terms, in the order of the couplings;
   /// empty: the two orders agree.
@@ -64,7 +71,7 @@ class BlockPattern : public Couplings {
  private:
   struct Rows {
     std::vector<Offset> offset;
-    std::vector<Index> partner;
+    Partners partner;
   };
   explicit BlockPattern(std::shared_ptr<const Rows> rows)
       : Couplings(rows->offset, rows->partner), own_(std::move(rows)) {}

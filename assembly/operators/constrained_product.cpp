@@ -121,7 +121,7 @@ void ConstrainedProduct::add_blocks_between_followers(std::vector<SharedBlock>& 
   whole_->for_each_row([&](int thread, Index i, std::span<const double> blocks) {
     const double* block = blocks.data();
     for (Offset bond = of.offset[i]; bond < of.offset[i + 1]; ++bond, block += d * d) {
-      const Index j = of.partner[std::size_t(bond)];
+      const Index j = of.partner(i, bond);
       const bool may_share = !constraints_.stands_alone(i) || !constraints_.stands_alone(j);
       if (may_share) pairs[std::size_t(thread)].push_back({i, j, tensor_of(block, d)});
     }

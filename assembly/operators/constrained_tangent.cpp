@@ -20,15 +20,9 @@ void for_each_of_followers(const BlockPattern& pattern, const Constraints& const
   for (Index i = 0; i < pattern.points(); ++i) {
     const bool is_alone = constraints.stands_alone(i);
     for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
-      if (!is_alone || !constraints.stands_alone(pattern.partner[bond])) visit(i, bond);
+      if (!is_alone || !constraints.stands_alone(pattern.partner(i, bond))) visit(i, bond);
     }
   }
-}
-
-Offset place_of(const BlockPattern& pattern, Index row, Index column) {
-  const Index* const first = pattern.partner.data() + pattern.offset[row];
-  const Index* const last = pattern.partner.data() + pattern.offset[row + 1];
-  return std::lower_bound(first, last, column) - pattern.partner.data();
 }
 
 void make_unique(std::vector<Index>& numbers) {
@@ -84,7 +78,7 @@ BlockPattern constrained_pattern(const BlockPattern& whole, const Constraints& c
   }
   for_each_of_followers(whole, constraints, [&](Index i, Offset bond) {
     for (const Index a : masters[i]) {
-      for (const Index b : masters[whole.partner[bond]]) couple(a, b);
+      for (const Index b : masters[whole.partner(i, bond)]) couple(a, b);
     }
   });
   for (auto row = std::size_t(whole.points()); row < more.size(); ++row) make_unique(more[row]);
@@ -127,8 +121,8 @@ void ConstrainedTangent::find_places() {
   for (Index i = 0; i < whole_.pattern.points(); ++i) {
     if (!constraints_.stands_alone(i) || !has_row(index_map_, i)) continue;
     for (Offset bond = whole_.pattern.offset[i]; bond < whole_.pattern.offset[i + 1]; ++bond) {
-      const Index j = whole_.pattern.partner[bond];
-      if (constraints_.stands_alone(j)) place_[std::size_t(bond)] = place_of(pattern, i, j);
+      const Index j = whole_.pattern.partner(i, bond);
+      if (constraints_.stands_alone(j)) place_[std::size_t(bond)] = pattern.find(i, j).value();
     }
   }
 }
@@ -222,7 +216,7 @@ void ConstrainedTangent::add_blocks_of_followers(std::span<const double> displac
     add_reduced(end, end, block, true);
   }
   for_each_of_followers(whole_.pattern, constraints_, [&](Index i, Offset bond) {
-    const Index j = whole_.pattern.partner[bond];
+    const Index j = whole_.pattern.partner(i, bond);
     if (!points_.owns(i) && !points_.owns(j)) return;
     for (int r = 0; r < dimension; ++r) {
       for (int c = 0; c < dimension; ++c) {
@@ -268,11 +262,12 @@ void ConstrainedTangent::add_reduced(const End& a, const End& b, const Tensor& b
 }
 
 void ConstrainedTangent::add(Index row, Index column, const Tensor& block) {
-  const std::size_t d = std::size_t(dimension);
-  double* to = row == column ? &diagonal[std::size_t(row) * d * d]
-                             : &off_diagonal[std::size_t(place_of(pattern, std::min(row, column),
-                                                                  std::max(row, column))) *
-                                             d * d];
+  const std::size_t d = std::size_t(dimension), entries = d * d;
+  const auto pair = [&] {
+    return std::size_t(pattern.find(std::min(row, column), std::max(row, column)).value());
+  };
+  double* to =
+      row == column ? &diagonal[std::size_t(row) * entries] : &off_diagonal[pair() * entries];
   for (std::size_t r = 0; r < d; ++r) {
     for (std::size_t c = 0; c < d; ++c) {
       *to++ += row <= column ? block[r][c] : block[c][r];

@@ -18,7 +18,7 @@ SparseRows rows_of_blocks(const Tangent& tangent) {
   for (Index i = 0; i < pattern.points(); ++i) {
     append(i, i, [&](int r, int c) { return tangent.diagonal[std::size_t((i * d + r) * d + c)]; });
     for (Offset k = pattern.offset[i]; k < pattern.offset[i + 1]; ++k) {
-      const Index j = pattern.partner[k];
+      const Index j = pattern.partner(i, k);
       append(i, j, [&](int r, int c) { return tangent.entry(k, r, c); });
       append(j, i, [&](int r, int c) { return tangent.entry(k, c, r); });
     }

@@ -71,7 +71,7 @@ void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<
       for (Offset bond = tangent.pattern.offset[i]; bond < tangent.pattern.offset[i + 1];
            ++bond, stored += size) {
         const auto block = whole_block<D, stored_as>(stored);
-        const Index j = tangent.pattern.partner[bond];
+        const Index j = tangent.pattern.partner(i, bond);
         const double* other = &v[std::size_t(j) * D];
         double* to =
             j < range.last ? &result[std::size_t(j) * D] : beyond + std::size_t(j - range.last) * D;

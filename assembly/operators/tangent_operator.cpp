@@ -30,7 +30,7 @@ void TangentOperator::multiply_absolute(std::span<const double> weight,
     for (std::size_t k = 0; k < entries; ++k) own[k / d] += std::abs(block[k]) * own_weight[k % d];
     block = blocks.data();
     for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond, block += entries) {
-      const Index partner = pattern.partner[bond];
+      const Index partner = pattern.partner(i, bond);
       double* const other = part + std::size_t(partner - first) * d;
       const double* const other_weight = &weight[std::size_t(partner) * d];
       for (std::size_t k = 0; k < entries; ++k) {

@@ -25,7 +25,7 @@ DamageGrowth visit_driven(const BondFailure& bonds, const Points& points,
                      history[std::size_t(bond)], of_bond,
                      [&](const DrivenBond& one) { visit(one.bond); });
         all.utilisation = std::max(all.utilisation, of_bond.utilisation);
-        if (!counts_bond(points, i, network.partner[bond])) continue;
+        if (!counts_bond(points, i, network.partner(i, bond))) continue;
         all.degrading += of_bond.degrading;
         all.breaking += of_bond.breaking;
       }

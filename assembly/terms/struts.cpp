@@ -35,7 +35,7 @@ Broken broken_of(const BondFailure& failure, const Bonds& bonds, std::span<const
         }
         broken.any = true;
         broken.bond[std::size_t(bond)] = broken.point[std::size_t(i)] =
-            broken.point[std::size_t(bonds.partner[bond])] = 1;
+            broken.point[std::size_t(bonds.partner(i, bond))] = 1;
       }
     }
   });
@@ -153,7 +153,8 @@ std::vector<Offset> Struts::find_in(const BondFailure& failure, const Points& po
       // no weight, and is not surrounded by all of its neighbours.
       alike_.for_each(bond, [&](Offset one) {
         if (bonds_.weight(one) == 0.0) return;
-        ways += round.of(one == bond ? i : lower_end(bonds_, one), bonds_.partner[one]);
+        const Index lower = one == bond ? i : lower_end(bonds_, one);
+        ways += round.of(lower, bonds_.partner(lower, one));
       });
       return ways.leave_a_strut(critical(bond) * bonds_.length(bond));
     };
@@ -161,7 +162,7 @@ std::vector<Offset> Struts::find_in(const BondFailure& failure, const Points& po
 #pragma omp for schedule(static) nowait
     for (Index i = 0; i < bonds_.points(); ++i) {
       for (Offset bond = bonds_.offset[i]; bond < bonds_.offset[i + 1]; ++bond) {
-        if (!broken.point[std::size_t(i)] && !broken.point[std::size_t(bonds_.partner[bond])])
+        if (!broken.point[std::size_t(i)] && !broken.point[std::size_t(bonds_.partner(i, bond))])
           continue;
         if (alike_.first(bond) != bond || !may_fail(bonds_, bond, broken, history)) continue;
         if (is_strut(i, bond)) alike_.for_each(bond, [&](Offset one) { found.push_back(one); });

@@ -58,7 +58,9 @@ MemoryEstimate estimate_memory(const Body& body) {
   size.horizon_ratio = reach_ratio(body.setting.volume_correction, body.setting.shape,
                                    body.points.dimension, body.horizon_ratio());
   size.bonds = double(body.model.bonds().count());
-  size.bytes_per_bond = double(sizeof(Index) + body.model.bonds().kind.bytes_per_bond());
+  const Bonds& bonds = body.model.bonds();
+  size.bytes_per_bond = double(bonds.kind.bytes_per_bond()) +
+                        double(bonds.partner.bytes()) / std::max(size.bonds, 1.0);
   size.has_history = body.model.has_history();
   size.has_runs =
       !is_small(body.points) && body.points.lattice && body.model.bonds().kind.are_numbered();

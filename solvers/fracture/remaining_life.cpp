@@ -17,7 +17,7 @@ template <class Visit>
 void for_each_pair(const Bonds& bonds, std::span<const BondEnds> cut_bonds, const Visit& visit) {
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      visit(i, bonds.partner[bond]);
+      visit(i, bonds.partner(i, bond));
     }
   }
   for (const auto& [i, j] : cut_bonds) visit(i, j);
@@ -49,7 +49,7 @@ void note_cracks(const Bonds& bonds, std::span<const BondEnds> cut_bonds,
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       const auto b = std::size_t(bond);
-      const bool is_near = near[std::size_t(i)] || near[std::size_t(bonds.partner[bond])];
+      const bool is_near = near[std::size_t(i)] || near[std::size_t(bonds.partner(i, bond))];
       if (!is_near || lives.near_crack[b] || broken[b]) continue;
       lives.near_crack[b] = 1;
       lives.life[b] = 1.0;

@@ -133,7 +133,7 @@ struct Cholesky::Cholmod {
       if (number[i] == FreeDofs::none) continue;
       visit(number[i], number[i]);
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
-        const Index j = number[pattern.partner[bond]];
+        const Index j = number[pattern.partner(i, bond)];
         if (j != FreeDofs::none) visit(number[i], j);
       }
     }

@@ -24,8 +24,8 @@ std::vector<Index> number_columns(const BlockPattern& pattern, const FreeDofs& f
   }
   index_map.update_ghosts(number);
   std::vector<char> is_reached(number.size() / d, 0);
-  for (Offset bond = 0; bond < pattern.offset[owned]; ++bond) {
-    is_reached[std::size_t(pattern.partner[bond])] = 1;
+  for (Index i = 0; i < index_map.owned(); ++i) {
+    for (const Index j : pattern.of(i)) is_reached[std::size_t(j)] = 1;
   }
   std::vector<Index> column = free.equation;
   for (std::size_t k = owned * d; k < number.size(); ++k) {
@@ -47,17 +47,19 @@ CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free,
   // Blocks with lower partners, which the pattern stores in the partners' rows; ascending, as i
   // ascends.
   std::vector<Offset> lower_offset(std::size_t(points) + 1, 0);
-  for (const Index j : pattern.partner) ++lower_offset[std::size_t(j) + 1];
+  for (Index i = 0; i < points; ++i) {
+    for (const Index j : pattern.of(i)) ++lower_offset[std::size_t(j) + 1];
+  }
   for (Index i = 0; i < points; ++i) lower_offset[i + 1] += lower_offset[i];
   struct Lower {
     Index partner;
     Offset bond;
   };
-  std::vector<Lower> lower(pattern.partner.size());
+  std::vector<Lower> lower(std::size_t(pattern.blocks()));
   std::vector<Offset> filled(lower_offset.begin(), lower_offset.end() - 1);
   for (Index i = 0; i < points; ++i) {
     for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
-      lower[filled[pattern.partner[bond]]++] = {i, bond};
+      lower[filled[pattern.partner(i, bond)]++] = {i, bond};
     }
   }
 
@@ -90,7 +92,7 @@ CompressedRows compressed_rows(const Tangent& tangent, const FreeDofs& free,
       }
       append(i, [&](int c) { return tangent.diagonal[(std::size_t(i) * d + r) * d + c]; });
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
-        append(pattern.partner[bond], [&](int c) { return tangent.entry(bond, r, c); });
+        append(pattern.partner(i, bond), [&](int c) { return tangent.entry(bond, r, c); });
       }
       rows.begin.push_back(rows.column.size());
     }

@@ -28,7 +28,7 @@ BlockPattern upper_blocks(const SparseRows& rows, int d) {
     }
     offset.push_back(Offset(partner.size()));
   }
-  return BlockPattern::of_rows(std::move(offset), std::move(partner));
+  return BlockPattern::of_rows(std::move(offset), partner);
 }
 
 /// Writes the symmetric part of the rows to the tangent.
@@ -40,7 +40,6 @@ double fill_symmetric_part(const SparseRows& rows, Tangent& tangent) {
   std::vector<double> lower(tangent.off_diagonal.size());
   for (Index row = 0; row < rows.rows(); ++row) {
     const Index i = row / d, r = row % d;
-    const std::span<const Index> partners = tangent.pattern.of(i);
     for (Offset e = rows.offset[std::size_t(row)]; e < rows.offset[std::size_t(row) + 1]; ++e) {
       const double value = rows.value[std::size_t(e)];
       const Index j = rows.column[std::size_t(e)] / d, c = rows.column[std::size_t(e)] % d;
@@ -50,14 +49,9 @@ double fill_symmetric_part(const SparseRows& rows, Tangent& tangent) {
         tangent.diagonal[std::size_t((i * d + c) * d + r)] += 0.5 * value;
         continue;
       }
-      const std::span<const Index> upper = i < j ? partners : tangent.pattern.of(j);
-      const auto found = std::lower_bound(upper.begin(), upper.end(), std::max(i, j));
-      if (found == upper.end() || *found != std::max(i, j)) {
-        throw std::logic_error("local rows couple points in one direction alone");
-      }
-      const Offset block =
-          tangent.pattern.offset[std::size_t(std::min(i, j))] + (found - upper.begin());
-      const std::size_t first = std::size_t(block) * std::size_t(d * d);
+      const std::optional<Offset> block = tangent.pattern.find(std::min(i, j), std::max(i, j));
+      if (!block) throw std::logic_error("local rows couple points in one direction alone");
+      const std::size_t first = std::size_t(*block) * std::size_t(d * d);
       if (i < j) {
         tangent.off_diagonal[first + std::size_t(r * d + c)] = value;
       } else {
@@ -84,9 +78,7 @@ void LocalOperator::analyze(const BlockPattern& /*pattern*/, const FreeDofs& fre
 
 LinearOutcome LocalOperator::build_symmetric(const SparseRows& rows, int dimension, int threads) {
   const BlockPattern pattern = upper_blocks(rows, dimension);
-  const bool is_known = symmetric_ && cholesky_ &&
-                        std::ranges::equal(symmetric_->pattern.offset, pattern.offset) &&
-                        std::ranges::equal(symmetric_->pattern.partner, pattern.partner);
+  const bool is_known = symmetric_ && cholesky_ && symmetric_->pattern == pattern;
   if (!is_known) {
     symmetric_ = std::make_unique<Tangent>(pattern, dimension, threads);
     cholesky_ = std::make_unique<Cholesky>(FactorReuse{0}, most_bytes_);

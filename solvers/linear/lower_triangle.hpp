@@ -33,7 +33,7 @@ void for_each_entry_of_column(const BlockPattern& pattern, const FreeDofs& free,
     if (row != FreeDofs::none) visit(row, EntryPlace{true, i, r, c});
   }
   for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
-    const std::size_t j = std::size_t(pattern.partner[bond]);
+    const std::size_t j = std::size_t(pattern.partner(i, bond));
     for (int c = 0; c < d; ++c) {
       const Index row = free.equation[j * d + c];
       if (row != FreeDofs::none) visit(row, EntryPlace{false, bond, r, c});

@@ -245,7 +245,7 @@ struct RigidPieces::Levels {
     tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
       if (!has_row(i)) return;
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
-        const Index j = pattern.partner[bond];
+        const Index j = pattern.partner(i, bond);
         if (box[i] != box[j]) continue;
         const double* block = &blocks[std::size_t(bond - pattern.offset[i]) * entries];
         double largest = 0.0;
@@ -273,8 +273,8 @@ struct RigidPieces::Levels {
     const Index points = pattern.points(), own = index_map.owned();
     std::vector<char> is_reached(std::size_t(points), 0);
     for (Index i = 0; i < points; ++i) is_reached[std::size_t(i)] = char(has_row(i));
-    for (Offset bond = 0; bond < pattern.offset[own]; ++bond) {
-      is_reached[std::size_t(pattern.partner[bond])] = 1;
+    for (Index i = 0; i < own; ++i) {
+      for (const Index j : pattern.of(i)) is_reached[std::size_t(j)] = 1;
     }
     const std::vector<std::int64_t> labels = labels_over_ranks(index_map, joined);
     std::unordered_map<std::int64_t, Index> number;
@@ -498,7 +498,7 @@ struct RigidPieces::Levels {
         of_run.setZero();
       };
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
-        const Index j = pattern.partner[bond];
+        const Index j = pattern.partner(i, bond);
         if (piece[j] != run || is_ghost(j) != is_shared) {
           end_run();
           run = piece[j];

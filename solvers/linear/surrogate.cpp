@@ -62,7 +62,7 @@ struct Surrogate::StandIn {
     const auto for_each_bond = [&](const auto& visit) {
       for (Index i = 0; i < of_rank; ++i) {
         for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
-          visit(i, pattern.partner[bond], bond);
+          visit(i, pattern.partner(i, bond), bond);
         }
       }
     };
@@ -88,14 +88,16 @@ struct Surrogate::StandIn {
     index_map.update_ghost_values(spacing);
     is_short.assign(std::size_t(pattern.blocks()), 0);
     short_bonds.offset.assign(std::size_t(points) + 1, 0);
+    std::vector<Index> upper;
     for_each_bond([&](Index i, Index j, Offset bond) {
       const double limit = short_in_spacings * std::max(spacing[i], spacing[j]);
       if (squared_distance(position, tangent.dimension, i, j) > limit * limit) return;
       is_short[bond] = 1;
-      short_bonds.partner.push_back(j);
+      upper.push_back(j);
       ++short_bonds.offset[i + 1];
     });
     for (Index i = 0; i < points; ++i) short_bonds.offset[i + 1] += short_bonds.offset[i];
+    short_bonds.partner = Partners(short_bonds.offset, upper);
     springs =
         std::make_unique<Tangent>(BlockPattern(short_bonds), tangent.dimension, tangent.threads());
     multigrid.reset();
@@ -123,7 +125,7 @@ struct Surrogate::StandIn {
       Offset spring = short_bonds.offset[i];
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
         const double* block = &blocks[std::size_t(bond - pattern.offset[i]) * entries];
-        const Index j = pattern.partner[bond];
+        const Index j = pattern.partner(i, bond);
         std::array<double, 3> arm{};
         double squared = 0.0, along = 0.0;
         for (int c = 0; c < d; ++c) {
@@ -156,7 +158,7 @@ struct Surrogate::StandIn {
     std::fill(springs->diagonal.begin(), springs->diagonal.end(), 0.0);
     for (Index i = 0; i < pattern.points(); ++i) {
       for (Offset spring = short_bonds.offset[i]; spring < short_bonds.offset[i + 1]; ++spring) {
-        const std::size_t j = std::size_t(short_bonds.partner[spring]);
+        const std::size_t j = std::size_t(short_bonds.partner(i, spring));
         double* block = &springs->off_diagonal[std::size_t(spring) * entries];
         for (int k = 0; k < entries; ++k) {
           block[k] *= gamma;

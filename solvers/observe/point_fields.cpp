@@ -96,7 +96,7 @@ std::vector<double> life(Observation& in) {
       const auto b = std::size_t(bond);
       const bool breaks = !broken.empty() && broken[b];
       const double left = in.extras().life.empty() ? 1.0 : in.extras().life[b];
-      for (const Index point : {i, bonds.partner[bond]}) {
+      for (const Index point : {i, bonds.partner(i, bond)}) {
         (breaks ? is_broken : is_whole)[std::size_t(point)] = 1;
         if (!breaks) least[std::size_t(point)] = std::min(least[std::size_t(point)], left);
       }

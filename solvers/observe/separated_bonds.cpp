@@ -23,7 +23,7 @@ std::span<const BondEnds> SeparatedBonds::add_broken(const History& history) {
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       if (!broken[bond] || broken_[bond] || bonds.weight(bond) == 0.0) continue;
-      if (points_.tells(i, bonds.partner[bond])) ends_.push_back({i, bonds.partner[bond]});
+      if (points_.tells(i, bonds.partner(i, bond))) ends_.push_back({i, bonds.partner(i, bond)});
     }
   }
   broken_ = std::move(broken);

@@ -56,9 +56,9 @@ Offset bond_of(const Bonds& bonds, const Points& points, const NumberedPoints& n
   const bool is_between = ends.image == 0;
   const Index lower = is_between ? std::min(*one, *other) : *one;
   const Index upper = is_between ? std::max(*one, *other) : points.own();
-  const auto last = bonds.partner.begin() + std::ptrdiff_t(bonds.offset[lower + 1]);
-  auto found =
-      std::lower_bound(bonds.partner.begin() + std::ptrdiff_t(bonds.offset[lower]), last, upper);
+  const PartnersOfPoint partners = bonds.of(lower);
+  const auto last = partners.end();
+  auto found = std::lower_bound(partners.begin(), last, upper);
   if (!is_between) {
     found = std::find_if(found, last, [&](Index image) {
       return points.source(image) == *other && image_number(points, image) == ends.image;
@@ -67,7 +67,7 @@ Offset bond_of(const Bonds& bonds, const Points& points, const NumberedPoints& n
   if (found == last || (is_between && *found != upper)) {
     throw std::logic_error("a bond between two parts is on one rank alone");
   }
-  return found - bonds.partner.begin();
+  return bonds.offset[lower] + (found - partners.begin());
 }
 
 /// Requests bonds from the ranks that send their values: the requesting rank, the ends, and the
@@ -79,7 +79,7 @@ Records questions(const Bonds& bonds, const Points& points, const NumberedPoints
   for (Index i = 0; i < bonds.points(); ++i) {
     if (points.is_image(i) && between_images == BetweenImages::nothing) continue;
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const EndsOfBond ends = ends_of(points, numbered, i, bonds.partner[std::size_t(bond)]);
+      const EndsOfBond ends = ends_of(points, numbered, i, bonds.partner(i, bond));
       const Index teller =
           *numbered.find(ends.image > 0 ? ends.first : std::min(ends.first, ends.second));
       if (!numbered.is_ghost(teller) && !points.is_image(i)) continue;

@@ -24,7 +24,7 @@ std::vector<char> owned_and_neighbours(const Part& part, const Bonds& bonds) {
   for (Index i = 0; i < points.count(); ++i) {
     if (points.owns(i)) is_near[std::size_t(i)] = 1;
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[std::size_t(bond)];
+      const Index j = bonds.partner(i, bond);
       if (points.owns(i)) is_near[std::size_t(j)] = 1;
       if (points.owns(j)) is_near[std::size_t(i)] = 1;
     }
@@ -47,7 +47,7 @@ Bonds make_bonds(const Part& part, SurfaceCorrection surface, const BondSetting&
   Bonds bonds = make_bonds(part.points, surface, setting, threads);
   const std::vector<char> is_near = owned_and_neighbours(part, bonds);
   bonds.remove_if([&](Index i, Offset bond) {
-    const Index j = bonds.partner[std::size_t(bond)];
+    const Index j = bonds.partner(i, bond);
     if (part.points.owns(i) || part.points.owns(j)) return false;
     const bool near_i = is_near[std::size_t(i)] != 0, near_j = is_near[std::size_t(j)] != 0;
     if (which == PartBonds::among_neighbours) return !(near_i && near_j);
@@ -64,7 +64,7 @@ GlobalIndex count_bonds(const Points& points, const Bonds& bonds, const Communic
   GlobalIndex mine = 0;
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[std::size_t(bond)];
+      const Index j = bonds.partner(i, bond);
       if (bonds.weight(bond) != 0.0 && counts_bond(points, i, j)) ++mine;
     }
   }

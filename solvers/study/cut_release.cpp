@@ -86,7 +86,7 @@ History CutRelease::history_of(const History& before) const {
   for (Index i = 0; i < left.points(); ++i) {
     Offset bond = whole.offset[i];
     for (Offset b = left.offset[i]; b < left.offset[i + 1]; ++b, ++bond) {
-      while (whole.partner[bond] != left.partner[b]) ++bond;
+      while (whole.partner(i, bond) != left.partner(i, b)) ++bond;
       kept.push_back(stretches[std::size_t(bond)]);
     }
   }

@@ -45,7 +45,7 @@ void refuse_wild_start(const Body& body, const std::vector<double>& displacement
   add_scaled(places, 1.0, displacement);
   for (Index i = 0; i < body.points.own(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[bond];
+      const Index j = bonds.partner(i, bond);
       if (j >= body.points.own()) continue;  // images follow their sources
       const double times = std::sqrt(squared_distance(places, d, i, j)) / bonds.length(bond);
       if (times <= longest_bond) continue;

@@ -340,7 +340,7 @@ CutBonds cut_bonds(Bonds& bonds, const Points& points, const std::vector<Crack>&
     boxes.push_back(std::visit([](const auto& kind) { return box_around(kind); }, crack));
   }
   bonds.remove_if([&](Index i, Offset bond) {
-    const Index j = bonds.partner[bond];
+    const Index j = bonds.partner(i, bond);
     // Orders the ends by position, so that ranks, which number points differently, cut alike.
     const auto [a, b] = std::minmax({points.position(i), points.position(j)});
     const Box box = box_around(a, b);

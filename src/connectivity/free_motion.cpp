@@ -30,7 +30,7 @@ Components connected_components(const Bonds& bonds, std::span<const char> broken
   for (Index i = 0; i < bonds.points(); ++i) {
     Index top = root(i);
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      if (broken.empty() || !broken[bond]) top = join(top, bonds.partner[bond]);
+      if (broken.empty() || !broken[bond]) top = join(top, bonds.partner(i, bond));
     }
   }
   for (const auto& [i, j] : links) join(root(i), j);
@@ -94,7 +94,7 @@ Holding with_images(Holding holding, const Points& points, const Bonds& bonds,
   std::vector<char> is_bonded(std::size_t(points.count()), 0);
   for (Index i = 0; i < points.own(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      if (broken.empty() || !broken[bond]) is_bonded[std::size_t(bonds.partner[bond])] = 1;
+      if (broken.empty() || !broken[bond]) is_bonded[std::size_t(bonds.partner(i, bond))] = 1;
     }
   }
   for (Index image = points.own(); image < points.count(); ++image) {

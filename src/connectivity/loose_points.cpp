@@ -203,13 +203,15 @@ LooseWeb gather_loose_points(const Web& web, const std::vector<Index>& loose,
     if (is_loose) bonds.insert({std::min(a, b), std::max(a, b)});
   }
   found.bonds.offset.assign(rows.size() + 1, 0);
+  std::vector<Index> upper;
   for (const auto& [a, b] : bonds) {
     ++found.bonds.offset[std::size_t(a) + 1];
-    found.bonds.partner.push_back(b);
+    upper.push_back(b);
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
     found.bonds.offset[i + 1] += found.bonds.offset[i];
   }
+  found.bonds.partner = Partners(found.bonds.offset, upper);
   return found;
 }
 

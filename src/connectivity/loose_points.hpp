@@ -37,7 +37,7 @@ class Web {
   void for_each_above_while(Index i, const Visit& visit) const {
     for (Offset bond = bonds_.offset[i]; bond < bonds_.offset[i + 1]; ++bond) {
       const bool is_broken = !broken_.empty() && broken_[bond];
-      if (!is_broken && !visit(bonds_.partner[bond])) return;
+      if (!is_broken && !visit(bonds_.partner(i, bond))) return;
     }
   }
 
@@ -55,7 +55,7 @@ class Web {
   template <class Visit>
   void for_each_above(Index i, const Visit& visit) const {
     for (Offset bond = bonds_.offset[i]; bond < bonds_.offset[i + 1]; ++bond) {
-      if (broken_.empty() || !broken_[bond]) visit(i, bonds_.partner[bond], bond);
+      if (broken_.empty() || !broken_[bond]) visit(i, bonds_.partner(i, bond), bond);
     }
   }
 

@@ -29,7 +29,7 @@ double effective_neighbour_volume(const BulkNeighbourhood& bulk) {
 void set_one_neighbour_weights(Bonds& bonds, const Points& points, const BulkNeighbourhood& bulk) {
   const double v1 = effective_neighbour_volume(bulk);
   bonds.set_weights([&](Index i, Offset bond) {
-    return 0.5 * (own_volume(points, i) + own_volume(points, bonds.partner[bond])) * v1;
+    return 0.5 * (own_volume(points, i) + own_volume(points, bonds.partner(i, bond))) * v1;
   });
 }
 

@@ -80,7 +80,7 @@ void require_whole_cells(const Points& points) {
 std::array<double, 3> squared_direction(const Points& points, const Bonds& bonds, Index i,
                                         Offset bond) {
   std::array<double, 3> result{};
-  const Coordinates from = points.position(i), to = points.position(bonds.partner[bond]);
+  const Coordinates from = points.position(i), to = points.position(bonds.partner(i, bond));
   for (int a = 0; a < points.dimension; ++a) {
     const double n = (to[a] - from[a]) * bonds.inverse_length(bond);
     result[a] = n * n;
@@ -99,13 +99,15 @@ void for_each_bond(const Bonds& bonds, const Visit& visit) {
 Bonds given_bonds(const Points& points) {
   Bonds bonds;
   bonds.offset.assign(points.volume.size() + 1, 0);
+  std::vector<Index> upper;
   for (const NeighbourShares& pair : points.neighbours) {
     ++bonds.offset[std::size_t(pair.i) + 1];
-    bonds.partner.push_back(pair.j);
+    upper.push_back(pair.j);
     const double squared = squared_distance(points.reference, points.dimension, pair.i, pair.j);
     bonds.kind.push_back({1.0 / std::sqrt(squared), 0.0});
   }
   for (std::size_t i = 1; i < bonds.offset.size(); ++i) bonds.offset[i] += bonds.offset[i - 1];
+  bonds.partner = Partners(bonds.offset, upper);
   return bonds;
 }
 
@@ -175,7 +177,7 @@ class BondShares {
 void weigh_volumes(Bonds& bonds, const Points& points, const Kernel& kernel) {
   const BondShares share(points, kernel);
   bonds.set_weights([&](Index i, Offset bond) {
-    const Index j = bonds.partner[bond];
+    const Index j = bonds.partner(i, bond);
     return share(i, j, bonds.length(bond)) * points.volume[i] * points.volume[j];
   });
 }
@@ -184,7 +186,7 @@ void weigh_volumes(Bonds& bonds, const Points& points, const Kernel& kernel) {
 void share_with_images(Bonds& bonds, const Points& points) {
   if (points.own() == points.count()) return;
   bonds.set_weights([&](Index i, Offset bond) {
-    const int own = int(!points.is_image(i)) + int(!points.is_image(bonds.partner[bond]));
+    const int own = int(!points.is_image(i)) + int(!points.is_image(bonds.partner(i, bond)));
     return 0.5 * own * bonds.weight(bond);
   });
 }
@@ -192,7 +194,7 @@ void share_with_images(Bonds& bonds, const Points& points) {
 void apply_volume_method(Bonds& bonds, const Points& points, const Kernel& kernel) {
   std::vector<double> neighbourhood(points.volume.size(), 0.0);
   for_each_bond(bonds, [&](Index i, Offset bond) {
-    const Index j = bonds.partner[bond];
+    const Index j = bonds.partner(i, bond);
     neighbourhood[i] += bonds.weight(bond) / points.volume[i];
     neighbourhood[j] += bonds.weight(bond) / points.volume[j];
   });
@@ -201,7 +203,7 @@ void apply_volume_method(Bonds& bonds, const Points& points, const Kernel& kerne
   const double bulk = whole.empty() ? 1.0 : whole.front();
   for (std::size_t i = 0; i < whole.size(); ++i) neighbourhood[i] *= bulk / whole[i];
   bonds.set_weights([&](Index i, Offset bond) {
-    const double both = neighbourhood[i] + neighbourhood[bonds.partner[bond]];
+    const double both = neighbourhood[i] + neighbourhood[bonds.partner(i, bond)];
     return bonds.weight(bond) * 2.0 * bulk / both;
   });
 }
@@ -215,7 +217,7 @@ std::vector<std::array<double, 3>> confined_energy_ratio(const Points& points, c
   const double factor = 0.25 * micromodulus(1.0, setting) / classical;
   std::vector<std::array<double, 3>> ratio(points.volume.size(), {0.0, 0.0, 0.0});
   for_each_bond(bonds, [&](Index i, Offset bond) {
-    const Index j = bonds.partner[bond];
+    const Index j = bonds.partner(i, bond);
     const std::array<double, 3> squared = squared_direction(points, bonds, i, bond);
     for (int a = 0; a < points.dimension; ++a) {
       const double energy =
@@ -237,7 +239,7 @@ void apply_energy_method(Bonds& bonds, const Points& points, const BondSetting& 
     for (double& axis : of_point) axis = axis > 0.0 ? 1.0 / axis : 1.0;
   }
   bonds.set_weights([&](Index i, Offset bond) {
-    const Index j = bonds.partner[bond];
+    const Index j = bonds.partner(i, bond);
     const std::array<double, 3> squared = squared_direction(points, bonds, i, bond);
     double sum = 0.0;
     for (int a = 0; a < points.dimension; ++a) {
@@ -313,7 +315,7 @@ std::vector<double> seen_volumes(const Points& points, const Bonds& bonds, const
   std::vector<double> seen(points.volume.size(), 0.0);
   for_each_bond(bonds, [&](Index i, Offset bond) {
     if (!broken.empty() && broken[std::size_t(bond)]) return;
-    const Index j = bonds.partner[bond];
+    const Index j = bonds.partner(i, bond);
     // A bond across a plane of symmetry has a twin, as in share_with_images.
     const int own = int(!points.is_image(i)) + int(!points.is_image(j));
     if (own == 0) return;
@@ -350,7 +352,7 @@ std::vector<double> fineness_of_bonds(const Points& points, const Bonds& bonds,
   const BondShares share(points, kernel);
   std::vector<double> fineness(std::size_t(bonds.count()), 1.0);
   for_each_bond(bonds, [&](Index i, Offset bond) {
-    const Index j = bonds.partner[bond];
+    const Index j = bonds.partner(i, bond);
     const double of_i = share.directed(i, j, bonds.length(bond));
     const double of_j = share.directed(j, i, bonds.length(bond));
     const double both = of_i * kernel.horizon / points.horizons[std::size_t(i)] +

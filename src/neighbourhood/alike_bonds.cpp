@@ -64,7 +64,7 @@ AlikeBonds::AlikeBonds(const Points& points, const Bonds& bonds) {
   std::vector<Offset> last(std::size_t(bonds.count()));
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[std::size_t(bond)];
+      const Index j = bonds.partner(i, bond);
       // Bonds between images come last, after those of points that they show.
       const auto of_first = shown.from(i, j), of_second = shown.from(j, i);
       const bool is_shown = points.is_image(i) ? of_first || of_second : of_first && of_second;

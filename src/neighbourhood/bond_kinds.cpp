@@ -42,9 +42,9 @@ std::size_t BondKinds::number_of(const BondKind& kind) {
 void BondKinds::keep_each_its_own() {
   std::vector<BondKind> own;
   own.reserve(number_.capacity());
-  for (const std::uint16_t number : number_) own.push_back(kinds_[number]);
+  for (std::size_t bond = 0; bond < number_.size(); ++bond) own.push_back(kinds_[number_[bond]]);
   kinds_ = std::move(own);
-  number_ = std::vector<std::uint16_t>();
+  number_ = {};
   known_ = decltype(known_)();
   numbered_ = false;
 }
@@ -86,7 +86,7 @@ void BondKinds::append(const BondKinds& part) {
 
 void BondKinds::copy(Offset from, Offset to) {
   if (numbered_) {
-    number_[std::size_t(to)] = number_[std::size_t(from)];
+    number_.copy(std::size_t(from), std::size_t(to));
   } else {
     kinds_[std::size_t(to)] = kinds_[std::size_t(from)];
   }
@@ -94,7 +94,7 @@ void BondKinds::copy(Offset from, Offset to) {
 
 void BondKinds::truncate(Offset count) {
   if (numbered_) {
-    number_.resize(std::size_t(count));
+    number_.truncate(std::size_t(count));
   } else {
     kinds_.resize(std::size_t(count));
   }
@@ -118,7 +118,7 @@ void ReweighedKinds::push_back(double weight) {
     return;
   }
   after_.push_back({inverse_length, weight});
-  if (after_.numbered_) last = {weight, after_.number_.back()};
+  if (after_.numbered_) last = {weight, after_.number_[after_.size() - 1]};
 }
 
 }  // namespace peristat

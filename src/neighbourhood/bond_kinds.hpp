@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "src/core/types.hpp"
+#include "src/neighbourhood/kind_numbers.hpp"
 
 namespace peristat {
 
@@ -21,9 +22,9 @@ struct BondKind {
 };
 
 /// One BondKind per bond. The bonds of a lattice are of few kinds: each kind is kept once and a
-/// bond keeps its number, 2 bytes instead of 16. Bonds whose two numbers agree to about 1e-12 are
-/// of one kind, that of the first of them, because positions on a lattice have round-off. With more
-/// than 65536 kinds, as in a cloud of points, each bond keeps its own.
+/// bond keeps its number, 1 or 2 bytes instead of 16. Bonds whose two numbers agree to about 1e-12
+/// are of one kind, that of the first of them, because positions on a lattice have round-off. With
+/// more than 65536 kinds, as in a cloud of points, each bond keeps its own.
 class BondKinds {
  public:
   [[nodiscard]] const BondKind& operator[](Offset bond) const {
@@ -38,7 +39,7 @@ class BondKinds {
   [[nodiscard]] std::size_t size() const { return numbered_ ? number_.size() : kinds_.size(); }
   /// Bytes that each bond takes.
   [[nodiscard]] std::size_t bytes_per_bond() const {
-    return numbered_ ? sizeof(std::uint16_t) : sizeof(BondKind);
+    return numbered_ ? number_.bytes_per_number() : sizeof(BondKind);
   }
 
   void reserve(std::size_t bonds);
@@ -67,7 +68,7 @@ class BondKinds {
 
   bool numbered_ = true;
   std::vector<BondKind> kinds_;  // by number, or by bond
-  std::vector<std::uint16_t> number_;
+  KindNumbers number_;
   std::unordered_map<Key, std::size_t, KeyHash> known_;
   struct Recent {
     Key key{~std::uint64_t(0), ~std::uint64_t(0)};

@@ -9,7 +9,8 @@ namespace peristat {
 namespace {
 
 bool is_bonded_to_next(const Bonds& bonds, Index i) {
-  return bonds.offset[i] < bonds.offset[i + 1] && bonds.partner[bonds.offset[i]] == i + 1;
+  const PartnersOfPoint partners = bonds.of(i);
+  return !partners.empty() && partners[0] == i + 1;
 }
 
 struct FoundRun : BondRun {
@@ -28,7 +29,7 @@ std::vector<FoundRun> runs_between(const Bonds& bonds, const BondKinds& kinds, I
     auto candidate = open.begin();
     const Offset first_bond = bonds.offset[i];
     for (Offset bond = first_bond; bond < bonds.offset[i + 1]; ++bond) {
-      const Index partner = bonds.partner[bond], ahead = partner - i;
+      const Index partner = bonds.partner(i, bond), ahead = partner - i;
       if (partner >= ghosts) break;
       while (candidate != open.end() && found[*candidate].ahead < ahead) ++candidate;
       const bool is_next = candidate != open.end() && found[*candidate].ahead == ahead;

@@ -90,7 +90,7 @@ void BondRuns::for_each_bond(const Group& group, const Bonds& bonds, const OnRun
   for (Index i = group.first; i < group.last; ++i) {
     auto run = group.runs.begin();
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index ahead = bonds.partner[bond] - i;
+      const Index ahead = bonds.partner(i, bond) - i;
       while (run != group.runs.end() &&
              (run->ahead < ahead || (run->ahead == ahead && run->last() <= i))) {
         ++run;

@@ -9,34 +9,37 @@
 
 #include "src/core/types.hpp"
 #include "src/neighbourhood/bond_kinds.hpp"
+#include "src/neighbourhood/partners.hpp"
 
 namespace peristat {
 
 /// Points of a bond, the lower one first.
 using BondEnds = std::array<Index, 2>;
 
-/// Unique bonds i-j with i < j, grouped by their lower point: the partners of i are
-/// partner[offset[i]] .. partner[offset[i+1]-1], ascending. The same graph is the sparsity pattern
-/// of every tangent: triangles and tetrahedra have all mutual distances within the horizon.
+/// Unique bonds i-j with i < j, grouped by their lower point: those of i are offset[i] ..
+/// offset[i+1]-1, by ascending partners. The same graph is the sparsity pattern of every tangent:
+/// triangles and tetrahedra have all mutual distances within the horizon.
 struct Bonds {
   std::vector<Offset> offset;  ///< points + 1
-  std::vector<Index> partner;  ///< upper point of each bond
+  Partners partner;            ///< partner(i, bond): upper point of a bond of point i
   BondKinds kind;
 
   [[nodiscard]] double inverse_length(Offset bond) const { return kind[bond].inverse_length; }
   [[nodiscard]] double length(Offset bond) const { return 1.0 / inverse_length(bond); }  ///< L [m]
   [[nodiscard]] double weight(Offset bond) const { return kind[bond].weight; }
-  [[nodiscard]] Offset count() const { return static_cast<Offset>(partner.size()); }
+  [[nodiscard]] Offset count() const { return partner.size(); }
   [[nodiscard]] Index points() const { return static_cast<Index>(offset.size()) - 1; }
+  /// Partners of point i.
+  [[nodiscard]] PartnersOfPoint of(Index i) const {
+    return partner.between(i, offset[i], offset[i + 1]);
+  }
 
   /// The bond between two points.
   [[nodiscard]] std::optional<Offset> find(Index one, Index other) const {
     const auto [lower, upper] = std::minmax(one, other);
-    const auto first = partner.begin() + offset[std::size_t(lower)];
-    const auto last = partner.begin() + offset[std::size_t(lower) + 1];
-    const auto found = std::lower_bound(first, last, upper);
-    if (found == last || *found != upper) return std::nullopt;
-    return Offset(found - partner.begin());
+    const std::optional<Offset> place = of(lower).place_of(upper);
+    if (!place) return std::nullopt;
+    return offset[std::size_t(lower)] + *place;
   }
 
   /// Removes every bond with drop(i, bond), i its lower point; the others keep their order. Calls
@@ -44,19 +47,23 @@ struct Bonds {
   /// and weight, but no offset.
   template <class Drop>
   void remove_if(const Drop& drop) {
+    PartnersBuilder left;
+    std::vector<Index> row;
     Offset kept = 0;
     Offset bond = 0;
     for (Index i = 0; i < points(); ++i) {
       const Offset end = offset[i + 1];
+      row.clear();
       for (; bond < end; ++bond) {
         if (drop(i, bond)) continue;
-        partner[kept] = partner[bond];
+        row.push_back(partner(i, bond));
         kind.copy(bond, kept);
         ++kept;
       }
+      left.add(row);
       offset[i + 1] = kept;
     }
-    partner.resize(std::size_t(kept));
+    partner = left.take();
     kind.truncate(kept);
   }
 

@@ -19,7 +19,7 @@ struct LowerNeighbours {
   template <class Visit>
   void for_each_neighbour(const Bonds& bonds, Index i, const Visit& visit) const {
     for (Offset e = offset[i]; e < offset[i + 1]; ++e) visit(lower[e], bond[e]);
-    for (Offset b = bonds.offset[i]; b < bonds.offset[i + 1]; ++b) visit(bonds.partner[b], b);
+    for (Offset b = bonds.offset[i]; b < bonds.offset[i + 1]; ++b) visit(bonds.partner(i, b), b);
   }
 
   [[nodiscard]] double bytes() const {

@@ -7,7 +7,7 @@ std::vector<std::int32_t> neighbour_counts(const Bonds& bonds) {
   for (Index i = 0; i < bonds.points(); ++i) {
     count[i] += static_cast<std::int32_t>(bonds.offset[i + 1] - bonds.offset[i]);
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      ++count[bonds.partner[bond]];
+      ++count[bonds.partner(i, bond)];
     }
   }
   return count;

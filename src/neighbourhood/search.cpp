@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <ranges>
+#include <span>
 
 #include "src/neighbourhood/cell_list.hpp"
 #include "src/neighbourhood/horizon.hpp"
@@ -18,7 +20,7 @@ constexpr Index rows_per_part = 8192;
 
 /// Bonds of a part's rows.
 struct Found {
-  std::vector<Index> partner;
+  Partners partner;
   BondKinds kind;
 };
 
@@ -76,29 +78,36 @@ Bonds bonds_of_rows(const Points& points, int threads, const FindRow& find_row) 
     const Index first = part * rows_per_part;
     const Index last = std::min(count - first, rows_per_part) + first;
     Found& mine = found[std::size_t(part)];
+    PartnersBuilder partners(first);
     std::vector<Candidate> row;
     for (Index i = first; i < last; ++i) {
       const std::size_t kept = find_row(i, row);
       std::sort(row.begin(), row.begin() + std::ptrdiff_t(kept),
                 [](const Candidate& a, const Candidate& b) { return a.partner < b.partner; });
-      for (std::size_t k = 0; k < kept; ++k) {
-        mine.partner.push_back(row[k].partner);
-        mine.kind.push_back({1.0 / std::sqrt(row[k].squared), 0.0});
+      const auto found_row = std::span(row).first(kept);
+      partners.add(found_row | std::views::transform(&Candidate::partner));
+      for (const Candidate& one : found_row) {
+        mine.kind.push_back({1.0 / std::sqrt(one.squared), 0.0});
       }
       bonds.offset[std::size_t(i) + 1] = static_cast<Offset>(kept);
     }
+    mine.partner = partners.take();
   }
 
   for (Index i = 0; i < count; ++i) bonds.offset[std::size_t(i) + 1] += bonds.offset[i];
-  bonds.partner.resize(std::size_t(bonds.offset[count]));
-  bonds.kind.reserve(bonds.partner.size());
-  std::size_t at = 0;
-  for (Found& part : found) {
-    std::copy(part.partner.begin(), part.partner.end(), bonds.partner.begin() + std::ptrdiff_t(at));
-    bonds.kind.append(part.kind);
-    at += part.partner.size();
-    part = {};
+  PartnersBuilder partners;
+  std::size_t steps = 0;
+  for (const Found& part : found) steps += part.partner.bytes() / sizeof(Index);
+  partners.reserve(std::size_t(count), steps);
+  bonds.kind.reserve(std::size_t(bonds.offset[count]));
+  for (std::size_t part = 0; part < found.size(); ++part) {
+    const std::size_t first = part * rows_per_part;
+    const std::size_t rows = std::min(std::size_t(count) - first, std::size_t(rows_per_part));
+    partners.append(found[part].partner, std::span(bonds.offset).subspan(first, rows + 1));
+    bonds.kind.append(found[part].kind);
+    found[part] = {};
   }
+  bonds.partner = partners.take();
   return bonds;
 }
 

@@ -11,7 +11,7 @@ double share_on_horizon(const Bonds& bonds, const Kernel& kernel,
   Offset there = 0;
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const double at = norm ? norm(i, bonds.partner[bond]) : bonds.length(bond);
+      const double at = norm ? norm(i, bonds.partner(i, bond)) : bonds.length(bond);
       there += at >= (1.0 - shell) * kernel.horizon;
     }
   }

@@ -22,8 +22,8 @@ UpperNeighbourhood::UpperNeighbourhood(const Bonds& bonds)
 
 void UpperNeighbourhood::move_to(Index i) {
   own_ = i;
-  points_ = {&bonds_.partner[bonds_.offset[i]],
-             std::size_t(bonds_.offset[i + 1] - bonds_.offset[i])};
+  const PartnersOfPoint partners = bonds_.of(i);
+  points_.assign(partners.begin(), partners.end());
   pairs_.clear();
 }
 
@@ -35,7 +35,7 @@ void UpperNeighbourhood::find_pairs() {
     const Index point = points_[a];
     std::uint64_t* bits = &mutual_[std::size_t(a) * words_];
     for (Offset bond = bonds_.offset[point]; bond < bonds_.offset[point + 1]; ++bond) {
-      const int b = local_[bonds_.partner[bond]];
+      const int b = local_[bonds_.partner(point, bond)];
       if (b < 0) continue;
       bits[b / 64] |= std::uint64_t(1) << (b % 64);
       pairs_.push_back({a, b, bond});

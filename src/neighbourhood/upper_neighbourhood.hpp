@@ -48,7 +48,7 @@ class UpperNeighbourhood {
   const Bonds& bonds_;
   Index own_ = 0;
   int words_;
-  std::span<const Index> points_;
+  std::vector<Index> points_;
   std::vector<Pair> pairs_;
   std::vector<std::uint64_t> mutual_;
   std::vector<std::int32_t> local_;  // of every point: its local number, or -1

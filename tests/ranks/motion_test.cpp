@@ -138,9 +138,8 @@ void expect_agreement(const Body& part, const History& history) {
   std::vector<double> mine;
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const auto [low, high] =
-          std::minmax({part.index_map->number_of(i),
-                       part.index_map->number_of(bonds.partner[std::size_t(bond)])});
+      const auto [low, high] = std::minmax(
+          {part.index_map->number_of(i), part.index_map->number_of(bonds.partner(i, bond))});
       mine.insert(mine.end(), {double(low), double(high), stretches[std::size_t(bond)]});
     }
   }

@@ -54,7 +54,7 @@ template <int D, class Visit>
     std::array<const double*, lane_count> kind;
 #pragma GCC unroll 4
     for (int l = 0; l < lane_count; ++l) {
-      batch.partner[l] = bonds.partner[bond[l]];
+      batch.partner[l] = bonds.partner(of.point, bond[l]);
       kind[l] = &kinds[bond[l]].inverse_length;
     }
     load_transposed_pairs(kind, batch.inverse_length, batch.weight);

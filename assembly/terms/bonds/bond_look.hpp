@@ -23,7 +23,7 @@ class BondLook {
       : points_(points), bonds_(bonds), displacement_(at.displacement), free_(at.eigenstretch()) {}
 
   [[nodiscard]] BondStretch along(Index i, Offset bond, const StateLine& line) const {
-    const Index j = bonds_.partner[bond];
+    const Index j = bonds_.partner(i, bond);
     const auto found = Measure::template at<D, double>(bonds_.inverse_length(bond),
                                                        {difference(points_.reference, i, j)},
                                                        {difference(displacement_, i, j)});
@@ -46,7 +46,7 @@ class BondLook {
     return result;
   }
   [[nodiscard]] double mean(std::span<const double> of_point, Index i, Offset bond) const {
-    return of_point.empty() ? 0.0 : 0.5 * (of_point[i] + of_point[bonds_.partner[bond]]);
+    return of_point.empty() ? 0.0 : 0.5 * (of_point[i] + of_point[bonds_.partner(i, bond)]);
   }
 
   const Points& points_;

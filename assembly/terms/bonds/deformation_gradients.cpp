@@ -28,7 +28,7 @@ Moments moments(const Points& points, const Model& model, const StateView& at) {
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       if (!broken.empty() && broken[bond]) continue;
-      const Index ends[] = {i, bonds.partner[bond]};
+      const Index ends[] = {i, bonds.partner(i, bond)};
       const double weight = bonds.weight(bond);
       double xi[D], eta[D];
       for (int c = 0; c < D; ++c) {

@@ -40,7 +40,7 @@ void find_largest(const Points& points, const Model& model, const StateView& at,
     double largest = none;
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       if (!broken.empty() && broken[bond]) continue;
-      const Index j = bonds.partner[bond];
+      const Index j = bonds.partner(i, bond);
       const double free = eigenstretch.empty() ? 0.0 : 0.5 * (eigenstretch[i] + eigenstretch[j]);
       const double stretch =
           Length::at<D, double>(bonds.inverse_length(bond), {difference(points.reference, i, j)},
@@ -82,7 +82,7 @@ std::vector<double> largest_driving(const Points& points, const Bonds& bonds,
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       if (!broken.empty() && broken[std::size_t(bond)]) continue;
       const double driving = drives[std::size_t(bond)].driving();
-      for (const Index point : {i, bonds.partner[bond]}) {
+      for (const Index point : {i, bonds.partner(i, bond)}) {
         double& of_point = largest[std::size_t(points.source(point))];
         of_point = std::max(of_point, driving);
       }

@@ -35,7 +35,7 @@ Neighbourhoods find_neighbourhoods(const Points& points, double horizon, int thr
   const auto for_each = [&](const auto& visit) {
     for (Index i = 0; i < count; ++i) {
       for (Offset pair = near.offset[i]; pair < near.offset[i + 1]; ++pair) {
-        const Index j = near.partner[pair];
+        const Index j = near.partner(i, pair);
         visit(i, j);
         if (j < count) visit(j, i);
       }
@@ -59,7 +59,7 @@ std::vector<char> points_with_states(const Points& points, const Bonds& bonds) {
   for (Index i = 0; i < *points.owned; ++i) {
     have[std::size_t(i)] = 1;
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      have[std::size_t(bonds.partner[bond])] = 1;
+      have[std::size_t(bonds.partner(i, bond))] = 1;
     }
   }
   return have;
@@ -67,12 +67,8 @@ std::vector<char> points_with_states(const Points& points, const Bonds& bonds) {
 
 /// Number of the bond between two points; -1: there is none.
 Offset bond_between(const Bonds& bonds, Index a, Index b) {
-  const Index low = std::min(a, b), high = std::max(a, b);
-  if (high >= bonds.points()) return -1;
-  const auto first = bonds.partner.begin() + bonds.offset[low];
-  const auto last = bonds.partner.begin() + bonds.offset[low + 1];
-  const auto found = std::lower_bound(first, last, high);
-  return found != last && *found == high ? found - bonds.partner.begin() : -1;
+  if (std::max(a, b) >= bonds.points()) return -1;
+  return bonds.find(a, b).value_or(-1);
 }
 
 /// Appends neighbours point by point.

@@ -26,16 +26,12 @@ class ContactRows {
   }
   [[nodiscard]] bool has(Index one, Index other) const {
     const auto [i, j] = std::minmax(one, other);
-    const auto first = partner_.begin() + offset_[std::size_t(i)],
-               last = partner_.begin() + offset_[std::size_t(i) + 1];
-    return std::binary_search(first, last, j);
+    return of(i).place_of(j).has_value();
   }
   /// Adds its pairs to others.
   void add_to(std::vector<Pair>& pairs) const {
     for (std::size_t i = 0; i + 1 < offset_.size(); ++i) {
-      for (Offset k = offset_[i]; k < offset_[i + 1]; ++k) {
-        pairs.emplace_back(Index(i), partner_[std::size_t(k)]);
-      }
+      for (const Index j : of(Index(i))) pairs.emplace_back(Index(i), j);
     }
   }
   /// Takes the pairs instead of its own, in any order, and each as often as it likes.
@@ -46,27 +42,29 @@ class ContactRows {
     std::ranges::sort(pairs);
     pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
     std::ranges::fill(offset_, 0);
-    partner_.clear();
+    std::vector<Index> upper;
     for (const auto& [i, j] : pairs) {
       ++offset_[std::size_t(i) + 1];
-      partner_.push_back(j);
+      upper.push_back(j);
     }
     for (std::size_t i = 1; i < offset_.size(); ++i) offset_[i] += offset_[i - 1];
+    partner_ = Partners(offset_, upper);
   }
 
  private:
+  [[nodiscard]] PartnersOfPoint of(Index i) const {
+    return partner_.between(i, offset_[std::size_t(i)], offset_[std::size_t(i) + 1]);
+  }
+
   std::vector<Offset> offset_;
-  std::vector<Index> partner_;
+  Partners partner_;
 };
 
 /// Number of the block of two points, i < j, in the pattern of a tangent.
 [[nodiscard]] inline Offset place_of_contact(const BlockPattern& pattern, Index i, Index j) {
-  const std::span<const Index> row = pattern.of(i);
-  const auto found = std::lower_bound(row.begin(), row.end(), j);
-  if (found == row.end() || *found != j) {
-    throw std::logic_error("the pattern of the tangent lacks points in contact");
-  }
-  return pattern.offset[std::size_t(i)] + (found - row.begin());
+  const std::optional<Offset> found = pattern.find(i, j);
+  if (!found) throw std::logic_error("the pattern of the tangent lacks points in contact");
+  return *found;
 }
 
 /// True if the displacement of all points is finite.

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "assembly/terms/contact/contact_rows.hpp"
 #include "src/core/coordinates.hpp"
 
 namespace peristat {
@@ -31,7 +32,7 @@ class ObstaclePasses : public TermPasses, BlockTangent {
         pattern_(setting.pattern),
         dimension_(std::size_t(setting.points.dimension)),
         coupled_(obstacles.all().size()),
-        offset_(std::size_t(setting.points.count()) + 1, 0) {}
+        rows_(setting.points.count()) {}
 
   Evaluation gradient(const StateView& at, std::span<double> gradient, Write how) override {
     if (how == Write::over) std::fill(gradient.begin(), gradient.end(), 0.0);
@@ -215,8 +216,7 @@ class ObstaclePasses : public TermPasses, BlockTangent {
       are_covered = false;
     });
     if (!are_covered) take_rows();
-    if (partner_.empty()) return std::nullopt;
-    return Couplings(offset_, partner_);
+    return rows_.couplings();
   }
 
   [[nodiscard]] double work_of_obstacles(const StateView& from, const StateView& to) override {
@@ -290,7 +290,7 @@ class ObstaclePasses : public TermPasses, BlockTangent {
           }
         }
         if (i != j) {
-          tangent.add_to_block(block_between(i, j), block);
+          tangent.add_to_block(place_of_contact(pattern_, i, j), block);
           continue;
         }
         double* const own = &tangent.diagonal[std::size_t(i) * block.size()];
@@ -299,33 +299,15 @@ class ObstaclePasses : public TermPasses, BlockTangent {
     }
   }
 
-  /// Place of the block (i, j), i < j, in the pattern.
-  [[nodiscard]] Offset block_between(Index i, Index j) const {
-    const std::span<const Index> row = pattern_.of(i);
-    const auto found = std::ranges::lower_bound(row, j);
-    if (found == row.end() || *found != j) {
-      throw std::logic_error("the pattern of the tangent lacks points that press on an obstacle");
-    }
-    return pattern_.offset[std::size_t(i)] + (found - row.begin());
-  }
-
   /// Rows of contact_couplings from the points that are coupled.
   void take_rows() {
-    std::vector<std::pair<Index, Index>> pairs;
+    std::vector<ContactRows::Pair> pairs;
     for (const std::vector<Index>& of : coupled_) {
       for (std::size_t a = 0; a < of.size(); ++a) {
         for (std::size_t b = a + 1; b < of.size(); ++b) pairs.emplace_back(of[a], of[b]);
       }
     }
-    std::ranges::sort(pairs);
-    pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
-    std::ranges::fill(offset_, Offset(0));
-    partner_.clear();
-    for (const auto& [i, j] : pairs) {
-      ++offset_[std::size_t(i) + 1];
-      partner_.push_back(j);
-    }
-    for (std::size_t i = 1; i < offset_.size(); ++i) offset_[i] += offset_[i - 1];
+    rows_.take(std::move(pairs));
   }
 
   /// k (P - s y y^T / |y|^2), s = 1 where the contact slides. The projection takes its share of the
@@ -406,8 +388,7 @@ class ObstaclePasses : public TermPasses, BlockTangent {
   const BlockPattern& pattern_;
   std::size_t dimension_;
   std::vector<std::vector<Index>> coupled_;  // per obstacle, ascending
-  std::vector<Offset> offset_;               // rows of contact_couplings
-  std::vector<Index> partner_;
+  ContactRows rows_;                         // of contact_couplings
 };
 
 }  // namespace

@@ -56,7 +56,7 @@ void BondFailure::renew_onsets(const Points& points,
             const auto of = [&](Index point) {
               return of_points[std::size_t(points.source(point))].of_bond(onset, most);
             };
-            onsets[b] = 0.5 * (of(i) + of(bonds().partner[bond]));
+            onsets[b] = 0.5 * (of(i) + of(bonds().partner(i, bond)));
             criticals[b] = critical_of_work(own, onsets[b], work, criticals[b]);
           });
         }
@@ -68,7 +68,7 @@ double BondFailure::dissipated_energy(std::span<const double> history, const Poi
   double sum = 0.0;
   with_damage_law(history, [&](const auto& law) {
     for_each_bond(bonds(), [&](Index i, Offset bond) {
-      if (points != nullptr && !counts_bond(*points, i, bonds().partner[bond])) return;
+      if (points != nullptr && !counts_bond(*points, i, bonds().partner(i, bond))) return;
       sum +=
           bonds().weight(bond) * bonds().length(bond) * law.of_bond(bond).dissipated(history[bond]);
     });
@@ -121,7 +121,7 @@ BondLosses BondFailure::weigh(std::span<const double> history, const Points* poi
   const Bonds& all = bonds();
   const auto add = [&](Index i, Offset bond, double integrity) {
     const double weight = all.weight(bond);
-    for (const Index point : {i, all.partner[bond]}) {
+    for (const Index point : {i, all.partner(i, bond)}) {
       whole[point] += weight;
       left[point] += integrity * weight;
     }
@@ -130,7 +130,7 @@ BondLosses BondFailure::weigh(std::span<const double> history, const Points* poi
   if (!can_fail()) for_each_bond(all, [&](Index i, Offset bond) { add(i, bond, 1.0); });
   with_damage_law(history, [&](const auto& law) {
     for_each_bond(all, [&](Index i, Offset bond) {
-      const bool counts = points == nullptr || counts_bond(*points, i, all.partner[bond]);
+      const bool counts = points == nullptr || counts_bond(*points, i, all.partner(i, bond));
       add(i, bond, law.of_bond(bond).integrity_after(history[bond]));
       lost.broken_bonds +=
           counts && law.of_bond(bond).is_broken(history[bond]) && all.weight(bond) != 0.0;

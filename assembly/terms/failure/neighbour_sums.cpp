@@ -13,7 +13,7 @@ NeighbourSums neighbour_sums(const Bonds& bonds, std::span<const double> integri
   NeighbourSums sums{std::vector<double>(integrity.size()), std::vector<double>(integrity.size())};
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[bond];
+      const Index j = bonds.partner(i, bond);
       const double left = integrity[std::size_t(i)] * integrity[std::size_t(j)];
       for (const Index point : {i, j}) {
         sums.weight[std::size_t(point)] += left * bonds.weight(bond);

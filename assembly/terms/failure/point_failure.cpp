@@ -50,7 +50,7 @@ std::vector<char> PointFailure::broken(const Bonds& bonds, std::span<const doubl
   if (broken.empty()) return broken;
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const auto j = std::size_t(bonds.partner[bond]);
+      const auto j = std::size_t(bonds.partner(i, bond));
       broken[std::size_t(bond)] = history[std::size_t(i)] == 0.0 || history[j] == 0.0;
     }
   }
@@ -76,7 +76,7 @@ BondLosses PointFailure::weigh(std::span<const double> history, const Points* po
   for (Index i = 0; i < bonds().points() && !gone.empty(); ++i) {
     for (Offset bond = bonds().offset[i]; bond < bonds().offset[i + 1]; ++bond) {
       lost.broken_bonds +=
-          gone[std::size_t(bond)] && counts_bond(*points, i, bonds().partner[bond]);
+          gone[std::size_t(bond)] && counts_bond(*points, i, bonds().partner(i, bond));
     }
   }
   return lost;

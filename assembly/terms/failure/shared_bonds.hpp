@@ -55,7 +55,7 @@ void damage_on_ranks(const IndexMap& index_map, const Bonds& bonds, LossReaches 
     if (!any_of_all(ranks, !mine.empty())) return;
     std::vector<SharedBond> all;
     for (std::size_t k = 0; k < mine.size(); ++k) {
-      const Index j = bonds.partner[std::size_t(mine[k].bond)];
+      const Index j = bonds.partner(mine[k].point, mine[k].bond);
       all.push_back({mine[k].utilisation,
                      {index_map.number_of(mine[k].point), index_map.number_of(j)},
                      ranks.rank(),

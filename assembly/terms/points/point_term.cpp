@@ -363,7 +363,7 @@ std::vector<InteractionCount> PointTerm::counts() const {
 
 Couplings PointTerm::couplings() const {
   if (!has_lattice()) return bonds();
-  return {no_couplings_, std::span<const Index>()};
+  return {no_couplings_, {}};
 }
 
 double PointTerm::stored_bytes() const {

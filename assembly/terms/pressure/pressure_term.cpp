@@ -247,10 +247,7 @@ class PressurePasses : public TermPasses, BlockTangent {
   }
 
   [[nodiscard]] Offset place(Index i, Index j) const {
-    const Couplings own = term_.couplings();
-    const std::span<const Index> row = own.of(i);
-    const auto found = std::lower_bound(row.begin(), row.end(), j);
-    const Offset number = own.offset[std::size_t(i)] + (found - row.begin());
+    const Offset number = term_.couplings().find(i, j).value();
     return places_.empty() ? number : places_[std::size_t(number)];
   }
 
@@ -284,10 +281,12 @@ PressureTerm::PressureTerm(const Points& points, PressedBoundary boundary)
     });
   }
   offset_.push_back(0);
+  PartnersBuilder partners;
   for (const std::set<Index>& row : rows) {
-    partner_.insert(partner_.end(), row.begin(), row.end());
-    offset_.push_back(Offset(partner_.size()));
+    partners.add(row);
+    offset_.push_back(offset_.back() + Offset(row.size()));
   }
+  partner_ = partners.take();
 }
 
 std::unique_ptr<TermPasses> PressureTerm::passes(const TermSetting& setting) const {

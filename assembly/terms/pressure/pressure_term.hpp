@@ -63,7 +63,7 @@ class PressureTerm : public Term {
   std::vector<std::vector<double>> weights_;
   std::vector<Element> elements_;
   std::vector<Offset> offset_;
-  std::vector<Index> partner_;
+  Partners partner_;
 };
 
 }  // namespace peristat

@@ -76,8 +76,8 @@ class BondSimplices {
     Offset bond = bonds_.offset[point];
     const Offset end = bonds_.offset[point + 1];
     for (std::size_t b = a + 1; b < apexes_.size(); ++b) {
-      while (bond < end && bonds_.partner[bond] < apexes_[b].point) ++bond;
-      if (bond < end && bonds_.partner[bond] == apexes_[b].point) visit(apexes_[b], bond);
+      while (bond < end && bonds_.partner(point, bond) < apexes_[b].point) ++bond;
+      if (bond < end && bonds_.partner(point, bond) == apexes_[b].point) visit(apexes_[b], bond);
     }
   }
 

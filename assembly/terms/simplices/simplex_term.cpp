@@ -219,7 +219,8 @@ class SimplexPasses : public TermPasses, BlockTangent {
   [[nodiscard]] BondEnds ends_of(Offset bond) const {
     const std::vector<Offset>& offset = term_.bonds().offset;
     const auto above = std::upper_bound(offset.begin(), offset.end(), bond);
-    return {Index(above - offset.begin()) - 1, term_.bonds().partner[std::size_t(bond)]};
+    const Index lower = Index(above - offset.begin()) - 1;
+    return {lower, term_.bonds().partner(lower, bond)};
   }
 
   /// Leaves this integrity to a bond, in those of bonds and points.
@@ -301,7 +302,7 @@ class SimplexPasses : public TermPasses, BlockTangent {
         for (Index i = range.first; i < range.last; ++i) {
           for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
             if (bonds.weight(bond) == 0.0 || term_.alike().first(bond) < bond) continue;
-            if (!counts_bond(setting_.points, i, bonds.partner[std::size_t(bond)])) continue;
+            if (!counts_bond(setting_.points, i, bonds.partner(i, bond))) continue;
             const auto& of_bond = law.of_bond(bond);
             const double s = look.stretch(i, bond);
             const double driving =
@@ -418,7 +419,7 @@ void SimplexTerm::follow(const Model& model, History& history) const {
     for (Index i = 0; i < bonds().points(); ++i) {
       for (Offset bond = bonds().offset[i]; bond < bonds().offset[i + 1]; ++bond) {
         integrity[bond] = law.of_bond(bond).integrity_after(largest_stretch[bond]);
-        for (const Index point : {i, bonds().partner[bond]}) {
+        for (const Index point : {i, bonds().partner(i, bond)}) {
           of_point[point] = std::min(of_point[point], integrity[bond]);
         }
       }

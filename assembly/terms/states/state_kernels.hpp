@@ -205,7 +205,7 @@ class StateKernels {
       const Index last = Index(std::int64_t(count) * (thread + 1) / threads());
       for (Index j = first; j < last; ++j) {
         for (Offset b = pattern.offset[j]; b < pattern.offset[j + 1]; ++b) {
-          place[std::size_t(pattern.partner[b])] = b;
+          place[std::size_t(pattern.partner(j, b))] = b;
         }
         double* const block_of_point = &diagonal[std::size_t(j) * D * D];
         const auto block_with = [&](Index k) {
@@ -288,7 +288,7 @@ class StateKernels {
         for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
           const BondDrive& drive = drives[std::size_t(bond)];
           const double part = left_of(bond) * whole_[bond].weight * bonds.length(bond);
-          for (const Index end : {i, bonds.partner[bond]}) {
+          for (const Index end : {i, bonds.partner(i, bond)}) {
             sums[std::ptrdiff_t(end) * 2] += part * drive.stretch;
             sums[std::ptrdiff_t(end) * 2 + 1] += part * drive.rate;
           }
@@ -306,7 +306,7 @@ class StateKernels {
     for (Index first = 0; first < bonds.points(); ++first) {
       const auto i = std::size_t(first);
       for (Offset bond = bonds.offset[first]; bond < bonds.offset[first + 1]; ++bond) {
-        const auto j = std::size_t(bonds.partner[bond]);
+        const auto j = std::size_t(bonds.partner(i, bond));
         const double q = q_[i] + q_[j];
         const double lost = law.of_bond(bond).drop_after(history[bond]) * whole_of(bond) *
                             bonds.length(bond) * (stiffness_[i] + stiffness_[j]) / q;
@@ -330,7 +330,8 @@ class StateKernels {
   [[nodiscard]] Loss loss_by_release(const DrivenBond& driven, const OfBond& of_bond,
                                      double history) const {
     const auto i = std::size_t(driven.point);
-    const auto j = std::size_t(buffers_.points.source(buffers_.bonds.partner[driven.bond]));
+    const auto j =
+        std::size_t(buffers_.points.source(buffers_.bonds.partner(driven.point, driven.bond)));
     const double s = driven.stretch, r = buffers_.bonds.length(driven.bond);
     const double q = q_[i] + q_[j], p = p_[i] + p_[j];
     const double drop = of_bond.drop_after(history);
@@ -345,7 +346,7 @@ class StateKernels {
   void lose(const DrivenBond& driven, const Loss& loss) {
     lose_at(driven.point, loss);
     if (twin_of(driven.bond).bond == driven.bond) return;  // with a point's own mirror image
-    lose_at(buffers_.points.source(buffers_.bonds.partner[driven.bond]), loss);
+    lose_at(buffers_.points.source(buffers_.bonds.partner(driven.point, driven.bond)), loss);
   }
   void lose_at(Index point, const Loss& loss) {
     const auto i = std::size_t(point);
@@ -374,7 +375,7 @@ class StateKernels {
         const double lost = (before.integrity[std::size_t(bond)] - integrity_[std::size_t(bond)]) *
                             whole_[bond].weight;
         if (lost == 0.0) continue;
-        const Index j = bonds.partner[bond];
+        const Index j = bonds.partner(i, bond);
         const std::span<const double> reference = buffers_.points.reference;
         const Arms<1, D, double> xi{minus<D>(of(reference, j), of(reference, i))};
         const Arms<1, D, double> eta{minus<D>(of(u, j), of(u, i))};

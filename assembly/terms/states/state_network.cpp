@@ -41,7 +41,7 @@ std::vector<double> moments_of(const Points& points, const Bonds& bonds) {
   std::vector<double> moment(points.volume.size(), 0.0);
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[bond];
+      const Index j = bonds.partner(i, bond);
       const double part =
           bonds.weight(bond) * bonds.inverse_length(bond) * squared_length(points, i, j);
       moment[std::size_t(i)] += part;
@@ -58,7 +58,7 @@ std::vector<BondTwin> twins_of(const Points& points, const Bonds& bonds) {
   std::vector<BondTwin> twins(std::size_t(bonds.count()));
   for (Index i = 0; i < points.own(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[bond];
+      const Index j = bonds.partner(i, bond);
       if (!points.is_image(j)) continue;
       twins[std::size_t(bond)] = {points.source(j), bond};
       alike.for_each(bond, [&](Offset other) {
@@ -99,12 +99,13 @@ StateNetwork::StateNetwork(const Bonds& bonds, bool reaches_twice, int threads)
   block_offset.assign(std::size_t(points) + 1, 0);
   for_rows([&](Index i, Index) { ++block_offset[std::size_t(i) + 1]; });
   for (Index i = 0; i < points; ++i) block_offset[i + 1] += block_offset[i];
-  partner.resize(std::size_t(block_offset.back()));
+  std::vector<Index> upper(std::size_t(block_offset.back()));
   std::vector<Offset> next(block_offset.begin(), block_offset.end() - 1);
-  for_rows([&](Index i, Index j) { partner[std::size_t(next[i]++)] = j; });
+  for_rows([&](Index i, Index j) { upper[std::size_t(next[i]++)] = j; });
   for (Index i = 0; i < points; ++i) {
-    std::sort(partner.begin() + block_offset[i], partner.begin() + block_offset[i + 1]);
+    std::sort(upper.begin() + block_offset[i], upper.begin() + block_offset[i + 1]);
   }
+  partner = Partners(block_offset, upper);
 }
 
 }  // namespace peristat

@@ -42,7 +42,7 @@ struct StateShares {
 struct StateNetwork : LowerNeighbours {
   /// Blocks of the tangent: partners above a point within two bonds of it.
   std::vector<Offset> block_offset;
-  std::vector<Index> partner;
+  Partners partner;
 
   /// @param reaches_twice true if points with a common neighbour are coupled
   StateNetwork(const Bonds& bonds, bool reaches_twice, int threads);

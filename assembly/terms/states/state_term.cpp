@@ -255,7 +255,7 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
     double sum = 0.0;
     failure_.with_damage_law(history, [&](const auto& law) {
       sum = kernels_.losses(displacement, remembered, [&](Index i, Offset bond, double stretch) {
-        if (!counts_bond(points_, i, term_.bonds().partner[bond])) return 0.0;
+        if (!counts_bond(points_, i, term_.bonds().partner(i, bond))) return 0.0;
         const double ratio = law.of_bond(bond).borne(history[std::size_t(bond)]) / stretch;
         return std::min(ratio * ratio, 1.0);
       });

@@ -219,7 +219,7 @@ double keep_off_kinks(const Body& body, const std::vector<double>& displacement,
   const std::vector<double> all = direction;
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[bond];
+      const Index j = bonds.partner(i, bond);
       const Coordinates a = place(i), b = place(j);
       const double stretch =
           std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) * bonds.inverse_length(bond) - 1.0;
@@ -334,7 +334,8 @@ std::vector<std::size_t> sampled_dofs(const Body& body, const std::vector<double
     const Index i = bonds.points() / std::min(places, bonds.points()) * k;
     points.push_back(i);
     const Offset last = std::min(bonds.offset[i + 1], bonds.offset[i] + most_partners);
-    for (Offset bond = bonds.offset[i]; bond < last; ++bond) points.push_back(bonds.partner[bond]);
+    for (Offset bond = bonds.offset[i]; bond < last; ++bond)
+      points.push_back(bonds.partner(i, bond));
   }
   std::vector<std::size_t> dofs;
   for (const Index point : points) {

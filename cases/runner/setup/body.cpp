@@ -197,7 +197,7 @@ std::optional<Model> make_elastic_stand_in(const Case& from, const Body& body, i
     Bonds bonds = make_bonds(body.points, from.surface_correction, setting, threads);
     if (!body.index_map->is_whole()) {
       bonds.remove_if([&](Index i, Offset bond) {  // between ghosts
-        return !body.points.owns(i) && !body.points.owns(bonds.partner[std::size_t(bond)]);
+        return !body.points.owns(i) && !body.points.owns(bonds.partner(i, bond));
       });
       agree_on_kinds(bonds, body.points, body.index_map->numbered(), body.index_map->ranks());
     }

@@ -92,7 +92,7 @@ std::int64_t bridging(const Body& body, const Bonds& bonds, const Shape& shape, 
     if (!is_near) continue;
     for (Offset bond = bonds.offset[std::size_t(i)]; bond < bonds.offset[std::size_t(i) + 1];
          ++bond) {
-      const Index j = bonds.partner[std::size_t(bond)];
+      const Index j = bonds.partner(i, bond);
       if (!counts_bond(points, i, j)) continue;
       count += length_inside(shape, points.dimension, at, points.position(j)) >= least;
     }

@@ -143,7 +143,7 @@ Bonds cut_of_lattice(const Points& points, const BondSetting& setting,
   }
   Bonds bonds = make_bonds(part, SurfaceCorrection::none, setting, threads);
   bonds.remove_if([&](Index i, Offset bond) {
-    const Coordinates a = part.position(i), b = part.position(bonds.partner[bond]);
+    const Coordinates a = part.position(i), b = part.position(bonds.partner(i, bond));
     return std::ranges::none_of(cracks, [&](const Crack& crack) { return cuts(crack, a, b); });
   });
   Bonds result;
@@ -154,7 +154,11 @@ Bonds cut_of_lattice(const Points& points, const BondSetting& setting,
   for (std::size_t i = 0; i + 1 < result.offset.size(); ++i) {
     result.offset[i + 1] += result.offset[i];
   }
-  for (const Index partner : bonds.partner) result.partner.push_back(near[std::size_t(partner)]);
+  std::vector<Index> upper;
+  for (Index i = 0; i < bonds.points(); ++i) {
+    for (const Index j : bonds.of(i)) upper.push_back(near[std::size_t(j)]);
+  }
+  result.partner = Partners(result.offset, upper);
   result.kind = std::move(bonds.kind);
   return result;
 }
@@ -163,7 +167,7 @@ CutBonds told(const Bonds& bonds) {
   CutBonds cut{std::vector<double>(std::size_t(bonds.points()), 0.0), {}};
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[bond];
+      const Index j = bonds.partner(i, bond);
       cut.weight[std::size_t(i)] += bonds.weight(bond);
       cut.weight[std::size_t(j)] += bonds.weight(bond);
       cut.ends.push_back({i, j});

@@ -139,7 +139,7 @@ BondMaterials::BondMaterials(const BodySpecification& from, const PointMaterials
 }
 
 Coordinates BondMaterials::direction(const Bonds& bonds, Index i, Offset bond) const {
-  Coordinates n = points_.position(bonds.partner[bond]);
+  Coordinates n = points_.position(bonds.partner(i, bond));
   const Coordinates from = points_.position(i);
   for (std::size_t c = 0; c < 3; ++c) n[c] = (n[c] - from[c]) * bonds.inverse_length(bond);
   return n;
@@ -158,7 +158,7 @@ double BondMaterials::constant(std::size_t a, std::size_t b, const Coordinates& 
 
 void BondMaterials::weigh(Bonds& bonds) const {
   bonds.set_weights([&](Index i, Offset bond) {
-    const Index j = bonds.partner[bond];
+    const Index j = bonds.partner(i, bond);
     const double stiffness =
         constant(materials_.of(i), materials_.of(j), direction(bonds, i, bond)) / modulus_;
     return bonds.weight(bond) * stiffness * PointFactors::of_bond(factors_.stiffness, i, j);
@@ -243,7 +243,7 @@ BondMaterials::Failing BondMaterials::smooth_potential(const Bonds& bonds,
   auto by_bond = std::make_shared<BondLaws>(laws, has_one ? 0 : std::size_t(bonds.count()));
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[bond];
+      const Index j = bonds.partner(i, bond);
       const double of_horizons = fineness.empty() ? 1.0 : fineness[std::size_t(bond)];
       const auto own =
           strength(materials_.of(i), materials_.of(j), direction(bonds, i, bond), of_horizons);
@@ -264,7 +264,7 @@ void refuse_idle_interfaces(const BodySpecification& from, const PointMaterials&
   std::vector<double> is_met(from.interfaces.size());
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const std::size_t a = materials.of(i), b = materials.of(bonds.partner[bond]);
+      const std::size_t a = materials.of(i), b = materials.of(bonds.partner(i, bond));
       if (a == b) continue;
       const InterfaceSpecification* const met = &materials.between(a, b);
       for (std::size_t k = 0; k < is_met.size(); ++k) {

@@ -98,7 +98,7 @@ std::vector<char> never_failing_bonds(const std::vector<PointMaterials::Material
   std::vector<char> of_bond(std::size_t(bonds.count()));
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      of_bond[bond] = of_point[points.source(i)] | of_point[points.source(bonds.partner[bond])];
+      of_bond[bond] = of_point[points.source(i)] | of_point[points.source(bonds.partner(i, bond))];
     }
   }
   return of_bond;

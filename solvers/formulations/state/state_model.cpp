@@ -54,7 +54,7 @@ void weigh_by_release(Bonds& bonds, const Points& points, const StateShares& sha
     return points.volume[i] * d * (d + 2) * shares.constants[i].mu / shares.moment[i];
   };
   bonds.set_weights([&](Index i, Offset bond) {
-    return shares.whole[bond].weight * (q(i) + q(bonds.partner[bond])) / modulus;
+    return shares.whole[bond].weight * (q(i) + q(bonds.partner(i, bond))) / modulus;
   });
 }
 

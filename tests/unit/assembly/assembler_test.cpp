@@ -350,7 +350,7 @@ TEST(Assembler, ReportsDegenerateStates) {
       EXPECT_FALSE(assembler.gradient(state, gradient).degenerate);
       // One point driven onto a neighbour: the current vector is the difference of equal numbers.
       const Index i = body.points.count() / 2;
-      const Index j = body.model.bonds().partner[body.model.bonds().offset[i]];
+      const Index j = body.model.bonds().of(i)[0];
       for (int c = 0; c < dimension; ++c) {
         state[std::size_t(i) * dimension + c] =
             body.points.position(j)[c] - body.points.position(i)[c];

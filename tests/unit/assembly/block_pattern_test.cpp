@@ -21,7 +21,7 @@ void expect_partition(const Bonds& bonds, int threads) {
     Index reach = range.last;
     for (Index row = range.first; row < range.last; ++row) {
       for (Offset bond = bonds.offset[row]; bond < bonds.offset[row + 1]; ++bond) {
-        reach = std::max(reach, bonds.partner[bond] + 1);
+        reach = std::max(reach, bonds.partner(row, bond) + 1);
       }
     }
     EXPECT_EQ(range.touched_end, reach);

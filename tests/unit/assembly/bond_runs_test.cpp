@@ -58,7 +58,7 @@ BoxBody cut_body(const BoxSetting& box) {
     const auto x = [&](Index p, int c) {
       return body.points.reference[std::size_t(p * box.dimension + c)];
     };
-    const Index j = body.model.bonds().partner[std::size_t(bond)];
+    const Index j = body.model.bonds().partner(i, bond);
     const bool crosses = (x(i, 0) < 1245.5 * h) != (x(j, 0) < 1245.5 * h);
     return crosses && (box.dimension == 1 ? false : x(i, 1) < 1237.5 * h);
   });

@@ -40,9 +40,7 @@ struct OneBond {
     points.spacing = length;
     points.reference = {0.1, 0.1 + length};
     points.volume = {1.0, 1.0};
-    Bonds bonds;
-    bonds.offset = {0, 1, 1};
-    bonds.partner = {1};
+    Bonds bonds = tests::bonds_between({0, 1, 1}, {1});
     bonds.kind.push_back({1.0 / length, weight});
     model = Model(std::move(bonds), potential);
   }

@@ -114,7 +114,7 @@ Eigen::MatrixXd full(Assembler& assembler, const StateView& at, double projectio
       }
     }
     for (Offset b = tangent.pattern.offset[i]; b < tangent.pattern.offset[i + 1]; ++b) {
-      const Index j = tangent.pattern.partner[std::size_t(b)];
+      const Index j = tangent.pattern.partner(i, b);
       for (int r = 0; r < d; ++r) {
         for (int c = 0; c < d; ++c) {
           matrix(i * d + r, j * d + c) = matrix(j * d + c, i * d + r) = tangent.entry(b, r, c);
@@ -132,7 +132,7 @@ Bonds bonds_alone(const StateBody& body, double mu) {
   Bonds bonds = body.model.bonds();
   const std::vector<double>& moment = body.term->shares().moment;
   bonds.set_weights([&](Index i, Offset bond) {
-    const Index j = bonds.partner[bond];
+    const Index j = bonds.partner(i, bond);
     const double volumes = body.points.volume[i] / moment[std::size_t(i)] +
                            body.points.volume[j] / moment[std::size_t(j)];
     return d * (d + 2) * mu * body.term->shares().whole[bond].weight * volumes;

@@ -69,7 +69,7 @@ struct Torn {
     std::set<Ends> found;
     for (Index i = 0; i < bonds.points(); ++i) {
       for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-        const Index j = bonds.partner[bond];
+        const Index j = bonds.partner(i, bond);
         if (!takes(bond, i, j)) continue;
         std::array<std::array<double, 2>, 2> ends;
         for (std::size_t c = 0; c < 2; ++c) {
@@ -153,7 +153,7 @@ TEST(Struts, AreNoneWhereMostBondsAreWhole) {
   std::vector<double> stretches(std::size_t(bonds.count()));
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[bond];
+      const Index j = bonds.partner(i, bond);
       const double along = torn.body.points.reference[std::size_t(j) * 2] -
                            torn.body.points.reference[std::size_t(i) * 2];
       if (torn.is_above(i) != torn.is_above(j) && std::abs(along) < 0.5 * spacing) {

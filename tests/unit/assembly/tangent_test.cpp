@@ -16,7 +16,7 @@ namespace {
 
 /// Three points in a row, bonds 0-1 and 1-2, with numbers that tell their place.
 struct Example {
-  Bonds bonds{{0, 1, 2, 2}, {1, 2}, {}};
+  Bonds bonds = tests::bonds_between({0, 1, 2, 2}, {1, 2});
   Tangent tangent{BlockPattern(bonds), 2};
 
   Example() {

@@ -15,7 +15,7 @@ BondHistories DamageHistories::changes(const RecordedPoints& recorded, const Bon
       const bool is_known = known != known_.end() && known->first == bond;
       const double before = is_known ? (known++)->second : 0.0;
       if (history[bond] == before || points.is_image(i)) continue;
-      const Index second = bonds.partner[bond];
+      const Index second = bonds.partner(i, bond);
       if (!recorded.tells(i, second)) continue;
       changed.first_point.push_back(recorded.number(i));
       changed.second_point.push_back(recorded.number(second));

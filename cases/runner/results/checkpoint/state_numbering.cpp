@@ -137,10 +137,10 @@ void StateNumbering::visit_bonds(
 std::vector<Offset> StateNumbering::told_bonds(Index point) const {
   std::vector<Offset> told;
   for (Offset bond = bonds_.offset[point]; bond < bonds_.offset[point + 1]; ++bond) {
-    if (points_.tells(point, bonds_.partner[bond])) told.push_back(bond);
+    if (points_.tells(point, bonds_.partner(point, bond))) told.push_back(bond);
   }
   std::ranges::sort(told, {}, [&](Offset bond) {
-    const Index other = bonds_.partner[bond];
+    const Index other = bonds_.partner(point, bond);
     return std::pair(image_number(points_.points(), other), points_.number(other));
   });
   return told;

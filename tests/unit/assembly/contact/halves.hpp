@@ -25,7 +25,7 @@ struct Halves {
       : body(setting_of(dimension, fails)) {
     if (!fails) {
       body.remove_bonds([&](Index i, Offset bond) {
-        return is_above(i) != is_above(body.model.bonds().partner[std::size_t(bond)]);
+        return is_above(i) != is_above(body.model.bonds().partner(i, bond));
       });
     }
     const auto count = std::size_t(body.points.count());

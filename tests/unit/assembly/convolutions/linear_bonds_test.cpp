@@ -93,7 +93,7 @@ Sums direct_sums(const BoxBody& body, const std::vector<double>& q, const std::v
   Sums sums{std::vector<double>(u.size(), 0.0), std::vector<double>(q.size(), 0.0)};
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      const Index j = bonds.partner[bond];
+      const Index j = bonds.partner(i, bond);
       const Coordinates a = body.points.position(i), b = body.points.position(j);
       const double length = bonds.length(bond);
       const double k = q[i] * q[j] * modulus * bonds.weight(bond) / length;

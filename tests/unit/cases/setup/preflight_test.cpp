@@ -153,7 +153,7 @@ TEST_F(PreflightOf, AShapeThatCutsLeavesNoBondAcrossIt) {
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
       EXPECT_EQ(length_inside(slit, 2, body->points.position(i),
-                              body->points.position(bonds.partner[bond])),
+                              body->points.position(bonds.partner(i, bond))),
                 0.0);
     }
   }

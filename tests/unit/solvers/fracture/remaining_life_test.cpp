@@ -6,12 +6,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/bodies.hpp"
+
 namespace peristat {
 namespace {
 
 /// A chain of points 0 to 5, each bonded to the next one.
 Bonds chain() {
-  Bonds bonds{{0, 1, 2, 3, 4, 5, 5}, {1, 2, 3, 4, 5}, {}};
+  Bonds bonds = tests::bonds_between({0, 1, 2, 3, 4, 5, 5}, {1, 2, 3, 4, 5});
   for (int bond = 0; bond < 5; ++bond) bonds.kind.push_back({1.0, 1.0});
   return bonds;
 }

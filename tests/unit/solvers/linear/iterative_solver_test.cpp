@@ -125,7 +125,7 @@ struct System {
 
   void scale_bond(Index i, Offset bond, double by) {
     const std::size_t entries = std::size_t(tangent.dimension) * tangent.dimension;
-    const std::size_t j = std::size_t(tangent.pattern.partner[bond]);
+    const std::size_t j = std::size_t(tangent.pattern.partner(i, bond));
     for (std::size_t k = 0; k < entries; ++k) {
       double& entry = tangent.off_diagonal[std::size_t(bond) * entries + k];
       tangent.diagonal[std::size_t(i) * entries + k] -= (by - 1.0) * entry;
@@ -170,7 +170,7 @@ BoxBody cracked(const BoxSetting& box, double at, double height) {
   BoxBody body(box);
   body.remove_bonds([&](Index i, Offset bond) {
     const Coordinates a = body.points.position(i),
-                      b = body.points.position(body.model.bonds().partner[bond]);
+                      b = body.points.position(body.model.bonds().partner(i, bond));
     return (a[0] - at * box.spacing) * (b[0] - at * box.spacing) < 0.0 &&
            0.5 * (a[1] + b[1]) < height * box.spacing;
   });
@@ -313,7 +313,7 @@ TEST(IterativeSolver, HeldFragmentsDoNotSpoilConvergence) {
   prescribed[last * 2] = prescribed[last * 2 + 1] = prescribed[(last - 20) * 2] = 1;
   for (const Index loose : {points / 2, points / 3}) {
     body.remove_bonds([&](Index i, Offset bond) {
-      return i == loose || body.model.bonds().partner[bond] == loose;
+      return i == loose || body.model.bonds().partner(i, bond) == loose;
     });
     prescribed[std::size_t(loose) * 2] = prescribed[std::size_t(loose) * 2 + 1] = 1;
   }
@@ -333,7 +333,7 @@ TEST(IterativeSolver, DamagedBondsDivideTheRigidPieces) {
   const BlockPattern& pattern = system.tangent.pattern;
   for (Index i = 0; i < pattern.points(); ++i) {
     for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
-      const Index j = pattern.partner[bond];
+      const Index j = pattern.partner(i, bond);
       const Coordinates a = system.body.points.position(i), b = system.body.points.position(j);
       const double plane = 26.0 * box.spacing;
       if ((a[0] - plane) * (b[0] - plane) >= 0.0 || a[1] + b[1] > 48.0 * box.spacing) continue;

@@ -142,8 +142,7 @@ TEST(LineSearch, StepsBackFromADegenerateState) {
   Search search(1);
   const Points& points = search.problem.body.points;
   const Index i = points.count() / 2;
-  const Index j =
-      search.problem.body.model.bonds().partner[search.problem.body.model.bonds().offset[i]];
+  const Index j = search.problem.body.model.bonds().of(i)[0];
   std::fill(search.direction.begin(), search.direction.end(), 0.0);
   search.direction[i] = points.position(j)[0] - points.position(i)[0];
   // A force that asks for it, so strong that the energy falls along it.

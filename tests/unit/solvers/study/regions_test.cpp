@@ -69,7 +69,7 @@ TEST(Regions, BondsBetweenThemHaveConstantsByTheRule) {
     int met = 0;
     for (Index i = 0; i < bonds.points(); ++i) {
       for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-        const Index j = bonds.partner[bond];
+        const Index j = bonds.partner(i, bond);
         const double modulus = j < 5 ? 2.0 : i >= 5 ? 6.0 : expected;
         EXPECT_DOUBLE_EQ(bonds.weight(bond), modulus / 2.0);  // over the first material's
         met += i < 5 && j >= 5;
@@ -107,7 +107,7 @@ TEST(Regions, BondsWithoutALawDoNotFail) {
   const Bonds& bonds = body->model.bonds();
   for (Index i = 0; i < bonds.points(); ++i) {
     for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-      EXPECT_EQ(history[std::size_t(bond)], bonds.partner[bond] < 5 ? never_failing : 0.0);
+      EXPECT_EQ(history[std::size_t(bond)], bonds.partner(i, bond) < 5 ? never_failing : 0.0);
     }
   }
 }
@@ -128,7 +128,7 @@ TEST(Regions, BlendedLawsOfTwoFractureEnergiesAreAlike) {
     double low = 0.0, high = 0.0, between = 0.0;
     for (Index i = 0; i < bonds.points(); ++i) {
       for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-        const Index j = bonds.partner[bond];
+        const Index j = bonds.partner(i, bond);
         (i < 5 && j < 5 ? low : i >= 5 && j >= 5 ? high : between) = law.at(bond).critical();
       }
     }

@@ -435,7 +435,7 @@ Offset expect_cut(const BoxBody& body, const std::vector<Crack>& cracks, const I
   });
   EXPECT_EQ(after.points(), before.points());
   EXPECT_EQ(after.offset.back(), after.count());
-  EXPECT_EQ(after.kind.size(), after.partner.size());
+  EXPECT_EQ(after.kind.size(), std::size_t(after.count()));
   EXPECT_EQ(found, expected);
   EXPECT_EQ(removed, cracks.empty() ? std::vector<double>() : expected_removed);
   EXPECT_EQ(removed_ends, expected_ends);

@@ -65,7 +65,7 @@ struct RealBonds {
     }
     for (Index i = 0; i < bonds.points(); ++i) {
       for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
-        const Index j = bonds.partner[bond];
+        const Index j = bonds.partner(i, bond);
         if (i != middle && j != middle) continue;
         const Coordinates from = points.position(i), to = points.position(j);
         Coordinates n{};

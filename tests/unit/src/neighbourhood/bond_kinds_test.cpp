@@ -107,7 +107,7 @@ TEST(BondKinds, OfALatticeAreFew) {
     box.quadrature = quadrature;
     const tests::BoxBody body(box);
     EXPECT_GT(body.model.bonds().count(), 200000);
-    EXPECT_EQ(body.model.bonds().kind.bytes_per_bond(), 2u);
+    EXPECT_EQ(body.model.bonds().kind.bytes_per_bond(), 1u);
     tests::for_each_bond(body.model.bonds(), [&](Index i, Index j, Offset bond) {
       const double distance = tests::reference_distance(body.points, i, j);
       ASSERT_NEAR(body.model.bonds().length(bond) / distance, 1.0, 2e-12);

@@ -1,18 +1,21 @@
 #include "src/neighbourhood/share_on_horizon.hpp"
 
+#include <numeric>
+#include <vector>
+
 #include <gtest/gtest.h>
+
+#include "tests/bodies.hpp"
 
 namespace peristat {
 namespace {
 
 /// Bonds of the given lengths [m].
 Bonds bonds_of(const std::vector<double>& lengths) {
-  Bonds bonds;
-  bonds.offset = {0, Offset(lengths.size())};
-  for (std::size_t k = 0; k < lengths.size(); ++k) {
-    bonds.partner.push_back(Index(k) + 1);
-    bonds.kind.push_back({1.0 / lengths[k], 1.0});
-  }
+  std::vector<Index> upper(lengths.size());
+  std::iota(upper.begin(), upper.end(), 1);
+  Bonds bonds = tests::bonds_between({0, Offset(lengths.size())}, upper);
+  for (const double length : lengths) bonds.kind.push_back({1.0 / length, 1.0});
   return bonds;
 }
 
