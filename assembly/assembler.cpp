@@ -58,6 +58,14 @@ void keep_toughness(const Points& points, const Bonds& bonds, std::span<const do
   }
 }
 
+std::vector<RowRange> parts_of(const Points& points, const Model& model,
+                               const BlockPattern& pattern, int threads) {
+  const Index own = points.own_rows();
+  const bool spill =
+      std::ranges::any_of(model.terms(), [](const auto& term) { return term->spills_bonds(); });
+  return partition_rows(pattern, spill ? threads : parts_of_rows(pattern, threads, own), own);
+}
+
 }  // namespace
 
 Assembler::Assembler(const Points& points, const Model& model, int threads,
@@ -68,7 +76,7 @@ Assembler::Assembler(const Points& points, const Model& model, int threads,
       of_model_(pattern_of == PatternOf::blocks ? model.pattern() : model.visited_pattern()),
       in_contact_(BlockPattern::diagonal(points.count())),
       pattern_(of_model_),
-      workspace_(pattern_, points.dimension, threads),
+      workspace_(pattern_, points.dimension, threads, parts_of(points, model, pattern_, threads)),
       index_map_(index_map) {
   if (model.terms().empty()) throw std::logic_error("a model without terms has no energy");
   for (const auto& term : model.terms()) terms_.push_back(passes_of(*term));

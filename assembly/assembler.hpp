@@ -132,6 +132,7 @@ class Assembler : public Energy, BlockTangent, RowVisits, RowOperator {
   [[nodiscard]] const Points& points() const override { return points_; }
   [[nodiscard]] const BlockPattern& pattern() const override { return pattern_; }
   [[nodiscard]] int threads() const override { return workspace_.threads(); }
+  [[nodiscard]] const std::vector<RowRange>& parts() const override { return workspace_.ranges; }
   [[nodiscard]] bool has_symmetric_blocks() const override { return model_.has_symmetric_blocks(); }
   [[nodiscard]] bool has_potential() const override { return model_.balances().potential; }
   [[nodiscard]] TangentKind tangent_kind() const override { return model_.tangent_kind(); }

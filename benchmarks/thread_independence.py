@@ -6,10 +6,11 @@ The Newton iterations that finish relaxed steps are printed but not compared: th
 solved iteratively, and if the residual comes close to the tolerance, round-off decides on one more
 iteration.
 
-    /usr/bin/python3 benchmarks/thread_independence.py [--threads 1,2,3] [CASE[:key=value...]...]
+    /usr/bin/python3 benchmarks/thread_independence.py [--threads 1,2,3] [--bits] [CASE[:key=value...]...]
 
 Prints a row per case and number of threads; exits with 1 if they differ. Without cases, the four
-problems of fracture are run as shipped.
+problems of fracture are run as shipped. With --bits every row of the history and every field is
+compared, to the last bit: for relaxation and explicit steps.
 """
 
 import argparse
@@ -20,6 +21,8 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+
+import h5py
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PROGRAM = os.environ.get("PERISTAT_PROGRAM", str(ROOT / "build/release/peristat"))
@@ -51,12 +54,27 @@ def run(case, settings, threads, folder):
     return counts, bonds, told
 
 
-def compare(case, settings, threads):
+def bits(folder):
+    """The history, and the bytes of all numbers of the results by their names."""
+    found = {"history.csv": pathlib.Path(f"{folder}/history.csv").read_bytes()}
+
+    def take(name, item):
+        if isinstance(item, h5py.Dataset) and item.dtype.kind in "fiu":
+            found[name] = item[()].tobytes()
+
+    with h5py.File(f"{folder}/results.h5") as file:
+        file.visititems(take)
+    return found
+
+
+def compare(case, settings, threads, to_the_bit):
     """@return whether the runs on all numbers of threads agree"""
     found = []
     for count in threads:
         with tempfile.TemporaryDirectory(prefix="peristat_threads_") as folder:
             *result, told = run(case, settings, count, f"{folder}/results")
+            if to_the_bit:
+                result.append(bits(f"{folder}/results"))
         print(told, flush=True)
         found.append(result)
     return all(result == found[0] for result in found)
@@ -65,6 +83,7 @@ def compare(case, settings, threads):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--threads", default="1,2,3")
+    parser.add_argument("--bits", action="store_true")
     parser.add_argument("cases", nargs="*", default=CASES, metavar="CASE[:key=value...]")
     asked = parser.parse_args()
     threads = [int(count) for count in asked.threads.split(",")]
@@ -73,7 +92,7 @@ def main():
     same = True
     for entry in asked.cases:
         case, *settings = entry.split(":")
-        if not compare(case, settings, threads):
+        if not compare(case, settings, threads, asked.bits):
             print(f"{case}: the runs differ", file=sys.stderr)
             same = False
     return 0 if same else 1

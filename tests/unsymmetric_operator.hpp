@@ -30,7 +30,7 @@ struct GridSetting {
 struct GridOperator : UnsymmetricTangent {
   explicit GridOperator(const GridSetting& of)
       : UnsymmetricTangent(BlockPattern::of_rows(std::vector<Offset>(points_of(of) + 1, 0), {}),
-                           of.dimension, of.threads),
+                           of.dimension, of.threads, {}),
         setting(of) {
     assemble();
   }

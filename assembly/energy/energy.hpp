@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "assembly/energy/state.hpp"
 #include "src/geometry/points.hpp"
@@ -8,6 +9,7 @@
 namespace peristat {
 
 class BlockPattern;
+struct RowRange;
 enum class TangentKind;
 struct TangentForms;
 
@@ -22,6 +24,8 @@ class Energy {
   /// pattern, which changes with it.
   virtual int cover_contacts(const StateView& /*at*/) { return 0; }
   [[nodiscard]] virtual int threads() const = 0;
+  /// Parts of the rows, whose sums are added up in order.
+  [[nodiscard]] virtual const std::vector<RowRange>& parts() const = 0;
   /// Whether each off-diagonal block of its tangent is symmetric.
   [[nodiscard]] virtual bool has_symmetric_blocks() const = 0;
   /// True if forces are minus the derivative of the energy. Otherwise the tangent, their derivative

@@ -72,25 +72,4 @@ std::vector<Offset> BlockPattern::places_of(const Couplings& couplings) const {
   return places;
 }
 
-std::vector<RowRange> partition_rows(const BlockPattern& pattern, int threads) {
-  std::vector<RowRange> ranges(threads);
-  const Index rows = pattern.points();
-  Index first = 0;
-  for (int thread = 0; thread < threads; ++thread) {
-    // Each row counts one block beside its own, so that rows without any are shared out, too.
-    const double share = double(thread + 1) / threads * double(pattern.blocks() + rows);
-    Index last = first;
-    while (last < rows && double(pattern.offset[last + 1] + last + 1) <= share) ++last;
-    if (thread + 1 == threads) last = rows;
-    Index reach = last;
-    for (Index row = first; row < last; ++row) {
-      const PartnersOfPoint partners = pattern.of(row);
-      if (!partners.empty()) reach = std::max(reach, partners.back() + 1);
-    }
-    ranges[thread] = {first, last, reach};
-    first = last;
-  }
-  return ranges;
-}
-
 }  // namespace peristat

@@ -79,15 +79,4 @@ class BlockPattern : public Couplings {
   std::shared_ptr<const Rows> own_;  // null: a view
 };
 
-/// Rows [first, last) of one thread. Its interactions also touch rows up to `touched_end`,
-/// which belong to later threads: what it adds there goes to a buffer of its own and is summed
-/// afterwards in the order of the threads, so that a given number of threads always gives the same
-/// result.
-struct RowRange {
-  Index first = 0, last = 0, touched_end = 0;
-};
-
-/// Ranges of rows with nearly equal numbers of blocks.
-[[nodiscard]] std::vector<RowRange> partition_rows(const BlockPattern& pattern, int threads);
-
 }  // namespace peristat

@@ -32,7 +32,7 @@ Tensor transposed(const Tensor& block) {
 ConstrainedProduct::ConstrainedProduct(std::unique_ptr<TangentOperator> whole, const Points& points,
                                        const Constraints& constraints, const IndexMap& index_map)
     : TangentOperator(BlockPattern::diagonal(Index(constraints.rows())), points.dimension,
-                      whole->threads()),
+                      whole->threads(), {}),
       whole_(std::move(whole)),
       points_(points),
       constraints_(constraints),
@@ -116,18 +116,18 @@ void ConstrainedProduct::add_blocks_between_followers(std::vector<SharedBlock>& 
     Index i, j;
     Tensor block;
   };
-  std::vector<std::vector<Pair>> pairs(ranges.size());
+  std::vector<std::vector<Pair>> pairs(std::size_t(whole_->parts()));
   const BlockPattern& of = whole_->pattern;
-  whole_->for_each_row([&](int thread, Index i, std::span<const double> blocks) {
+  whole_->for_each_row([&](int part, Index i, std::span<const double> blocks) {
     const double* block = blocks.data();
     for (Offset bond = of.offset[i]; bond < of.offset[i + 1]; ++bond, block += d * d) {
       const Index j = of.partner(i, bond);
       const bool may_share = !constraints_.stands_alone(i) || !constraints_.stands_alone(j);
-      if (may_share) pairs[std::size_t(thread)].push_back({i, j, tensor_of(block, d)});
+      if (may_share) pairs[std::size_t(part)].push_back({i, j, tensor_of(block, d)});
     }
   });
-  for (const std::vector<Pair>& of_thread : pairs) {
-    for (const auto& [i, j, block] : of_thread) {
+  for (const std::vector<Pair>& of_part : pairs) {
+    for (const auto& [i, j, block] : of_part) {
       // Each rank adds the row of the end that it owns.
       if (points_.owns(i)) add_block(i, block, j, shared);
       if (points_.owns(j)) add_block(j, transposed(block), i, shared);

@@ -103,7 +103,8 @@ BlockPattern constrained_pattern(const BlockPattern& whole, const Constraints& c
 ConstrainedTangent::ConstrainedTangent(const Energy& energy, const Constraints& constraints,
                                        const IndexMap& index_map)
     : Tangent(constrained_pattern(energy.pattern(), constraints, index_map),
-              energy.points().dimension, energy.threads(), Blocks::whole),
+              energy.points().dimension, energy.threads(), energy.points().own_rows(),
+              Blocks::whole),
       points_(energy.points()),
       constraints_(constraints),
       index_map_(index_map),
@@ -180,8 +181,8 @@ void ConstrainedTangent::absolute_row_sums(std::span<double> sums) const {
 
 void ConstrainedTangent::add_blocks_between_free_points() {
   const std::size_t entries = std::size_t(dimension) * std::size_t(dimension);
-  run_on_threads(threads(), [&](int thread) {
-    const RowRange range = whole_.ranges[std::size_t(thread)];
+  run_on_parts(threads(), whole_.parts(), [&](int part) {
+    const RowRange range = whole_.ranges[std::size_t(part)];
     for (Index i = range.first; i < range.last; ++i) {
       if (!constraints_.stands_alone(i) || !has_row(index_map_, i)) continue;
       std::copy_n(&whole_.diagonal[std::size_t(i) * entries], entries,

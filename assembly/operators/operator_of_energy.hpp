@@ -22,7 +22,8 @@ struct OperatorOfEnergy : Kind {
 
  protected:
   OperatorOfEnergy(Energy& energy, const BlockPattern& blocks)
-      : Kind(blocks, energy.points().dimension, energy.threads()), energy_(&energy) {}
+      : Kind(blocks, energy.points().dimension, energy.threads(), energy.parts()),
+        energy_(&energy) {}
 
   void keep(Energy& energy, const StateView& at, double projection) {
     energy_ = &energy;

@@ -47,17 +47,17 @@ void dispatch(const Tangent& tangent, const Body& body) {
   }
 }
 
-/// result = K v. Each thread sums its own rows and, separately, what its bonds contribute to later
-/// threads' rows; these contributions are added in the order of the threads.
+/// result = K v. Each part sums its own rows and, separately, what its bonds contribute to later
+/// parts' rows; these contributions are added in the order of the parts.
 template <int D, Tangent::Blocks stored_as>
 void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<double> result) {
   std::vector<std::vector<double>>& spilled = tangent.spilled;
-  run_on_threads(tangent.threads(), [&](int thread) {
-    const RowRange range = tangent.ranges[thread];
+  const auto sum_own = [&](int part) {
+    const RowRange range = tangent.ranges[part];
     std::fill(result.begin() + std::ptrdiff_t(range.first) * D,
               result.begin() + std::ptrdiff_t(range.last) * D, 0.0);
-    std::fill(spilled[thread].begin(), spilled[thread].end(), 0.0);
-    double* const beyond = spilled[thread].data();
+    std::fill(spilled[part].begin(), spilled[part].end(), 0.0);
+    double* const beyond = spilled[part].data();
     for (Index i = range.first; i < range.last; ++i) {
       const double* own = &v[std::size_t(i) * D];
       const double* diagonal = &tangent.diagonal[std::size_t(i) * D * D];
@@ -74,7 +74,7 @@ void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<
         const Index j = tangent.pattern.partner(i, bond);
         const double* other = &v[std::size_t(j) * D];
         double* to =
-            j < range.last ? &result[std::size_t(j) * D] : beyond + std::size_t(j - range.last) * D;
+            j < range.last ? &result[std::size_t(j) * D] : beyond + range.place_beyond(j) * D;
         for (int r = 0; r < D; ++r) {
           for (int c = 0; c < D; ++c) {
             sum[r] += block[r * D + c] * other[c];
@@ -84,30 +84,46 @@ void multiply_rows(const Tangent& tangent, std::span<const double> v, std::span<
       }
       for (int r = 0; r < D; ++r) result[std::size_t(i) * D + r] += sum[r];
     }
-#pragma omp barrier
-    for (int earlier = 0; earlier < thread; ++earlier) {
+  };
+  const auto add_spilled = [&](int part) {
+    const RowRange range = tangent.ranges[part];
+    for (int earlier = 0; earlier < part; ++earlier) {
       const RowRange other = tangent.ranges[earlier];
-      const Index first = std::max(range.first, other.last),
-                  last = std::min(range.last, other.touched_end);
-      for (std::ptrdiff_t k = std::ptrdiff_t(first) * D; k < std::ptrdiff_t(last) * D; ++k) {
-        result[k] += spilled[earlier][k - std::ptrdiff_t(other.last) * D];
-      }
+      other.for_each_beyond(range, [&](Index first, Index last) {
+        const double* from = &spilled[earlier][std::size_t(other.place_beyond(first)) * D];
+        for (std::ptrdiff_t k = std::ptrdiff_t(first) * D; k < std::ptrdiff_t(last) * D; ++k) {
+          result[k] += *from++;
+        }
+      });
     }
+  };
+  const int busy = std::min(tangent.threads(), tangent.parts());
+  run_on_threads(busy, [&](int thread) {
+    for_parts_of_thread(thread, busy, tangent.parts(), sum_own);
+#pragma omp barrier
+    for_parts_of_thread(thread, busy, tangent.parts(), add_spilled);
   });
 }
 
 }  // namespace
 
 Tangent::Tangent(const BlockPattern& of, int dimension_of_points, int threads, Blocks stored_as)
-    : TangentOperator(of, dimension_of_points, threads),
+    : Tangent(of, dimension_of_points, threads, of.points(), stored_as) {}
+
+Tangent::Tangent(const BlockPattern& of, int dimension_of_points, int threads, Index own,
+                 Blocks stored_as)
+    : TangentOperator(of, dimension_of_points, threads,
+                      partition_rows(of, parts_of_rows(of, threads, own), own)),
       blocks(stored_as),
       off_diagonal(std::size_t(of.blocks()) * block_size()),
-      position(std::size_t(of.points()) * dimension) {
+      position(std::size_t(of.points()) * dimension),
+      own_(own) {
   make_room_for_spills();
 }
 
 Tangent::Tangent(const Energy& energy)
     : Tangent(energy.pattern(), energy.points().dimension, energy.threads(),
+              energy.points().own_rows(),
               energy.has_symmetric_blocks() ? Blocks::upper_halves : Blocks::whole) {}
 
 std::size_t Tangent::block_size() const { return std::size_t(block_size_of(dimension, blocks)); }
@@ -136,7 +152,7 @@ void Tangent::add_to_block(Offset block, std::span<const double> entries) {
 void Tangent::take_pattern(const BlockPattern& of, int version_of_it) {
   pattern = of;
   version = version_of_it;
-  ranges = partition_rows(of, threads());
+  ranges = partition_rows(of, parts_of_rows(of, threads(), own_), own_);
   off_diagonal.assign(std::size_t(of.blocks()) * block_size(), 0.0);
   make_room_for_spills();
 }
@@ -144,7 +160,7 @@ void Tangent::take_pattern(const BlockPattern& of, int version_of_it) {
 void Tangent::make_room_for_spills() {
   spilled.clear();
   for (const RowRange& range : ranges) {
-    spilled.emplace_back(std::size_t(range.touched_end - range.last) * std::size_t(dimension));
+    spilled.emplace_back(std::size_t(range.rows_beyond()) * std::size_t(dimension));
   }
 }
 
@@ -165,20 +181,20 @@ void Tangent::for_each_row(const RowVisitor& visit) const {
     constexpr int D = decltype(d)::value;
     constexpr Blocks as = decltype(stored_as)::value;
     constexpr std::size_t size = block_size_of(D, as);
-    run_on_threads(threads(), [&](int thread) {
+    run_on_parts(threads(), parts(), [&](int part) {
       std::vector<double> row;
-      for (Index i = ranges[thread].first; i < ranges[thread].last; ++i) {
+      for (Index i = ranges[part].first; i < ranges[part].last; ++i) {
         const std::size_t first = std::size_t(pattern.offset[i]),
                           last = std::size_t(pattern.offset[i + 1]);
         if constexpr (as == Blocks::whole) {
-          visit(thread, i, std::span(off_diagonal).subspan(first * size, (last - first) * size));
+          visit(part, i, std::span(off_diagonal).subspan(first * size, (last - first) * size));
         } else {
           row.clear();
           for (std::size_t bond = first; bond < last; ++bond) {
             const auto block = whole_block<D, as>(off_diagonal.data() + bond * size);
             row.insert(row.end(), block.begin(), block.end());
           }
-          visit(thread, i, row);
+          visit(part, i, row);
         }
       }
     });

@@ -17,6 +17,9 @@ struct Tangent : TangentOperator {
           Blocks stored_as = Blocks::whole);
   /// Tangent for an energy that has blocks, stored as the energy needs them.
   explicit Tangent(const Energy& energy);
+  /// @param own rows before those of images and ghosts
+  Tangent(const BlockPattern& of, int dimension_of_points, int threads, Index own,
+          Blocks stored_as);
 
   Blocks blocks;
   std::vector<double> off_diagonal;  ///< block (i, partner), in the order of the pattern [N/m]
@@ -48,12 +51,13 @@ struct Tangent : TangentOperator {
   /// sqrt of the sum of squares of all entries, both halves counted [N/m].
   [[nodiscard]] double frobenius_norm() const;
 
-  /// Per thread, contributions of a product to the rows of later threads; overwritten by each
-  /// product.
+  /// Per part, contributions of a product to the rows beyond it; overwritten by each product.
   mutable std::vector<std::vector<double>> spilled;
 
  private:
   void make_room_for_spills();
+
+  Index own_;
 };
 
 }  // namespace peristat

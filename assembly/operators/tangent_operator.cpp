@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace peristat {
 
-TangentOperator::TangentOperator(const BlockPattern& of, int dimension_of_points, int threads)
+TangentOperator::TangentOperator(const BlockPattern& of, int dimension_of_points, int threads,
+                                 std::vector<RowRange> parts)
     : pattern(of),
       dimension(dimension_of_points),
-      ranges(partition_rows(of, threads)),
-      diagonal(std::size_t(of.points()) * dimension * dimension) {}
+      ranges(std::move(parts)),
+      diagonal(std::size_t(of.points()) * dimension * dimension),
+      threads_(threads) {}
 
 void TangentOperator::absolute_row_sums(std::span<double> sums) const {
   multiply_absolute(std::vector<double>(sums.size(), 1.0), sums);
@@ -18,20 +21,22 @@ void TangentOperator::absolute_row_sums(std::span<double> sums) const {
 void TangentOperator::multiply_absolute(std::span<const double> weight,
                                         std::span<double> result) const {
   const std::size_t d = std::size_t(dimension), entries = d * d;
-  std::vector<std::vector<double>> parts;  // rows first..touched_end of each thread
-  for (const RowRange& range : ranges)
-    parts.emplace_back(std::size_t(range.touched_end - range.first) * d);
-  for_each_row([&](int thread, Index i, std::span<const double> blocks) {
-    double* const part = parts[std::size_t(thread)].data();
-    const Index first = ranges[std::size_t(thread)].first;
-    double* const own = part + std::size_t(i - first) * d;
+  std::vector<std::vector<double>> beyond;  // rows beyond each part
+  for (const RowRange& range : ranges) beyond.emplace_back(std::size_t(range.rows_beyond()) * d);
+  std::fill(result.begin(), result.end(), 0.0);
+  for_each_row([&](int part, Index i, std::span<const double> blocks) {
+    const RowRange& range = ranges[std::size_t(part)];
+    double* const own = &result[std::size_t(i) * d];
     const double* block = &diagonal[std::size_t(i) * entries];
     const double* const own_weight = &weight[std::size_t(i) * d];
     for (std::size_t k = 0; k < entries; ++k) own[k / d] += std::abs(block[k]) * own_weight[k % d];
     block = blocks.data();
     for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond, block += entries) {
       const Index partner = pattern.partner(i, bond);
-      double* const other = part + std::size_t(partner - first) * d;
+      double* const other =
+          partner < range.last
+              ? &result[std::size_t(partner) * d]
+              : &beyond[std::size_t(part)][std::size_t(range.place_beyond(partner)) * d];
       const double* const other_weight = &weight[std::size_t(partner) * d];
       for (std::size_t k = 0; k < entries; ++k) {
         own[k / d] += std::abs(block[k]) * other_weight[k % d];
@@ -39,10 +44,13 @@ void TangentOperator::multiply_absolute(std::span<const double> weight,
       }
     }
   });
-  std::fill(result.begin(), result.end(), 0.0);
-  for (std::size_t thread = 0; thread < parts.size(); ++thread) {
-    const std::size_t first = std::size_t(ranges[thread].first) * d;
-    for (std::size_t k = 0; k < parts[thread].size(); ++k) result[first + k] += parts[thread][k];
+  for (std::size_t part = 0; part < ranges.size(); ++part) {
+    const double* next = beyond[part].data();
+    ranges[part].for_each_beyond([&](Index first, Index last) {
+      for (std::size_t k = std::size_t(first) * d; k < std::size_t(last) * d; ++k) {
+        result[k] += *next++;
+      }
+    });
   }
 }
 

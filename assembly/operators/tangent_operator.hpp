@@ -6,7 +6,7 @@
 #include "assembly/convolutions/lattice_stencil.hpp"
 #include "assembly/energy/energy.hpp"
 #include "assembly/energy/tangent_forms.hpp"
-#include "assembly/operators/block_pattern.hpp"
+#include "assembly/operators/row_ranges.hpp"
 
 namespace peristat {
 
@@ -18,18 +18,21 @@ struct UnsymmetricTangent;
 /// block (j, i) is the transpose of block (i, j). An UnsymmetricTangent has products and sparse
 /// rows only.
 struct TangentOperator {
-  TangentOperator(const BlockPattern& of, int dimension_of_points, int threads);
+  /// @param parts of the rows that are visited
+  TangentOperator(const BlockPattern& of, int dimension_of_points, int threads,
+                  std::vector<RowRange> parts);
   virtual ~TangentOperator() = default;
 
   BlockPattern pattern;
   int version = 0;  ///< of the pattern, see Energy::cover_contacts
   int dimension;
-  std::vector<RowRange> ranges;       ///< rows of each thread
+  std::vector<RowRange> ranges;       ///< rows of each part
   std::vector<double> diagonal;       ///< points x d x d
   std::span<const double> reference;  ///< positions of the undeformed body, which outlives it
 
   [[nodiscard]] Offset dofs() const { return Offset(pattern.points()) * dimension; }
-  [[nodiscard]] int threads() const { return static_cast<int>(ranges.size()); }
+  [[nodiscard]] int threads() const { return threads_; }
+  [[nodiscard]] int parts() const { return static_cast<int>(ranges.size()); }
 
   /// Current positions, where K is linearised; points x d [m].
   [[nodiscard]] virtual std::vector<double> positions() const = 0;
@@ -53,7 +56,7 @@ struct TangentOperator {
 
   /// True if there are rows to visit: products by convolutions have none.
   [[nodiscard]] virtual bool has_rows() const { return true; }
-  /// Visits all rows, in parallel; each thread visits its own in ascending order.
+  /// Visits all rows, the parts in parallel, and the rows of a part in ascending order.
   virtual void for_each_row(const RowVisitor& visit) const = 0;
 
   /// Sums of the absolute entries of each row, sum_j |K_ij| [N/m]: Gershgorin's bound of the
@@ -75,6 +78,9 @@ struct TangentOperator {
   /// This tangent if it is not symmetric and has sparse rows, otherwise null: `pattern` then has no
   /// blocks, and there are no rows to visit.
   [[nodiscard]] virtual const UnsymmetricTangent* as_unsymmetric() const { return nullptr; }
+
+ private:
+  int threads_;
 };
 
 }  // namespace peristat

@@ -179,6 +179,10 @@ class Term {
   [[nodiscard]] virtual bool has_symmetric_blocks() const { return false; }
   [[nodiscard]] virtual TangentKind tangent_kind() const { return TangentKind::stored; }
 
+  /// True if its passes keep values of bonds, such as blocks, for rows of later parts: these would
+  /// be many with more parts than threads.
+  [[nodiscard]] virtual bool spills_bonds() const { return false; }
+
   [[nodiscard]] virtual Balances balances() const = 0;
 
   /// How states damage the body by what the term remembers; null: they don't.

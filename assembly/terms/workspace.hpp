@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "assembly/energy/evaluation.hpp"
-#include "assembly/operators/block_pattern.hpp"
-#include "src/core/aligned_vector.hpp"
+#include "assembly/operators/row_ranges.hpp"
+#include "src/core/raw_buffer.hpp"
 #include "src/core/threads.hpp"
 
 namespace peristat {
@@ -15,40 +15,47 @@ namespace peristat {
 constexpr int vector_width(int dimension) { return dimension == 3 ? 4 : dimension; }
 constexpr int block_width(int dimension) { return dimension == 3 ? 6 : 4; }
 
-/// Buffers in which the passes of all terms sum: the threads' ranges of rows and their sums,
-/// allocated once; without couplings on first use.
+/// Buffers in which the passes of all terms sum: the parts of the rows and their sums, allocated
+/// once; without couplings on first use. Sums of parts are added up in the order of the parts, so
+/// that they have the same bits on any number of threads that has the same parts.
 struct Workspace {
-  Workspace(const BlockPattern& pattern, int dimension, int threads);
+  /// @param of_parts see partition_rows
+  Workspace(const BlockPattern& pattern, int dimension, int on_threads,
+            std::vector<RowRange> of_parts);
 
-  std::vector<RowRange> ranges;
-  std::vector<AlignedVector<double>>
-      sums;                             ///< per thread, rows first..touched_end of what it adds up
-  std::vector<Evaluation> evaluations;  ///< per thread
+  std::vector<RowRange> ranges;         ///< per part
+  std::vector<RawBuffer> sums;          ///< per part, rows first..touched_end of what it adds up
+  std::vector<Evaluation> evaluations;  ///< per part
 
-  [[nodiscard]] int threads() const { return static_cast<int>(ranges.size()); }
+  [[nodiscard]] int threads() const { return threads_; }
+  [[nodiscard]] int parts() const { return static_cast<int>(ranges.size()); }
 
-  /// Runs body(thread, range, sums) on every thread with cleared sums of `width` doubles per row,
-  /// then finish(thread, range), and write(row, total) with the threads' sums added up in order.
+  /// Runs body(part, range, sums) for every part with cleared sums of `width` doubles per row, then
+  /// finish(part, range), and write(row, total) with the parts' sums added up in order.
   template <int width, class Body, class Write, class Finish>
   void sum_rows(const Body& body, const Write& write, const Finish& finish) {
     make_room(width);
-    run_on_threads(threads(), [&](int thread) {
-      const RowRange range = ranges[thread];
-      double* own = sums[thread].data();
-      std::fill_n(own, std::size_t(range.touched_end - range.first) * width, 0.0);
-      if (range.last > range.first) body(thread, range, own - std::ptrdiff_t(range.first) * width);
+    const int busy = std::min(threads(), parts());
+    run_on_threads(busy, [&](int thread) {
+      for_parts_of_thread(thread, busy, parts(), [&](int part) {
+        const RowRange range = ranges[part];
+        double* own = sums[part].data();
+        double* const rows = own - std::ptrdiff_t(range.first) * width;
+        const auto clear = [&](std::ptrdiff_t first, std::ptrdiff_t last) {
+          std::fill(rows + first * width, rows + last * width, 0.0);
+        };
+        clear(range.first, range.last);
+        range.for_each_beyond(clear);
+        if (range.last > range.first) body(part, range, rows);
+      });
 #pragma omp barrier
-      finish(thread, range);
-      for (Index i = range.first; i < range.last; ++i) {
-        double* total = own + std::size_t(i - range.first) * width;
-        for (int earlier = 0; earlier < thread; ++earlier) {
-          const RowRange other = ranges[earlier];
-          if (i >= other.touched_end) continue;
-          const double* spilled = &sums[earlier][std::size_t(i - other.first) * width];
-          for (int c = 0; c < width; ++c) total[c] += spilled[c];
-        }
-        write(i, total);
-      }
+      for_parts_of_thread(thread, busy, parts(), [&](int part) {
+        finish(part, ranges[part]);
+        add_spilled<width>(part);
+        const RowRange range = ranges[part];
+        const double* total = sums[part].data();
+        for (Index i = range.first; i < range.last; ++i, total += width) write(i, total);
+      });
     });
   }
 
@@ -57,7 +64,7 @@ struct Workspace {
     sum_rows<width>(body, write, [](int, RowRange) {});
   }
 
-  /// Sum of the threads' evaluations.
+  /// Sum of the parts' evaluations.
   [[nodiscard]] Evaluation total_evaluation() const {
     Evaluation total;
     for (const Evaluation& part : evaluations) total += part;
@@ -68,6 +75,22 @@ struct Workspace {
  private:
   /// Grows the sums to so many doubles per row.
   void make_room(int width);
+
+  /// Adds what earlier parts have for the rows of this one.
+  template <int width>
+  void add_spilled(int part) {
+    const RowRange range = ranges[part];
+    for (int earlier = 0; earlier < part; ++earlier) {
+      const RowRange other = ranges[earlier];
+      other.for_each_beyond(range, [&](Index first, Index last) {
+        const double* const from = sums[earlier].data() + std::size_t(first - other.first) * width;
+        double* const to = sums[part].data() + std::size_t(first - range.first) * width;
+        for (std::size_t k = 0; k < std::size_t(last - first) * width; ++k) to[k] += from[k];
+      });
+    }
+  }
+
+  int threads_;
 };
 
 }  // namespace peristat

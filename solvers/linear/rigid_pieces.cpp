@@ -240,9 +240,9 @@ struct RigidPieces::Levels {
     std::vector<Index> parent(points);
     std::iota(parent.begin(), parent.end(), 0);
     const auto join = [&](Index i, Index j) { parent[root(parent, i)] = root(parent, j); };
-    // Bonds to points of later threads are joined at the end.
-    std::vector<std::vector<std::pair<Index, Index>>> across(std::size_t(tangent.threads()));
-    tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
+    // Bonds to points of later parts are joined at the end.
+    std::vector<std::vector<std::pair<Index, Index>>> across(std::size_t(tangent.parts()));
+    tangent.for_each_row([&](int part, Index i, std::span<const double> blocks) {
       if (!has_row(i)) return;
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
         const Index j = pattern.partner(i, bond);
@@ -251,10 +251,10 @@ struct RigidPieces::Levels {
         double largest = 0.0;
         for (int k = 0; k < entries; ++k) largest = std::max(largest, std::abs(block[k]));
         if (!(largest > broken * std::min(trace_of(i), trace_of(j)))) continue;
-        if (j < tangent.ranges[std::size_t(thread)].last) {
+        if (j < tangent.ranges[std::size_t(part)].last) {
           join(i, j);
         } else {
-          across[std::size_t(thread)].emplace_back(i, j);
+          across[std::size_t(part)].emplace_back(i, j);
         }
       }
     });
@@ -432,7 +432,7 @@ struct RigidPieces::Levels {
     std::partial_sum(first.begin(), first.end(), first.begin());
   }
 
-  /// Blocks of E between two pieces, accumulated by one thread.
+  /// Blocks of E between two pieces, accumulated by one part.
   template <int D>
   class CoarseBlocks {
    public:
@@ -464,20 +464,20 @@ struct RigidPieces::Levels {
     std::size_t last_ = 0;
   };
 
-  /// Returns the blocks of the lower triangle of E by threads, or gathered from all ranks.
+  /// Returns the blocks of the lower triangle of E by parts, or gathered from all ranks.
   template <int D>
   std::vector<CoarseBlocks<D>> coarse_blocks(const TangentOperator& tangent) const {
     constexpr int motions = motions_of(D);
     using Motions = Eigen::Matrix<double, motions, D>;
     using Entries = Eigen::Map<const Eigen::Matrix<double, D, D, Eigen::RowMajor>>;
     const BlockPattern& pattern = tangent.pattern;
-    std::vector<CoarseBlocks<D>> parts(std::size_t(tangent.threads()));
-    tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
+    std::vector<CoarseBlocks<D>> parts(std::size_t(tangent.parts()));
+    tangent.for_each_row([&](int part, Index i, std::span<const double> blocks) {
       if (!has_row(i)) return;
-      CoarseBlocks<D>& part = parts[std::size_t(thread)];
+      CoarseBlocks<D>& of_part = parts[std::size_t(part)];
       const Index own = piece[i];
       const Motions at_i = motions_at<D>(i);
-      part.between(own, own).noalias() +=
+      of_part.between(own, own).noalias() +=
           at_i * Entries(&tangent.diagonal[std::size_t(i) * D * D]) * at_i.transpose();
       // K_ij times the motions at j, transposed, is summed over successive partners of the same
       // piece, because partners of one piece mostly follow one another.
@@ -489,11 +489,11 @@ struct RigidPieces::Levels {
         if (is_shared) of_run *= 0.5;  // the rank that owns the ghosts has the other half
         const Eigen::Matrix<double, motions, motions> block = at_i * of_run.transpose();
         if (run == own) {
-          part.between(own, own) += block + block.transpose();
+          of_part.between(own, own) += block + block.transpose();
         } else if (run < own) {
-          part.between(own, run) += block;
+          of_part.between(own, run) += block;
         } else {
-          part.between(run, own) += block.transpose();
+          of_part.between(run, own) += block.transpose();
         }
         of_run.setZero();
       };
@@ -554,12 +554,12 @@ struct RigidPieces::Levels {
     for (const CoarseBlocks<D>& part : parts) {
       part.for_each([&](Index a, Index b, const Block& block) { all.push_back({a, b, &block}); });
     }
-    // Stable: the threads' parts of a block are added in the order of the threads.
+    // Stable: what the parts have of a block is added in the order of the parts.
     std::stable_sort(all.begin(), all.end(), [](const Part& a, const Part& b) {
       return std::pair(a.column, a.row) < std::pair(b.column, b.row);
     });
     const auto kept = [&](Index p) { return first[p + 1] - first[p]; };
-    // visit(row, column, the threads' parts of the block), columns ascending and their rows, too.
+    // visit(row, column, what the parts have of the block), columns ascending and their rows, too.
     const auto for_each_block = [&](const auto& visit) {
       for (std::size_t k = 0; k < all.size();) {
         std::size_t end = k + 1;

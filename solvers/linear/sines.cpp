@@ -178,16 +178,16 @@ struct Sines::Symbols {
     if (const LatticeStencil told = tangent.stencil(); !told.empty()) return sums(told);
     const int d = dimension;
     const BlockPattern& pattern = tangent.pattern;
-    std::vector<Stencil> parts(std::size_t(tangent.threads()));
+    std::vector<Stencil> parts(std::size_t(tangent.parts()));
     for (Stencil& part : parts) part.clear(reach, d);
-    tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
-      Stencil& part = parts[std::size_t(thread)];
+    tangent.for_each_row([&](int part, Index i, std::span<const double> blocks) {
+      Stencil& of_part = parts[std::size_t(part)];
       const Numbers at = box->numbers(box->place[std::size_t(i)]);
       const double* block = blocks.data();
       for (const Index j : pattern.of(i)) {
         const std::size_t place =
-            part.place(at, box->numbers(box->place[std::size_t(j)])) * std::size_t(d);
-        for (int c = 0; c < d; ++c) part.sum[place + std::size_t(c)] -= block[c * (d + 1)];
+            of_part.place(at, box->numbers(box->place[std::size_t(j)])) * std::size_t(d);
+        for (int c = 0; c < d; ++c) of_part.sum[place + std::size_t(c)] -= block[c * (d + 1)];
         block += d * d;
       }
     });

@@ -117,10 +117,10 @@ struct Surrogate::StandIn {
   void find_springs(const TangentOperator& tangent, std::span<const double> position) {
     const BlockPattern& pattern = tangent.pattern;
     const int d = tangent.dimension, entries = d * d;
-    const auto count = std::size_t(tangent.threads());
+    const auto count = std::size_t(tangent.parts());
     const Index of_rank = index_map.own_rows(pattern.points());
     std::vector<double> moment(count, 0.0), short_moment(count, 0.0);
-    tangent.for_each_row([&](int thread, Index i, std::span<const double> blocks) {
+    tangent.for_each_row([&](int part, Index i, std::span<const double> blocks) {
       if (i >= of_rank) return;
       Offset spring = short_bonds.offset[i];
       for (Offset bond = pattern.offset[i]; bond < pattern.offset[i + 1]; ++bond) {
@@ -137,9 +137,9 @@ struct Surrogate::StandIn {
         }
         const double k_l2 = std::max(along, 0.0);              // k l^2
         const double share = j < of_rank ? k_l2 : 0.5 * k_l2;  // another rank has the other half
-        moment[thread] += share;
+        moment[part] += share;
         if (!is_short[bond]) continue;
-        short_moment[thread] += share;
+        short_moment[part] += share;
         double* to = &springs->off_diagonal[std::size_t(spring) * entries];
         const double scale = squared > 0.0 ? -k_l2 / (squared * squared) : 0.0;
         for (int r = 0; r < d; ++r) {

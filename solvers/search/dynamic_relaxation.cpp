@@ -42,7 +42,6 @@ class Relaxation {
         start_(problem.assembler.has_friction() ? result.state.displacement
                                                 : std::vector<double>()),
         start_environment_(result.state.environment),
-        partial_(std::size_t(problem.assembler.threads())),
         density_(dofs_.size()),
         inverse_density_(dofs_.size()),
         residual_(dofs_.size()),
@@ -320,12 +319,17 @@ class Relaxation {
 
   template <class Body>
   FourSums sum_here(const Body& body) {
-    const auto count = static_cast<Index>(dofs_.size());
-    run_on_threads(problem_.assembler.threads(), [&](int thread) {
-      FourSums own{};
+    constexpr std::size_t strip = 2048;  // the same on any number of threads, as are the sums
+    const std::size_t count = dofs_.size();
+    partial_.assign((count + strip - 1) / strip, FourSums{});
+    run_on_threads(problem_.assembler.threads(), [&](int) {
 #pragma omp for schedule(static) nowait
-      for (Index e = 0; e < count; ++e) body(std::size_t(e), own);
-      partial_[std::size_t(thread)] = own;
+      for (std::size_t s = 0; s < partial_.size(); ++s) {
+        FourSums own{};
+        const std::size_t last = std::min(count, (s + 1) * strip);
+        for (std::size_t e = s * strip; e < last; ++e) body(e, own);
+        partial_[s] = own;
+      }
     });
     FourSums total{};
     for (const FourSums& part : partial_) {
@@ -374,7 +378,7 @@ class Relaxation {
   Trial& at_;
   const std::vector<double> start_;  // displacement; empty without friction
   const SharedEnvironment start_environment_;
-  std::vector<FourSums> partial_;                  // per thread
+  std::vector<FourSums> partial_;                  // per strip of equations
   std::vector<double> density_, inverse_density_;  // lambda and 1/lambda; 0 where nothing resists
   std::vector<double> row_sums_;                   // of the bonds; empty: there are no contacts
   std::vector<double> of_contacts_;  // row sums of contacts at the present displacement

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 #include <omp.h>
@@ -34,6 +35,21 @@ void run_on_threads(int threads, const Body& body) {
     }
   }
   if (granted != threads) throw ThreadError(granted, threads);
+}
+
+/// Calls body(part) for the parts of a thread: of all parts a share of successive ones.
+template <class Body>
+void for_parts_of_thread(int thread, int threads, int parts, const Body& body) {
+  const int last = parts * (thread + 1) / threads;
+  for (int part = parts * thread / threads; part < last; ++part) body(part);
+}
+
+/// Runs body(part) for all parts, on at most so many threads.
+/// @throws ThreadError
+template <class Body>
+void run_on_parts(int threads, int parts, const Body& body) {
+  const int busy = std::min(threads, parts);
+  run_on_threads(busy, [&](int thread) { for_parts_of_thread(thread, busy, parts, body); });
 }
 
 /// Makes sure that later parallel regions get so many threads, whatever OMP_DYNAMIC and

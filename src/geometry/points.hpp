@@ -79,6 +79,8 @@ struct Points {
   [[nodiscard]] Index count() const { return static_cast<Index>(volume.size()); }
   /// Number of points that are no images: the first ones.
   [[nodiscard]] Index own() const { return count() - static_cast<Index>(images.source.size()); }
+  /// Number of points before ghosts and images.
+  [[nodiscard]] Index own_rows() const { return owned.value_or(own()); }
   [[nodiscard]] bool is_image(Index point) const { return point >= own(); }
   /// Source of an image; any other point is its own source.
   [[nodiscard]] Index source(Index point) const {

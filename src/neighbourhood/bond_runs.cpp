@@ -19,9 +19,9 @@ struct FoundRun : BondRun {
 };
 
 /// All maximal runs of these points, as long as they may be, in the order of their first bonds.
-/// @param ghosts the first of them: points from it on are no partners of runs
+/// @param own points before ghosts and images, which are no partners of runs
 std::vector<FoundRun> runs_between(const Bonds& bonds, const BondKinds& kinds, Index first,
-                                   Index last, Index ghosts) {
+                                   Index last, Index own) {
   std::vector<FoundRun> found;
   std::vector<std::size_t> open, opened;  // runs of the point before and of this one, by `ahead`
   for (Index i = first; i < last; ++i, open.swap(opened)) {
@@ -30,7 +30,7 @@ std::vector<FoundRun> runs_between(const Bonds& bonds, const BondKinds& kinds, I
     const Offset first_bond = bonds.offset[i];
     for (Offset bond = first_bond; bond < bonds.offset[i + 1]; ++bond) {
       const Index partner = bonds.partner(i, bond), ahead = partner - i;
-      if (partner >= ghosts) break;
+      if (partner >= own) break;
       while (candidate != open.end() && found[*candidate].ahead < ahead) ++candidate;
       const bool is_next = candidate != open.end() && found[*candidate].ahead == ahead;
       const bool is_alike = is_next && kinds[found[*candidate].first_bond(bonds)] == kinds[bond];
@@ -117,9 +117,9 @@ BondRuns::BondRuns(const Points& points, const Bonds& bonds, const BondKinds& ki
 
 void BondRuns::add_group(const Points& points, const Bonds& bonds, const BondKinds& kinds,
                          Index first, Index last) {
-  const Index ghosts = points.owned.value_or(points.count());
+  const Index own = points.own_rows();
   std::vector<FoundRun> runs =
-      long_ones(runs_between(bonds, kinds, first, last, ghosts), bonds, kinds);
+      long_ones(runs_between(bonds, kinds, first, last, own), bonds, kinds);
   std::ranges::sort(runs, {}, [](const BondRun& run) { return std::tuple(run.ahead, run.first); });
   std::vector<std::uint16_t> room = room_for_kinds(runs);
   if (!room.empty()) kinds_.push_back(std::move(room));

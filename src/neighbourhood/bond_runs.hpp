@@ -52,7 +52,8 @@ class BondRuns {
   BondRuns() = default;
   BondRuns(BondRuns&&) = default;  // not copied: runs point to kinds_
   BondRuns& operator=(BondRuns&&) = default;
-  /// Finds the runs of the points first .. last - 1. Bonds to ghosts are in none.
+  /// Finds the runs of the points first .. last - 1. Bonds to ghosts and images are in
+  /// none: their numbers are far.
   /// @param kinds of the bonds. Where they are not numbered, runs end where they change
   BondRuns(const Points& points, const Bonds& bonds, const BondKinds& kinds, Index first,
            Index last);

@@ -1,4 +1,5 @@
-"""Cracks take the same path, bond by bond, with any number of threads."""
+"""Cracks take the same path, bond by bond, with any number of threads; relaxation and explicit steps
+give the same bits."""
 
 import sys
 import unittest
@@ -18,6 +19,13 @@ class ThreadIndependence(unittest.TestCase):
         for row in self.told("plate_with_hole/square"):
             self.assertEqual(row[5].split(" at ")[0], "16")
             self.assertAlmostEqual(float(row[5].split(" at ")[1]), 0.5575, delta=0.003)
+
+    def test_relaxation_and_explicit_steps_have_the_same_bits(self):
+        # Bonds, bonds with a mirror plane and contact, states, convolutions.
+        for row in self.told("--bits", "--threads", "1,2,3,5", "plate_with_hole/square", "contact/impact",
+                             "contact/impactor:dynamics.end_time=2e-5", "lps/v_notch:dynamics.end_time=5e-6",
+                             "fcbm/waves"):  # fmt: skip
+            self.assertIn(row[1], {"1", "2", "3", "5"})
 
     def test_coarser_plates_break_the_same_bonds_on_any_number_of_threads(self):
         # The problems as shipped take minutes: benchmarks/thread_independence.py.

@@ -197,17 +197,17 @@ constexpr std::array<BlockEntry, 6> entries_of_upper_half =
 
 /// Sums the blocks of bonds row by row.
 /// @param block_of(batch) of the bonds of a batch between their points, of packed rows
-/// @param blocks_of(thread, i) where minus the blocks of row i are written
-/// @param done(thread, i) called once they are
+/// @param blocks_of(part, i) where minus the blocks of row i are written
+/// @param done(part, i) called once they are
 /// @param diagonal blocks of points, overwritten; empty: not wanted
 template <int D, Tangent::Blocks stored_as, class BlockOf, class BlocksOf, class Done>
 void sum_blocks(BondWorkspace& a, const BondKinds& kinds, const BlockOf& block_of,
                 const BlocksOf& blocks_of, const Done& done, std::span<double> diagonal) {
   const Bonds& bonds = a.bonds;
   constexpr int width = block_width(D);
-  const auto body = [&](int thread, RowRange range, double* sums) {
+  const auto body = [&](int part, RowRange range, double* sums) {
     for (Index i = range.first; i < range.last; ++i) {
-      double* const blocks = blocks_of(thread, i);
+      double* const blocks = blocks_of(part, i);
       std::array<Lanes, width> own;
       own.fill(Lanes(0.0));
       for_each_batch<D>(
@@ -228,12 +228,12 @@ void sum_blocks(BondWorkspace& a, const BondKinds& kinds, const BlockOf& block_o
       for (int c = 0; sums && c < D * (D + 1) / 2; ++c) {
         sums[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       }
-      done(thread, i);
+      done(part, i);
     }
   };
   if (diagonal.empty()) {
-    run_on_threads(a.threads.threads(),
-                   [&](int thread) { body(thread, a.threads.ranges[thread], nullptr); });
+    run_on_parts(a.threads.threads(), a.threads.parts(),
+                 [&](int part) { body(part, a.threads.ranges[part], nullptr); });
     return;
   }
   a.threads.template sum_rows<width>(body, [&](Index i, const double* total) {
@@ -245,7 +245,7 @@ void sum_blocks(BondWorkspace& a, const BondKinds& kinds, const BlockOf& block_o
   });
 }
 
-/// Calls compute(blocks_of, done) for sum_blocks with room for one row per thread, and visits each
+/// Calls compute(blocks_of, done) for sum_blocks with room for one row per part, and visits each
 /// row when it is done.
 template <int D, class Compute>
 void visit_rows(const BondWorkspace& a, const RowVisitor& visit, const Compute& compute) {
@@ -255,12 +255,12 @@ void visit_rows(const BondWorkspace& a, const RowVisitor& visit, const Compute& 
     longest = std::max(longest, offset[i] - offset[i - 1]);
   }
   constexpr std::size_t entries = D * D;
-  std::vector<std::vector<double>> rows(std::size_t(a.threads.threads()),
+  std::vector<std::vector<double>> rows(std::size_t(a.threads.parts()),
                                         std::vector<double>(std::size_t(longest) * entries));
-  compute([&](int thread, Index) { return rows[std::size_t(thread)].data(); },
-          [&](int thread, Index i) {
+  compute([&](int part, Index) { return rows[std::size_t(part)].data(); },
+          [&](int part, Index i) {
             const auto bonds = std::size_t(offset[i + 1] - offset[i]);
-            visit(thread, i, std::span(rows[std::size_t(thread)]).first(bonds * entries));
+            visit(part, i, std::span(rows[std::size_t(part)]).first(bonds * entries));
           });
 }
 

@@ -46,7 +46,7 @@ struct BondKernels {
     const bool energy_only = result.empty();
     const Index owned = a.points.owned.value_or(a.points.count());
     constexpr int width = vector_width(D);
-    const auto body = [&](int thread, RowRange range, double* sums) __attribute__((flatten)) {
+    const auto body = [&](int part, RowRange range, double* sums) __attribute__((flatten)) {
       Lanes shortest = std::numeric_limits<double>::infinity();
       double energy = 0.0;
       DamageGrowth growth;
@@ -94,8 +94,8 @@ struct BondKernels {
         energy += sum(row_energy);
         for (int c = 0; c < D; ++c) to[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       };
-      a.sum_range<D, width>(thread, range, sums, on_run, on_loose);
-      parts[thread] = {energy, !(smallest(shortest) > 0.0), growth};
+      a.sum_range<D, width>(part, range, sums, on_run, on_loose);
+      parts[part] = {energy, !(smallest(shortest) > 0.0), growth};
     };
     a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
       if (!energy_only) put<D>(how, total, &result[std::size_t(i) * D]);
@@ -107,7 +107,7 @@ struct BondKernels {
   static DamageGrowth growth(BondWorkspace& a, const P& potential, const E& eigenstretch,
                              Span displacement, const double* largest_stretch) {
     const auto packed = a.template pack<D>({a.points.reference, displacement});
-    const auto body = [&](int thread, RowRange range, double*) {
+    const auto body = [&](int part, RowRange range, double*) {
       DamageGrowth found;
       for (Index i = range.first; i < range.last; ++i) {
         for_each_batch<D>(a.bonds, a.template rows<D>(), i, [&](const Batch<D>& batch) {
@@ -118,7 +118,7 @@ struct BondKernels {
                      found);
         });
       }
-      a.threads.evaluations[thread] = {0.0, false, found};
+      a.threads.evaluations[part] = {0.0, false, found};
     };
     a.threads.sum_rows<1>(body, [](Index, const double*) {});
     return a.threads.total_evaluation().growth;
@@ -138,8 +138,8 @@ struct BondKernels {
     return energy_hessian<0, 0>(psi, measure);
   }
 
-  /// @param blocks_of(thread, i) where the off-diagonal blocks of row i go
-  /// @param done(thread, i) called after these are written
+  /// @param blocks_of(part, i) where the off-diagonal blocks of row i go
+  /// @param done(part, i) called after these are written
   /// @param diagonal blocks; empty: not wanted
   template <Tangent::Blocks stored_as, class P, class E, class BlocksOf, class Done>
   static void tangent(BondWorkspace& a, const P& potential, const E& eigenstretch,
@@ -163,7 +163,7 @@ struct BondKernels {
     a.template take<D>({a.points.reference, displacement});
     constexpr int width = vector_width(D), all = D * (D + 1) / 2;
     for (int first = 0; first < all; first += D) {
-      const auto body = [&](int thread, RowRange range, double* sums) {
+      const auto body = [&](int part, RowRange range, double* sums) {
         DamageGrowth none;
         const auto on_run = [&](const BondRun& run, RunDamage* damage, RunWindow& window) {
           with_pass<D>(a, window, potential, eigenstretch, largest_stretch, none,
@@ -172,7 +172,7 @@ struct BondKernels {
                        });
         };
         const auto on_loose = [&](const LooseBonds& loose, double* to) {
-          Vector<D, Lanes> own, part;
+          Vector<D, Lanes> own, entries;
           own.fill(Lanes(0.0));
           for_each_batch<D>(
               a.bonds, a.bonds.kind, a.template rows<D>(),
@@ -181,16 +181,16 @@ struct BondKernels {
                     block_of(batch, potential, eigenstretch, largest_stretch, projection);
                 for (int k = 0; k < D; ++k) {
                   const auto [r, c] = entries_of_upper_half<D>[std::size_t(first + k)];
-                  part[k] = block[r][c];
-                  own[k] += part[k];
+                  entries[k] = block[r][c];
+                  own[k] += entries[k];
                 }
-                add_to_partners<D>(to, batch.partner, part);
+                add_to_partners<D>(to, batch.partner, entries);
               });
           for (int k = 0; k < D; ++k) {
             to[std::ptrdiff_t(loose.point) * width + k] += sum(own[k]);
           }
         };
-        a.sum_range<D, width>(thread, range, sums, on_run, on_loose);
+        a.sum_range<D, width>(part, range, sums, on_run, on_loose);
       };
       a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
         double* const block = &diagonal[std::size_t(i) * D * D];
@@ -209,7 +209,7 @@ struct BondKernels {
     a.template take<D>({displacement, v, a.points.reference});
     const Bonds& bonds = a.bonds;
     constexpr int width = vector_width(D);
-    const auto body = [&](int thread, RowRange range, double* sums) {
+    const auto body = [&](int part, RowRange range, double* sums) {
       DamageGrowth none;
       const auto on_run = [&](const BondRun& run, RunDamage* damage, RunWindow& window) {
         with_pass<D>(a, window, potential, eigenstretch, largest_stretch, none,
@@ -236,7 +236,7 @@ struct BondKernels {
             });
         for (int c = 0; c < D; ++c) to[std::ptrdiff_t(i) * width + c] += sum(own[c]);
       };
-      a.sum_range<D, width>(thread, range, sums, on_run, on_loose);
+      a.sum_range<D, width>(part, range, sums, on_run, on_loose);
     };
     a.threads.sum_rows<width>(body, [&](Index i, const double* total) {
       put<D>(how, total, &result[std::size_t(i) * D]);

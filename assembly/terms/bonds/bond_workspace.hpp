@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "assembly/terms/bonds/thread_runs.hpp"
+#include "assembly/terms/bonds/part_runs.hpp"
 #include "assembly/terms/workspace.hpp"
 #include "src/core/aligned_vector.hpp"
 #include "src/geometry/points.hpp"
@@ -70,13 +70,13 @@ struct BondWorkspace {
   BondWorkspace(const Points& of, const Bonds& with, Workspace& shared,
                 const BondKinds* kinds = nullptr)
       : points(of), bonds(with), threads(shared) {
-    if (kinds) runs = ThreadRuns(of, with, *kinds, shared.ranges);
+    if (kinds) runs = PartRuns(of, with, *kinds, shared.ranges, shared.threads());
   }
 
   const Points& points;
   const Bonds& bonds;
   Workspace& threads;
-  ThreadRuns runs;
+  PartRuns runs;
 
   /// Packed rows. At its end those of a large body are released where sums go along runs.
   class Packed {
@@ -114,12 +114,12 @@ struct BondWorkspace {
     return {are_packed_ ? packed_.data() : nullptr, vectors_};
   }
 
-  /// Sums the bonds of a thread's rows: runs by on_run(run, damage, window), which reads and adds
+  /// Sums the bonds of a part's rows: runs by on_run(run, damage, window), which reads and adds
   /// to the window's columns, the other ones by on_loose(bonds of a point, sums).
   /// @tparam columns of the window's sums that are added up
   /// @param sums `width` doubles per row, which everything is added to
   template <int D, int width, int columns = D, class OnRun, class OnLoose>
-  void sum_range(int thread, RowRange range, double* sums, const OnRun& on_run,
+  void sum_range(int part, RowRange range, double* sums, const OnRun& on_run,
                  const OnLoose& on_loose) {
     if (!runs.in_use()) {
       for (Index i = range.first; i < range.last; ++i) {
@@ -127,15 +127,15 @@ struct BondWorkspace {
       }
       return;
     }
-    ThreadRuns::OfThread& one = runs.of(thread);
-    RunWindow& window = one.window;
+    PartRuns::OfPart& one = runs.of(part);
+    RunWindow& window = runs.window();
     window.first = window.last = range.first;
     RunDamage* damage = one.damage.empty() ? nullptr : one.damage.data();
     for (std::size_t g = 0; g < one.bonds.groups(); ++g) {
       const BondRuns::Group group = one.bonds.group(g);
-      if (std::min(group.last + one.reach, range.touched_end) > window.last) {
+      if (std::min(group.last + one.reach, range.near_end) > window.last) {
         add_sums<columns, width>(window, sums);
-        move<D>(window, group.first, range.touched_end);
+        move<D>(window, group.first, range.near_end);
       }
       for (const BondRun& run : group.runs) on_run(run, damage ? damage++ : nullptr, window);
       for (const LooseBonds& loose : group.loose) on_loose(loose, sums);

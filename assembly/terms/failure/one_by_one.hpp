@@ -52,13 +52,13 @@ template <class OfBond>
 }
 
 /// Driven bonds, the most utilised first, of equal ones the first.
-/// @param find(visit) calls visit(thread, bond) for each of them
+/// @param find(visit) calls visit(part, bond) for each of them
 template <class Find>
-[[nodiscard]] std::vector<DrivenBond> driven_in_order(int threads, const Find& find) {
-  std::vector<std::vector<DrivenBond>> of_thread(static_cast<std::size_t>(threads));
-  find([&](int thread, const DrivenBond& bond) { of_thread[std::size_t(thread)].push_back(bond); });
+[[nodiscard]] std::vector<DrivenBond> driven_in_order(int parts, const Find& find) {
+  std::vector<std::vector<DrivenBond>> of_part(static_cast<std::size_t>(parts));
+  find([&](int part, const DrivenBond& bond) { of_part[std::size_t(part)].push_back(bond); });
   std::vector<DrivenBond> driven;
-  for (const auto& some : of_thread) driven.insert(driven.end(), some.begin(), some.end());
+  for (const auto& some : of_part) driven.insert(driven.end(), some.begin(), some.end());
   std::ranges::sort(driven, [](const DrivenBond& a, const DrivenBond& b) {
     return a.utilisation != b.utilisation ? a.utilisation > b.utilisation : a.bond < b.bond;
   });
@@ -71,11 +71,11 @@ template <class Find>
 /// @param find see driven_in_order
 /// @param damage(bond, growth) damages it if it still is driven, and counts it
 template <class Find, class Damage>
-DamageGrowth damage_one_by_one(int threads, const Find& find, const Damage& damage) {
+DamageGrowth damage_one_by_one(int parts, const Find& find, const Damage& damage) {
   DamageGrowth growth;
   for (;;) {
     const Index before = growth.degrading;
-    for (const DrivenBond& one : driven_in_order(threads, find)) damage(one, growth);
+    for (const DrivenBond& one : driven_in_order(parts, find)) damage(one, growth);
     if (growth.degrading == before) return growth;  // none, or round-off alone has driven them
   }
 }

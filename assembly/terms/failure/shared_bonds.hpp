@@ -47,11 +47,11 @@ enum class LossReaches {
 /// @param take(ends, bond, loss) called on all ranks, with the ends and the bond as far as they are
 ///        here
 template <class Find, class Decide, class Take>
-void damage_on_ranks(const IndexMap& index_map, const Bonds& bonds, LossReaches reaches,
-                     int threads, const Find& find, const Decide& decide, const Take& take) {
+void damage_on_ranks(const IndexMap& index_map, const Bonds& bonds, LossReaches reaches, int parts,
+                     const Find& find, const Decide& decide, const Take& take) {
   const Communicator& ranks = index_map.ranks();
   for (bool any = true; any;) {
-    const std::vector<DrivenBond> mine = driven_in_order(threads, find);
+    const std::vector<DrivenBond> mine = driven_in_order(parts, find);
     if (!any_of_all(ranks, !mine.empty())) return;
     std::vector<SharedBond> all;
     for (std::size_t k = 0; k < mine.size(); ++k) {

@@ -98,7 +98,7 @@ struct LinearBondSums::Kernels {
     for (Index i = 0; i < a.bonds.points(); ++i) {
       longest = std::max(longest, a.bonds.offset[i + 1] - a.bonds.offset[i]);
     }
-    const auto body = [&](int thread, RowRange range, double* sums) {
+    const auto body = [&](int part, RowRange range, double* sums) {
       std::vector<double> blocks(std::size_t(longest) * D * D);
       for (Index i = range.first; i < range.last; ++i) {
         const Offset begin = a.bonds.offset[i];
@@ -115,7 +115,7 @@ struct LinearBondSums::Kernels {
             sums[std::ptrdiff_t(i) * width + c] += ::peristat::sum(half[c]);
           add_to_partners<D>(sums, batch.partner, half);
         });
-        visit(thread, i,
+        visit(part, i,
               std::span<const double>(blocks).first(std::size_t(a.bonds.offset[i + 1] - begin) * D *
                                                     D));
       }

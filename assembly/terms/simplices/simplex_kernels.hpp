@@ -132,8 +132,8 @@ struct SimplexKernels {
     const bool energy_only = result.empty();
     const bool find_pairs = must_find(a.term);
     constexpr int stride = vector_width(D);
-    const auto body = [&](int thread, RowRange range, double* sums) {
-      LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
+    const auto body = [&](int part, RowRange range, double* sums) {
+      LocalWorkspace<D>& w = *a.local[std::size_t(part)];
       Lanes smallest_measure = std::numeric_limits<double>::infinity();
       double energy = 0.0;
       for (Index i = range.first; i < range.last; ++i) {
@@ -167,7 +167,7 @@ struct SimplexKernels {
         energy += sum(row_energy);
         if (!energy_only) add_to_rows<D, stride>(w, sums);
       }
-      a.threads.evaluations[thread] = {energy, !(smallest(smallest_measure) > 0.0)};
+      a.threads.evaluations[part] = {energy, !(smallest(smallest_measure) > 0.0)};
     };
     a.threads.template sum_rows<stride>(body, [&](Index i, const double* total) {
       if (energy_only) return;
@@ -180,8 +180,8 @@ struct SimplexKernels {
                       Span v, std::span<double> result) {
     const bool find_pairs = must_find(a.term);
     constexpr int stride = vector_width(D);
-    const auto body = [&](int thread, RowRange range, double* sums) {
-      LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
+    const auto body = [&](int part, RowRange range, double* sums) {
+      LocalWorkspace<D>& w = *a.local[std::size_t(part)];
       for (Index i = range.first; i < range.last; ++i) {
         move_to(a, w, i, displacement, influences, find_pairs);
         assign_relative(w, v, w.vector);
@@ -219,8 +219,8 @@ struct SimplexKernels {
   static void point_energies(SimplexWorkspace<D>& a, Span displacement,
                              const Influences& influences, std::span<double> energies) {
     const bool find_pairs = must_find(a.term);
-    const auto body = [&](int thread, RowRange range, double* sums) {
-      LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
+    const auto body = [&](int part, RowRange range, double* sums) {
+      LocalWorkspace<D>& w = *a.local[std::size_t(part)];
       for (Index i = range.first; i < range.last; ++i) {
         move_to(a, w, i, displacement, influences, find_pairs);
         w.clear(1);
@@ -259,10 +259,10 @@ struct SimplexKernels {
     const Bonds& bonds = a.term.bonds();
     of_bond.assign(std::size_t(bonds.count()), 0.0);
     a.releases_beyond.resize(a.threads.ranges.size());
-    const auto body = [&](int thread, RowRange range, double*) {
-      LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
+    const auto body = [&](int part, RowRange range, double*) {
+      LocalWorkspace<D>& w = *a.local[std::size_t(part)];
       const Offset first_beyond = bonds.offset[range.last];
-      std::vector<double>& beyond = a.releases_beyond[std::size_t(thread)];
+      std::vector<double>& beyond = a.releases_beyond[std::size_t(part)];
       beyond.assign(std::size_t(bonds.offset[range.touched_end] - first_beyond), 0.0);
       for (Index i = range.first; i < range.last; ++i) {
         move_to(a, w, i, displacement, influences, true);
@@ -288,8 +288,8 @@ struct SimplexKernels {
         }
       }
     };
-    const auto add_spilled = [&](int thread, RowRange range) {
-      for (int earlier = 0; earlier < thread; ++earlier) {
+    const auto add_spilled = [&](int part, RowRange range) {
+      for (int earlier = 0; earlier < part; ++earlier) {
         const RowRange other = a.threads.ranges[std::size_t(earlier)];
         const Offset last = bonds.offset[std::min(range.last, other.touched_end)];
         for (Offset bond = bonds.offset[range.first]; bond < last; ++bond) {
@@ -316,8 +316,8 @@ struct SimplexKernels {
                               std::span<double> virials) {
     const bool find_pairs = must_find(a.term);
     constexpr int stride = vector_width(D);
-    const auto body = [&](int thread, RowRange range, double* sums) {
-      LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
+    const auto body = [&](int part, RowRange range, double* sums) {
+      LocalWorkspace<D>& w = *a.local[std::size_t(part)];
       for (Index i = range.first; i < range.last; ++i) {
         move_to(a, w, i, displacement, influences, find_pairs);
         w.clear(D);
@@ -531,9 +531,9 @@ struct SimplexKernels {
                       double projection, Tangent& result) {
     const Bonds& bonds = a.term.bonds();
     constexpr int stride = block_width(D), entries = D * D;
-    const auto body = [&](int thread, RowRange range, double* sums) {
-      LocalWorkspace<D>& w = *a.local[std::size_t(thread)];
-      std::vector<double>& beyond = a.blocks[thread];
+    const auto body = [&](int part, RowRange range, double* sums) {
+      LocalWorkspace<D>& w = *a.local[std::size_t(part)];
+      std::vector<double>& beyond = a.blocks[part];
       const Offset first_beyond = a.pattern.offset[range.last];
       std::fill(beyond.begin(), beyond.end(), 0.0);
       const auto block_of = [&](Offset bond) {
@@ -589,8 +589,8 @@ struct SimplexKernels {
         }
       }
     };
-    const auto add_spilled_blocks = [&](int thread, RowRange range) {
-      for (int earlier = 0; earlier < thread; ++earlier) {
+    const auto add_spilled_blocks = [&](int part, RowRange range) {
+      for (int earlier = 0; earlier < part; ++earlier) {
         const RowRange other = a.threads.ranges[earlier];
         const Index last = std::min(range.last, other.touched_end);
         if (last <= range.first) continue;

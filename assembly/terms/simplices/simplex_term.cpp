@@ -85,9 +85,9 @@ class SimplexPasses : public TermPasses, BlockTangent {
         });
       });
     };
-    const int threads = workspace_.threads.threads();
+    const int parts = workspace_.threads.parts();
     if (setting_.index_map.is_whole()) {
-      growth = damage_one_by_one(threads, find, [&](const DrivenBond& one, DamageGrowth& counted) {
+      growth = damage_one_by_one(parts, find, [&](const DrivenBond& one, DamageGrowth& counted) {
         const Loss loss = decide(one, counted);
         if (loss[0] > 0.0) take(one.bond, loss);
       });
@@ -95,7 +95,7 @@ class SimplexPasses : public TermPasses, BlockTangent {
       // Bonds of a tetrahedron need not share a point.
       damage_on_ranks(
           setting_.index_map, term_.bonds(),
-          term_.tetrahedra() ? LossReaches::any_bond : LossReaches::bonds_of_points, threads, find,
+          term_.tetrahedra() ? LossReaches::any_bond : LossReaches::bonds_of_points, parts, find,
           [&](const DrivenBond& one) { return decide(one, growth); },
           [&](const auto&, const auto& bond, const Loss& loss) {
             if (bond) take(*bond, loss);
@@ -287,7 +287,7 @@ class SimplexPasses : public TermPasses, BlockTangent {
   }
 
   /// Damage that committing the state would do by release.
-  /// @param visit(thread, DrivenBond) called for each bond whose damage would grow
+  /// @param visit(part, DrivenBond) called for each bond whose damage would grow
   template <class Visit>
   DamageGrowth visit_driven(const StateView& at, const Influences& influences, const Visit& visit) {
     find_releases(at.displacement, influences, releases_);
@@ -296,8 +296,8 @@ class SimplexPasses : public TermPasses, BlockTangent {
     const std::span<const double> history = at.history.of(slot_of_bonds_);
     std::vector<Evaluation> found(workspace_.threads.ranges.size());
     failure_.with_damage_law(history, [&](const auto& law) {
-      run_on_threads(workspace_.threads.threads(), [&](int thread) {
-        const RowRange range = workspace_.threads.ranges[std::size_t(thread)];
+      run_on_parts(workspace_.threads.threads(), workspace_.threads.parts(), [&](int part) {
+        const RowRange range = workspace_.threads.ranges[std::size_t(part)];
         DamageGrowth growth;
         for (Index i = range.first; i < range.last; ++i) {
           for (Offset bond = bonds.offset[i]; bond < bonds.offset[i + 1]; ++bond) {
@@ -309,14 +309,14 @@ class SimplexPasses : public TermPasses, BlockTangent {
                 equivalent_stretch(of_bond, bond, s, releases_[std::size_t(bond)]);
             judge_driven(of_bond, {0.0, i, bond, s, other_half(bond)}, driving,
                          history[std::size_t(bond)], growth,
-                         [&](const DrivenBond& one) { visit(thread, one); });
+                         [&](const DrivenBond& one) { visit(part, one); });
           }
         }
-        found[std::size_t(thread)].growth = growth;
+        found[std::size_t(part)].growth = growth;
       });
     });
     Evaluation all;
-    for (const Evaluation& of_thread : found) all += of_thread;
+    for (const Evaluation& of_part : found) all += of_part;
     return all.growth;
   }
 

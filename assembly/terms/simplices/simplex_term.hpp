@@ -67,6 +67,7 @@ class SimplexTerm : public Term {
   }
 
   [[nodiscard]] Couplings couplings() const override { return bonds(); }
+  [[nodiscard]] bool spills_bonds() const override { return true; }
   [[nodiscard]] bool drives_bonds() const override { return true; }
   [[nodiscard]] Balances balances() const override;
   void follow(const Model& model, History& history) const override;

@@ -27,11 +27,11 @@ struct SimplexWorkspace {
   const BlockPattern& pattern;
   std::vector<Offset> places;  ///< positions of bonds' blocks in the pattern; empty: its order
   Workspace& threads;
-  std::vector<std::unique_ptr<LocalWorkspace<D>>> local;  ///< per thread
+  std::vector<std::unique_ptr<LocalWorkspace<D>>> local;  ///< per part
   std::vector<std::vector<double>>
-      blocks;  ///< per thread, off-diagonal blocks of rows last..touched_end
+      blocks;  ///< per part, off-diagonal blocks of rows last..touched_end
   std::vector<std::vector<double>>
-      releases_beyond;  ///< per thread, of the bonds of these rows; empty without need
+      releases_beyond;  ///< per part, of the bonds of these rows; empty without need
 
   /// Position of a bond's block in the pattern.
   [[nodiscard]] Offset place(Offset bond) const {

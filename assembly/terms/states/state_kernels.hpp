@@ -78,18 +78,18 @@ class StateKernels {
   template <class E>
   Evaluation find_states(Span u, const E& eigenstretch) {
     buffers_.template take<D>({buffers_.points.reference, u});
-    struct alignas(64) OfThread {  // threads write to cache lines of their own
+    struct alignas(64) OfPart {  // threads write to cache lines of their own
       Lanes least = std::numeric_limits<double>::infinity();
     };
-    std::vector<OfThread> shortest(static_cast<std::size_t>(threads()));
+    std::vector<OfPart> shortest(static_cast<std::size_t>(buffers_.threads.parts()));
     sum_parts<2, 1>(
-        [&](const auto& batch, const Lanes& share, int thread) __attribute__((always_inline)) {
+        [&](const auto& batch, const Lanes& share, int part) __attribute__((always_inline)) {
           const auto measure = strained(batch, eigenstretch);
-          Lanes& least = shortest[std::size_t(thread)].least;
+          Lanes& least = shortest[std::size_t(part)].least;
           least =
               min(least, within(batch, measure.current, std::numeric_limits<double>::infinity()));
-          const Lanes part = share * measure.relative_change * lengths_of(batch);
-          return Vector<2, Lanes>{part, part * measure.relative_change};
+          const Lanes stretched = share * measure.relative_change * lengths_of(batch);
+          return Vector<2, Lanes>{stretched, stretched * measure.relative_change};
         },
         [&](Index point, const double* total) {
           const auto i = std::size_t(point);
@@ -106,7 +106,7 @@ class StateKernels {
     Evaluation found;
     for (const double energy : energy_) found.energy += energy;
     found.degenerate = !std::isfinite(found.energy);
-    for (const OfThread& one : shortest) found.degenerate |= !(smallest(one.least) > 0.0);
+    for (const OfPart& one : shortest) found.degenerate |= !(smallest(one.least) > 0.0);
     return found;
   }
 
@@ -245,13 +245,13 @@ class StateKernels {
 
   /// Damage that committing the state would do by release, after find_states of it, of the bonds
   /// that are counted here: they have complete states.
-  /// @param visit(thread, DrivenBond) called for each bond whose damage would grow; a bond and its
+  /// @param visit(part, DrivenBond) called for each bond whose damage would grow; a bond and its
   ///        twin are one
   template <class P, class E, class Visit>
   DamageGrowth growth_by_release(Span u, const P& law, const E& eigenstretch, const double* history,
                                  const Visit& visit) {
     const auto packed = buffers_.template pack<D>({buffers_.points.reference, u});
-    const auto body = [&](int thread, RowRange range, double*) {
+    const auto body = [&](int part, RowRange range, double*) {
       DamageGrowth found;
       for (Index i = range.first; i < range.last; ++i) {
         for_each_bond(i, [&](const Batch<D>& batch, const Lanes&) {
@@ -267,11 +267,11 @@ class StateKernels {
             if (!counts_bond(buffers_.points, i, batch.partner[l])) continue;
             judge_driven(law.of_bond(bond), {0.0, i, bond, s[l], twin > bond ? twin : -1},
                          driving[l], history[bond], found,
-                         [&](const DrivenBond& one) { visit(thread, one); });
+                         [&](const DrivenBond& one) { visit(part, one); });
           }
         });
       }
-      buffers_.threads.evaluations[std::size_t(thread)] = {0.0, false, found};
+      buffers_.threads.evaluations[std::size_t(part)] = {0.0, false, found};
     };
     buffers_.threads.template sum_rows<1>(body, [](Index, const double*) {});
     return buffers_.threads.total_evaluation().growth;

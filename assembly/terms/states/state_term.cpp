@@ -36,6 +36,7 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
         index_map_(setting.index_map),
         pattern_(setting.pattern),
         threads_(setting.workspace.threads()),
+        parts_(setting.workspace.parts()),
         kernels_(setting.points, term.bonds(), term.shares(), setting.workspace,
                  setting.model.sums_along_runs()) {}
 
@@ -85,7 +86,7 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
     };
     const auto find = [&](const auto& visit) { visit_driven(now(), visit); };
     if (index_map_.is_whole()) {
-      return damage_one_by_one(threads_, find, [&](const DrivenBond& one, DamageGrowth& growth) {
+      return damage_one_by_one(parts_, find, [&](const DrivenBond& one, DamageGrowth& growth) {
         const Loss loss = decide(one, history.of(slot_), growth);
         if (!(loss[0] > 0.0)) return;
         kernels_.lose(one, loss);
@@ -95,7 +96,7 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
     }
     DamageGrowth growth;
     damage_on_ranks(
-        index_map_, term_.bonds(), LossReaches::bonds_of_points, threads_, find,
+        index_map_, term_.bonds(), LossReaches::bonds_of_points, parts_, find,
         [&](const DrivenBond& one) { return decide(one, history.of(slot_), growth); },
         [&](const auto& ends, const auto& bond, const Loss& loss) {
           for (const auto& end : ends) {
@@ -274,7 +275,7 @@ class StatePasses : public TermPasses, BlockTangent, RowVisits {
   const Points& points_;
   const IndexMap& index_map_;
   const BlockPattern& pattern_;
-  int threads_;
+  int threads_, parts_;
   StateKernels<D, Measure> kernels_;
   KeptState found_;  // whose states and integrities the kernels have
 };

@@ -296,21 +296,33 @@ std::vector<double> everything(const BoxBody& body, int threads) {
   return all;
 }
 
-TEST(Assembler, GivesTheSameForAnyNumberOfThreadsUpToRoundOff) {
+TEST(Assembler, GivesTheSameBitsOnAsManyThreadsAsItHasPartsAndElseTheSameUpToRoundOff) {
+  int of_same_parts = 0, of_others = 0;
   for (const auto& box : uneven_boxes()) {
     const BoxBody body(box);
     const std::vector<double> one = everything(body, 1);
     ASSERT_GT(norm(one), 0.0);
     const double scale = tests::largest(one);
-    for (int threads : {2, 3, 5}) {
+    const int parts = int(Assembler(body.points, body.model, 1).parts().size());
+    for (int threads : {2, 3, 5, 49}) {
       const std::vector<double> several = everything(body, threads);
       ASSERT_EQ(several.size(), one.size());
+      EXPECT_EQ(int(Assembler(body.points, body.model, threads).parts().size()),
+                std::max(parts, threads));
+      if (threads <= parts) {
+        EXPECT_EQ(several, one) << threads << " threads";
+        ++of_same_parts;
+        continue;
+      }
+      ++of_others;
       for (std::size_t k = 0; k < one.size(); ++k) {
         // Sums of some ten terms in another order.
         ASSERT_NEAR(several[k], one[k], 32 * epsilon * scale) << threads << " threads, " << k;
       }
     }
   }
+  EXPECT_GT(of_same_parts, 3);
+  EXPECT_GT(of_others, 0);
 }
 
 TEST(Assembler, IsReproducibleToTheLastBitForAGivenNumberOfThreads) {

@@ -4,14 +4,17 @@
 #include <cstdint>
 #include <vector>
 
-#include "assembly/operators/block_pattern.hpp"
+#include <omp.h>
+
+#include "assembly/operators/row_ranges.hpp"
 #include "assembly/terms/bonds/point_columns.hpp"
 #include "assembly/terms/bonds/run_damage.hpp"
+#include "src/core/threads.hpp"
 #include "src/neighbourhood/bond_runs.hpp"
 
 namespace peristat {
 
-/// Columns of the points that a thread's runs reach at the moment: a window that moves with them,
+/// Columns of the points that a part's runs reach at the moment: a window that moves with them,
 /// so that large bodies need no second copy of their vectors and sums.
 struct RunWindow {
   RunWindow() = default;
@@ -24,24 +27,25 @@ struct RunWindow {
   Index first = 0, last = 0;
 };
 
-/// The runs among the bonds of each thread's rows, with the damage of a history.
-class ThreadRuns {
+/// The runs among the bonds of each part's rows, with the damage of a history.
+class PartRuns {
  public:
-  struct OfThread {
+  struct OfPart {
     BondRuns bonds;
     std::vector<RunDamage> damage;  ///< of the runs; empty: no bond can fail
     Index reach = 0;                ///< points from a run's point to its farthest partner
-    RunWindow window;
   };
 
-  ThreadRuns() = default;
+  PartRuns() = default;
   /// @param kinds see BondRuns
-  ThreadRuns(const Points& points, const Bonds& bonds, const BondKinds& kinds,
-             const std::vector<RowRange>& ranges);
+  PartRuns(const Points& points, const Bonds& bonds, const BondKinds& kinds,
+           const std::vector<RowRange>& ranges, int threads);
 
   /// True if sums go along runs.
-  [[nodiscard]] bool in_use() const { return !of_threads_.empty() && !onsets_move_; }
-  [[nodiscard]] OfThread& of(int thread) { return of_threads_[std::size_t(thread)]; }
+  [[nodiscard]] bool in_use() const { return !of_parts_.empty() && !onsets_move_; }
+  [[nodiscard]] OfPart& of(int part) { return of_parts_[std::size_t(part)]; }
+  /// The window of the thread that asks.
+  [[nodiscard]] RunWindow& window() { return windows_[std::size_t(omp_get_thread_num())]; }
 
   /// Finds the damaged bonds of a history, unless they are known.
   /// @param law of the bonds at that history
@@ -57,15 +61,16 @@ class ThreadRuns {
   void note_damage(const Bonds& bonds, const Note& note);
 
  private:
-  std::vector<OfThread> of_threads_;  // empty: no bond is in a run
-  bool onsets_move_ = false;          // with histories
-  bool follows_ = false;              // the history of this version:
+  std::vector<OfPart> of_parts_;    // empty: no bond is in a run
+  std::vector<RunWindow> windows_;  // per thread
+  bool onsets_move_ = false;        // with histories
+  bool follows_ = false;            // the history of this version:
   std::uint64_t version_ = 0;
 };
 
 template <class P>
-void ThreadRuns::follow(const Bonds& bonds, const P& law, const double* largest_stretch,
-                        std::uint64_t version) {
+void PartRuns::follow(const Bonds& bonds, const P& law, const double* largest_stretch,
+                      std::uint64_t version) {
   if constexpr (requires { law.onset; }) onsets_move_ = law.onset != nullptr;
   if (!in_use() || (follows_ && version == version_)) return;
   follows_ = true;
@@ -79,11 +84,10 @@ void ThreadRuns::follow(const Bonds& bonds, const P& law, const double* largest_
 }
 
 template <class Note>
-void ThreadRuns::note_damage(const Bonds& bonds, const Note& note) {
-  const int threads = int(of_threads_.size());
-#pragma omp parallel for num_threads(threads)
-  for (int t = 0; t < threads; ++t) {
-    OfThread& one = of(t);
+void PartRuns::note_damage(const Bonds& bonds, const Note& note) {
+  if (of_parts_.empty()) return;
+  run_on_parts(int(windows_.size()), int(of_parts_.size()), [&](int part) {
+    OfPart& one = of(part);
     one.damage.assign(one.bonds.runs().size(), RunDamage());
     RunDamage* damage = one.damage.data();
     for (std::size_t g = 0; g < one.bonds.groups(); ++g) {
@@ -96,7 +100,7 @@ void ThreadRuns::note_damage(const Bonds& bonds, const Note& note) {
           [](Index, Offset) {});
       damage += group.runs.size();
     }
-  }
+  });
 }
 
 }  // namespace peristat
