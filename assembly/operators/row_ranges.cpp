@@ -42,15 +42,17 @@ std::vector<RowRange> partition_rows(const BlockPattern& pattern, int parts, Ind
 int parts_of_rows(const BlockPattern& pattern, int threads, Index own) {
   constexpr double blocks_per_row_beyond = 20.0;  // so much longer takes a block than adding a row
   constexpr double small = 500000.0;              // rows whose buffers' memory does not matter
+  constexpr double most_between = 4.0;  // in all rows: untouched memory may be used, by huge pages
   const double rows = pattern.points();
   const double most =
       std::min(double(pattern.blocks()) / blocks_per_row_beyond, std::max(rows, small));
   for (const int parts : {48, 24, 12, 8, 4, 2}) {
-    double beyond = 0.0;
+    double beyond = 0.0, between = 0.0;  // between: addresses of rows that are not touched
     for (const RowRange& range : partition_rows(pattern, parts, own)) {
       beyond += double(range.rows_beyond());
+      between += double(range.far_first - range.near_end);
     }
-    if (beyond <= most) return std::max(parts, threads);
+    if (beyond <= most && between <= most_between * rows) return std::max(parts, threads);
   }
   return threads;
 }
