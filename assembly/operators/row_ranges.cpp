@@ -40,13 +40,16 @@ std::vector<RowRange> partition_rows(const BlockPattern& pattern, int parts, Ind
 }
 
 int parts_of_rows(const BlockPattern& pattern, int threads, Index own) {
-  constexpr double blocks_per_row_beyond = 20.0;  // so much longer takes a block than adding a row
-  constexpr double small = 500000.0;              // rows whose buffers' memory does not matter
+  // A row beyond is gathered, cleared and added up. In blocks' time this may take a hundredth part
+  // of a pass or so, and more in small bodies, whose passes are short.
+  constexpr double blocks_per_row_beyond = 70.0, of_small_bodies = 20.0, small = 2000.0;
+  constexpr double large = 500000.0;    // rows beyond take memory that matters if they are more
   constexpr double most_between = 4.0;  // in all rows: untouched memory may be used, by huge pages
-  const double rows = pattern.points();
-  const double most =
-      std::min(double(pattern.blocks()) / blocks_per_row_beyond, std::max(rows, small));
-  for (const int parts : {48, 24, 12, 8, 4, 2}) {
+  const double rows = pattern.points(), blocks = double(pattern.blocks());
+  const double quick =
+      std::max(blocks / blocks_per_row_beyond, std::min(blocks / of_small_bodies, small));
+  const double most = std::min(quick, std::max(rows, large));
+  for (const int parts : {48, 24, 16, 12, 8, 6, 4, 3, 2}) {
     double beyond = 0.0, between = 0.0;  // between: addresses of rows that are not touched
     for (const RowRange& range : partition_rows(pattern, parts, own)) {
       beyond += double(range.rows_beyond());

@@ -84,7 +84,7 @@ int parts_of(const tests::BoxBody& body, int threads) {
 
 TEST(PartsOfRows, AreAsManyAsLeaveFewRowsBeyondThem) {
   tests::BoxSetting strip = tests::small_box(2), cube = tests::small_box(3);
-  strip.extent = {400, 10, 0};
+  strip.extent = {2000, 10, 0};
   cube.extent = {12, 12, 12};
   const tests::BoxBody long_one(strip), thick(cube);
   for (const int threads : {1, 2, 16}) {
