@@ -36,7 +36,7 @@ class BlockTangent {
 };
 
 /// Called with the off-diagonal blocks (i, partner) of row i of a tangent, each dimension x
-/// dimension, row major, in the order of its pattern. Rows of a thread come in ascending order.
+/// dimension, row major, in the order of its pattern. Rows of a part come in ascending order.
 using RowVisitor = std::function<void(int part, Index i, std::span<const double> blocks)>;
 
 /// A tangent whose rows are computed one by one, or a matrix near it (TangentKind::nearby), with

@@ -40,8 +40,8 @@ std::vector<RowRange> partition_rows(const BlockPattern& pattern, int parts, Ind
 }
 
 int parts_of_rows(const BlockPattern& pattern, int threads, Index own) {
-  // A row beyond is gathered, cleared and added up. In blocks' time this may take a hundredth part
-  // of a pass or so, and more in small bodies, whose passes are short.
+  // A row beyond is gathered, cleared and added up, which takes as long as a few blocks: some per
+  // cent of a pass. In small bodies it may take more, for their passes are short.
   constexpr double blocks_per_row_beyond = 70.0, of_small_bodies = 20.0, small = 2000.0;
   constexpr double large = 500000.0;    // rows beyond take memory that matters if they are more
   constexpr double most_between = 4.0;  // in all rows: untouched memory may be used, by huge pages
